@@ -1,0 +1,1 @@
+"""Experiments, metrics, results and the command line."""

@@ -1,0 +1,165 @@
+"""The sets of normals to measure on, made or read a chunk at a time so that any count fits in memory."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..encodings.elementary import sincos_pi
+from ..encodings.vec import Vec3, sqrt
+from .errors import UsageError
+
+CHUNK_WIDTH = 512
+CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
+MAX_COUNT = 2**32
+DEFAULT_COUNT = 2**22
+
+# R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32.
+PLASTIC = 1.3247179572447460
+STEPS = tuple(round(2**32 / PLASTIC**k) for k in (1, 2))
+
+
+class Chunk(NamedTuple):
+    """CHUNK normals: unit normals and view-space positions as planes, and which of them count."""
+
+    n: Vec3
+    view: Vec3
+    covered: Any
+
+
+@dataclass(frozen=True)
+class NormalSet:
+    """A set of normals.
+
+    Attributes:
+        name: the catalogue's key.
+        title: what a reader calls it.
+        area: steradians it covers uniformly, or None where it is not uniform.
+        count: how many normals, background included.
+        shape: (height, width) of a set that is an image, else None.
+        seed: what the set was made with.
+        chunk: start index -> Chunk.
+    """
+
+    name: str
+    title: str
+    area: float | None
+    count: int
+    shape: tuple[int, int] | None
+    seed: int
+    chunk: Callable[[int], Chunk]
+
+    @property
+    def starts(self) -> range:
+        """Where its chunks start."""
+        return range(0, self.count, CHUNK)
+
+
+def _straight_ahead(like) -> Vec3:
+    return Vec3(jnp.zeros_like(like), jnp.zeros_like(like), jnp.full_like(like, -1.0))
+
+
+def _unit_interval(index, step: int, offset):
+    """The fraction of offset + index * step in units of 2^-32, exact in integers; never 0 or 1."""
+    fixed = index * jnp.uint32(step) + offset
+    return (fixed >> 8).astype(jnp.float32) * 2.0**-24 + 2.0**-25
+
+
+@partial(jax.jit, static_argnames="whole")
+def _uniform(start, count, offsets, *, whole: bool) -> Chunk:
+    """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes)."""
+    lane = jnp.arange(CHUNK, dtype=jnp.uint32)
+    u, v = (_unit_interval(start + lane, step, offset) for step, offset in zip(STEPS, offsets, strict=True))
+    # 1 - z^2 as a product, which does not cancel near the poles.
+    z, r = (1.0 - 2.0 * u, 2.0 * sqrt(u * (1.0 - u))) if whole else (u, sqrt((1.0 - u) * (1.0 + u)))
+    sine, cosine = sincos_pi(2.0 * v - 1.0)
+    n = Vec3(cosine * r, sine * r, z)
+    return Chunk(n, _straight_ahead(z), lane < count)
+
+
+def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> NormalSet:
+    offsets = np.random.default_rng(seed).integers(0, 2**32, 2, dtype=np.uint32)
+
+    def chunk(start: int) -> Chunk:
+        return _uniform(np.uint32(start), np.uint32(min(count - start, CHUNK)), tuple(offsets), whole=whole)
+
+    return NormalSet(name, title, (4 if whole else 2) * math.pi, count, None, seed, chunk)
+
+
+def sphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
+    """`count` directions spread evenly over the sphere, a low-discrepancy sequence shifted by the seed."""
+    return _make_uniform("sphere", "uniform sphere", True, count, seed)
+
+
+def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
+    """`count` directions spread evenly over z >= 0."""
+    return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
+
+
+def from_planes(name: str, title: str, n, view, covered, shape=None) -> NormalSet:
+    """A set of given normals.
+
+    Args:
+        n, view: float32 arrays of shape (..., 3).
+        covered: which of them count, bool of shape (...).
+    """
+    count = covered.size
+    padded = -(-count // CHUNK) * CHUNK
+
+    def planes(array, fill) -> np.ndarray:
+        flat = np.asarray(array, np.float32).reshape(count, 3)
+        tail = np.broadcast_to(np.float32(fill), (padded - count, 3))
+        return np.ascontiguousarray(np.concatenate([flat, tail]).T)
+
+    n_planes, view_planes = planes(n, (0, 0, 1)), planes(view, (0, 0, -1))
+    mask = np.concatenate([np.asarray(covered, bool).ravel(), np.zeros(padded - count, bool)])
+
+    def chunk(start: int) -> Chunk:
+        part = slice(start, start + CHUNK)
+        return Chunk(Vec3(*n_planes[:, part]), Vec3(*view_planes[:, part]), mask[part])
+
+    return NormalSet(name, title, None, count, shape, 0, chunk)
+
+
+def axes(count: int = 0, seed: int = 0) -> NormalSet:
+    """The six axis directions, with both zeros and one to three units in the last place of 1 around each."""
+    ulp = float(np.spacing(np.float32(1)))
+    near = [0.0, -0.0, *(s * k * ulp for k in (1, 2, 3) for s in (1, -1))]
+    rows = []
+    for axis, side in itertools.product(range(3), (1.0, -1.0)):
+        for a, b in itertools.product(near, near):
+            rows.append(np.insert([a, b], axis, side))
+    n = np.array(rows, np.float32)
+    view = np.broadcast_to(np.float32([0, 0, -1]), n.shape)
+    return from_planes("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
+
+
+@cache
+def playground(count: int = 0, seed: int = 0) -> NormalSet:
+    """The seeds' scene as its camera sees it, 640 x 480."""
+    from ..gbuffer.scenes.playground import TITLE
+    from ..gbuffer.scenes.playground import playground as rendered
+
+    seen = rendered()
+    return from_planes("playground", TITLE, seen.normals, seen.positions, seen.covered, seen.covered.shape)
+
+
+NORMAL_SETS: Mapping[str, Callable[[int, int], NormalSet]] = MappingProxyType(
+    {"sphere": sphere, "hemisphere": hemisphere, "axes": axes, "playground": playground}
+)
+
+
+def checked_count(count: int) -> int:
+    """The count itself. Raises UsageError where no set has that many."""
+    if not 1 <= count <= MAX_COUNT:
+        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^32)")
+    return count

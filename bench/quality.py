@@ -1,0 +1,214 @@
+"""The quality table: what each codec loses of the normals of a set, by the JAX and by the GLSL implementation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..encodings.codec import Codec
+from ..encodings.vec import Vec3
+from ..gbuffer.codec_passes import CodecPasses
+from ..gbuffer.device import Device, NoDeviceError, device
+from ..gbuffer.shader import ShaderError
+from .errors import MissingError, UsageError
+from .metrics import Meter, Statistics, effective_bits, psnr_db
+from .normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
+
+COLUMNS = (
+    "encoding",
+    "storage",
+    "rounding",
+    "normals",
+    "backend",
+    "bits",
+    "count",
+    "mse",
+    "psnr_db",
+    "psnr_seed_db",
+    "angle_mean_deg",
+    "angle_rms_deg",
+    "angle_p99_deg",
+    "angle_max_deg",
+    "effective_bits",
+    "exact",
+    "device",
+    "rounded_by",
+    "seed",
+    "skipped",
+)
+
+Row = dict[str, Any]
+Tick = Callable[[], None]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure."""
+
+    codec: Codec
+    normal_set: NormalSet
+    backend: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.normal_set.name} {self.backend}"
+
+
+@cache
+def _meter(codec: Codec) -> Meter:
+    return Meter(codec.round_trip)
+
+
+@cache
+def _decoded_meter() -> Meter:
+    return Meter(lambda n, decoded: decoded)
+
+
+def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
+    pixels = np.zeros((height * width, 4), np.float32)
+    for channel, plane in enumerate(planes):
+        pixels[:, channel] = np.asarray(plane).ravel()
+    return pixels.reshape(height, width, 4)
+
+
+def _by_jax(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
+    return _meter(case.codec).measure(case.normal_set, tick=tick), {
+        "device": jax.devices()[0].device_kind,
+        "rounded_by": "emulation",
+    }
+
+
+def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
+    gl = device()
+    passes = CodecPasses(gl, case.codec)
+
+    def prepare(chunk: Chunk) -> Chunk:
+        pixels = (_rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
+        decoded = passes.round_trip(*pixels).normals.reshape(-1, 3)
+        return chunk._replace(view=Vec3(*np.ascontiguousarray(decoded.T)))
+
+    try:
+        statistics = _decoded_meter().measure(case.normal_set, prepare, tick)
+    finally:
+        passes.release()
+    return statistics, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+
+
+BACKENDS: Mapping[str, Callable[[Case, Tick], tuple[Statistics, dict[str, str]]]] = MappingProxyType(
+    {"jax": _by_jax, "glsl": _by_glsl}
+)
+
+
+def cases(codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str]) -> list[Case]:
+    """Every codec on every set by every back end, the rows of one codec side by side."""
+    normal_sets, backends = list(normal_sets), list(backends)
+    return [Case(codec, chosen, backend) for chosen in normal_sets for codec in codecs for backend in backends]
+
+
+def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
+    """The codecs whose storage has room for their components, and a line for each that is left out.
+
+    Raises:
+        UsageError: none is left.
+    """
+    codecs = list(codecs)
+    fit = [codec for codec in codecs if codec.fits]
+    left_out = [
+        f"{c.name}: {c.encoding.components} components do not fit the {c.storage.channels} channels of {c.storage.title}"
+        for c in codecs
+        if not c.fits
+    ]
+    if not fit:
+        raise UsageError(left_out[0] if left_out else "nothing to measure")
+    return fit, left_out
+
+
+def measure(case: Case, tick: Tick = lambda: None) -> Row:
+    """One row of the quality table; `tick` is called as each chunk of the set is done.
+
+    A row that the device cannot give has its reason in `skipped` and no figures.
+    """
+    row = dict.fromkeys(COLUMNS)
+    row |= {
+        "encoding": case.codec.encoding.name,
+        "storage": case.codec.storage.name,
+        "rounding": case.codec.rounding,
+        "normals": case.normal_set.name,
+        "backend": case.backend,
+        "bits": case.codec.bits,
+        "seed": case.normal_set.seed,
+    }
+    try:
+        statistics, how = BACKENDS[case.backend](case, tick)
+    except (NoDeviceError, ShaderError) as error:
+        return row | {"skipped": str(error)}
+    return row | _figures(statistics, case.normal_set.area) | how
+
+
+def _figures(s: Statistics, area: float | None) -> Row:
+    return {
+        "count": s.count,
+        "mse": s.mse,
+        "psnr_db": psnr_db(s.mse),
+        "psnr_seed_db": psnr_db(s.seed_mse),
+        "angle_mean_deg": s.angle_mean_deg,
+        "angle_rms_deg": s.angle_rms_deg,
+        "angle_p99_deg": s.angle_p99_deg,
+        "angle_max_deg": s.angle_max_deg,
+        "effective_bits": effective_bits(s.angle_rms_deg, area),
+        "exact": s.mse == 0,
+    }
+
+
+def rows(chosen: Iterable[Case], tick: Callable[[Case], None] = lambda case: None) -> Iterator[Row]:
+    """The table, a row at a time."""
+    for case in chosen:
+        yield measure(case, lambda case=case: tick(case))
+
+
+def require_device() -> Device:
+    """The GL device. Raises MissingError where there is none."""
+    try:
+        return device()
+    except NoDeviceError as error:
+        raise MissingError(str(error)) from error
+
+
+@dataclass(frozen=True)
+class RoundTrip:
+    """A codec on an image: float32 arrays of shape (height, width, 3); `encoded` is what the texels stand for."""
+
+    normals: np.ndarray
+    encoded: np.ndarray
+    decoded: np.ndarray
+    covered: np.ndarray
+
+
+def image_round_trip(case: Case) -> RoundTrip:
+    """What a codec makes of a set that is an image. Raises NoDeviceError or ShaderError by the GLSL back end."""
+    assert case.normal_set.shape
+    height, width = case.normal_set.shape
+    chunks = [case.normal_set.chunk(start) for start in case.normal_set.starts]
+    n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: height * width], *chunks)
+
+    def image(planes) -> np.ndarray:
+        return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)
+
+    if case.backend == "glsl":
+        passes = CodecPasses(device(), case.codec)
+        result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
+        passes.release()
+        encoded, decoded = result.codes[..., :3], result.normals
+    else:
+        n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
+        code = case.codec.store(case.codec.encoding.encode(n, view))
+        decoded = image(case.codec.encoding.decode(code, view))
+        encoded = image([*code, *[np.zeros_like(code.x)] * (3 - len(code))])
+    return RoundTrip(image(n), encoded, decoded, covered.reshape(height, width))

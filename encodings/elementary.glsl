@@ -1,0 +1,30 @@
+// Trigonometry in half turns, beside elementary.py. ATAN2_PI, SIN_PI and COS_PI are its coefficients.
+#include "vec.glsl"
+
+float atan2_pi(float y, float x) {
+    float low = min(abs(x), abs(y)), high = max(abs(x), abs(y));
+    float t = low / max(high, TINY);
+    const float k[] = ATAN2_PI;
+    float p = k[k.length() - 1];
+    for (int i = k.length() - 2; i >= 0; --i) p = p * (t * t) + k[i];
+    float a = t * p;
+    a = abs(y) > abs(x) ? 0.5 - a : a;
+    a = x < 0.0 ? 1.0 - a : a;
+    return y < 0.0 ? -a : a;
+}
+
+// (sin(pi a), cos(pi a)) for a in [-1, 1].
+vec2 sincos_pi(float a) {
+    float quadrant = floor(2.0 * a + 0.5);
+    float r = a - 0.5 * quadrant;
+    const float ks[] = SIN_PI, kc[] = COS_PI;
+    float s = ks[ks.length() - 1], c = kc[kc.length() - 1];
+    for (int i = ks.length() - 2; i >= 0; --i) s = s * (r * r) + ks[i];
+    for (int i = kc.length() - 2; i >= 0; --i) c = c * (r * r) + kc[i];
+    s = r * s;
+    bool odd = abs(quadrant) == 1.0;
+    vec2 sc = odd ? vec2(c, s) : vec2(s, c);
+    sc.x = quadrant < 0.0 || quadrant == 2.0 ? -sc.x : sc.x;
+    sc.y = quadrant == 1.0 || abs(quadrant) == 2.0 ? -sc.y : sc.y;
+    return sc;
+}

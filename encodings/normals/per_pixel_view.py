@@ -1,0 +1,40 @@
+"""X and Y in a frame of the pixel's own, whose Z looks back along the eye ray: what is seen faces it."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, cross, dot, maximum, sqrt, unit
+
+
+def view_frame(view: Vec3) -> tuple[Vec3, Vec3, Vec3]:
+    """Axes of the pixel's frame from its view-space position; a ray straight up or down takes x to the right."""
+    # z = -view, x = normalize(z.z, 0, -z.x), y = cross(z, x)
+    z = -unit(view)
+    x = unit(Vec3(z.z, 0.0 * z.z, -z.x))
+    return x, cross(z, x), z
+
+
+def encode(n: Vec3, view: Vec3) -> Vec2:
+    """Unit normal to X and Y of the pixel's frame; what faces away from the eye shares its code with what faces it."""
+    x, y, _ = view_frame(view)
+    return Vec2(dot(x, n), dot(y, n))
+
+
+def decode(e: Vec2, view: Vec3) -> Vec3:
+    """The unit normal with z >= 0 in the pixel's frame; a code beyond the unit circle gets z = 0 there."""
+    x, y, z = view_frame(view)
+    return x * e.x + y * e.y + z * sqrt(maximum(1.0 - dot(e, e), 0.0))
+
+
+ENCODING = Encoding(
+    name="per_pixel_view",
+    title="#8 per-pixel view space",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="view",
+    citation="Y. O'Donnell, in method #8 of A. Pranckevicius 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(6, 4096),
+    ulps_reason="two normalises and a cross product; 1 - e.e cancels at the horizon: sqrt(2^-24) = 2048 units",
+)

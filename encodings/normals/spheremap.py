@@ -1,0 +1,36 @@
+"""Spheremap transform in its Lambert azimuthal equal-area form: the reflection vector's place in a sphere map."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, dot, minimum, select, sqrt
+
+
+def encode(n: Vec3, view: Vec3) -> Vec2:
+    """Unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, gets its point (1, 0)."""
+    # f = sqrt(8 n.z + 8), enc = n.xy / f in [-1/2, 1/2]
+    f = sqrt(8.0 * n.z + 8.0)
+    return select(n.z > -1.0, n.xy * (2.0 / f), Vec2(1.0, 0.0))
+
+
+def decode(e: Vec2, view: Vec3) -> Vec3:
+    """The unit normal of a point of the disk; beyond its rim, where only rounding lands, -z."""
+    # fenc = 2 e, f = fenc . fenc, n.xy = fenc sqrt(1 - f/4), n.z = 1 - f/2
+    fenc = e * 2.0
+    f = minimum(dot(fenc, fenc), 4.0)
+    g = sqrt(1.0 - f / 4.0)
+    return Vec3(fenc.x * g, fenc.y * g, 1.0 - f / 2.0)
+
+
+ENCODING = Encoding(
+    name="spheremap",
+    title="#4 spheremap (Lambert azimuthal)",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="sphere",
+    citation="S. Barrett, Lambert azimuthal equal-area projection, in method #4 of A. Pranckevicius 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 4096),
+    ulps_reason="a fused 8 z + 8 rounds once instead of twice; 1 - f/4 cancels at the rim: sqrt(2^-24) = 2048 units",
+)

@@ -1,0 +1,38 @@
+"""Spheremap transform as sphere-map texture coordinates were always computed: n / p.
+
+Equal to the Lambert form for unit normals only: here the length of n enters p.
+"""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, dot, maximum, select, sqrt
+
+
+def encode(n: Vec3, view: Vec3) -> Vec2:
+    """Unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, gets its point (1, 0)."""
+    # p = sqrt(n.x^2 + n.y^2 + (n.z + 1)^2) = sqrt(n . n + 2 n.z + 1), enc = n.xy / p
+    p2 = dot(n, n) + 2.0 * n.z + 1.0
+    return select(p2 > 0.0, n.xy / sqrt(p2), Vec2(1.0, 0.0))
+
+
+def decode(e: Vec2, view: Vec3) -> Vec3:
+    """The unit normal of a point of the disk; beyond its rim, where only rounding lands, -z."""
+    # with t = (e + 1) / 2: f = t.x - t.x^2 + t.y - t.y^2, m = sqrt(4 f - 1), n.xy = m (4 t - 2), n.z = 8 f - 3
+    f = maximum((2.0 - dot(e, e)) / 4.0, 0.25)
+    m = sqrt(4.0 * f - 1.0)
+    return Vec3(m * 2.0 * e.x, m * 2.0 * e.y, 8.0 * f - 3.0)
+
+
+ENCODING = Encoding(
+    name="spheremap_classic",
+    title="spheremap, n / p form",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="sphere",
+    citation="SIGGRAPH 99 advanced OpenGL course notes, sphere maps; method #4 of A. Pranckevicius 2009",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4096, 4096),
+    ulps_reason="n.n + 2 z + 1 cancels near -z, 4 f - 1 at the rim: a rounding of 2^-24 there is sqrt(2^-24) = 2048 units",
+)

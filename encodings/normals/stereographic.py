@@ -1,0 +1,38 @@
+"""Stereographic projection from -z, scaled so that the normals one practically sees fill the unit disk."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, dot, select
+
+# Found by hand in 2010, for that scene and field of view: the disk reaches 121.3 degrees from +z.
+SCALE = 1.7777
+
+
+def encode(n: Vec3, view: Vec3) -> Vec2:
+    """Unit normal to the plane, +z at the origin; -z, which is infinitely far out, gets (1, 0)."""
+    # enc = n.xy / (n.z + 1) / scale
+    return select(n.z > -1.0, n.xy / ((n.z + 1.0) * SCALE), Vec2(1.0, 0.0))
+
+
+def decode(e: Vec2, view: Vec3) -> Vec3:
+    """The unit normal of a point of the plane."""
+    # nn = (scale e, 1), g = 2 / (nn . nn), n = (g nn.xy, g - 1)
+    nn = e * SCALE
+    g = 2.0 / (dot(nn, nn) + 1.0)
+    return Vec3(g * nn.x, g * nn.y, g - 1.0)
+
+
+ENCODING = Encoding(
+    name="stereographic",
+    title="#7 stereographic, scale 1.7777",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="hemisphere",
+    citation="S. Barrett and I. Castano, in method #7 of A. Pranckevicius 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 4),
+    ulps_reason="one division each way, the encoder's by a sum that is 1 or more on the hemisphere",
+    constants={"STEREOGRAPHIC_SCALE": SCALE},
+)

@@ -1,0 +1,31 @@
+"""X and Y; Z is rebuilt as if the normal faced the camera."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, dot, maximum, sqrt
+
+
+def encode(n: Vec3, view: Vec3) -> Vec2:
+    """Unit normal to its X and Y; what faces away (z < 0) shares its code with what faces the camera."""
+    return n.xy
+
+
+def decode(e: Vec2, view: Vec3) -> Vec3:
+    """The normal with z >= 0; a code beyond the unit circle, where rounding can land, gets z = 0."""
+    # n.z = sqrt(1 - e . e)
+    return Vec3(e.x, e.y, sqrt(maximum(1.0 - dot(e, e), 0.0)))
+
+
+ENCODING = Encoding(
+    name="xy",
+    title="#1 X and Y, reconstruct Z",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="hemisphere",
+    citation="M. Valient, Deferred Rendering in Killzone 2, 2007; method #1 of A. Pranckevicius 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(0, 4096),
+    ulps_reason="1 - e.e cancels at the horizon: a rounding of 2^-24 there is sqrt(2^-24) = 2048 units in z",
+)

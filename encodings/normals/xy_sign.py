@@ -1,0 +1,33 @@
+"""X and Y, with the sign of Z kept as one more bit."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec2, Vec3, dot, maximum, sign_not_zero, sqrt
+
+
+def encode(n: Vec3, view: Vec3) -> Vec3:
+    """Unit normal to X, Y and the sign of Z (1 or -1, 1 for z = 0)."""
+    return Vec3(n.x, n.y, sign_not_zero(n.z))
+
+
+def decode(e: Vec3, view: Vec3) -> Vec3:
+    """The normal with z of the sign kept; a code beyond the unit circle gets z = 0."""
+    xy = Vec2(e.x, e.y)
+    # n.z = sign sqrt(1 - e . e)
+    return Vec3(e.x, e.y, e.z * sqrt(maximum(1.0 - dot(xy, xy), 0.0)))
+
+
+ENCODING = Encoding(
+    name="xy_sign",
+    title="X, Y and the sign of Z",
+    encode=encode,
+    decode=decode,
+    components=2,
+    sign_bits=1,
+    domain="sphere",
+    citation="ozlael, sign of the normal's Z in the sign of the G-buffer's depth, 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(0, 4096),
+    ulps_reason="1 - e.e cancels at the horizon: a rounding of 2^-24 there is sqrt(2^-24) = 2048 units in z",
+)

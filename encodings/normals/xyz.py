@@ -1,0 +1,30 @@
+"""All three components: the baseline that the two-component methods are held against."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec3
+
+
+def encode(n: Vec3, view: Vec3) -> Vec3:
+    """Unit normal to itself; exact."""
+    return n
+
+
+def decode(e: Vec3, view: Vec3) -> Vec3:
+    """The stored vector as it is, so that an error in its length counts too."""
+    return e
+
+
+ENCODING = Encoding(
+    name="xyz",
+    title="X, Y and Z",
+    encode=encode,
+    decode=decode,
+    components=3,
+    domain="sphere",
+    citation="baseline of A. Pranckevicius, Compact Normal Storage for Small G-Buffers, 2010",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(0, 0),
+    ulps_reason="nothing is computed",
+)

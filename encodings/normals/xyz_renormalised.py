@@ -1,0 +1,30 @@
+"""All three components, brought back to unit length when read."""
+
+from pathlib import Path
+
+from ..encoding import Encoding
+from ..vec import Vec3, unit
+
+
+def encode(n: Vec3, view: Vec3) -> Vec3:
+    """Unit normal to itself; exact."""
+    return n
+
+
+def decode(e: Vec3, view: Vec3) -> Vec3:
+    """The stored vector at unit length; a stored zero, which no normal makes, is +x."""
+    return unit(e)
+
+
+ENCODING = Encoding(
+    name="xyz_renormalised",
+    title="X, Y and Z, renormalised",
+    encode=encode,
+    decode=decode,
+    components=3,
+    domain="sphere",
+    citation="Z. Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (snorm)",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(0, 3),
+    ulps_reason="three products summed, one reciprocal square root, one product",
+)

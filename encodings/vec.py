@@ -1,0 +1,174 @@
+"""Vectors with named components, and the few functions both languages need, named as GLSL names them.
+
+`Vec2` and `Vec3` hold one array per component (separate planes), all of one shape. They are named tuples, so JAX sees
+them as pytrees without being imported here: importing an encoding must stay instant for `normalbench list`.
+The GLSL twin of this file is `vec.glsl`.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections import namedtuple
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    import jax.numpy as jnp
+    from jax import Array
+else:
+
+    class _Lazy:
+        """Stands for `jax.numpy` until the first function is asked of it: JAX takes a second to import."""
+
+        def __getattr__(self, name: str):
+            import jax.numpy
+
+            return getattr(jax.numpy, name)
+
+    jnp = _Lazy()
+
+# The least square of a length that is still told from zero: its root, 2^-60, is far below any rounding of a unit vector.
+TINY = 2.0**-120
+
+CONSTANTS = {"TINY": TINY}
+
+
+class _Operators:
+    """Component-wise arithmetic between vectors of one size, and between a vector and a scalar or array."""
+
+    __slots__ = ()
+    __array_ufunc__ = None  # a NumPy array on the left must ask __rmul__ here, not take the tuple for an array
+
+    def _map(self, function, other):
+        others = other if isinstance(other, type(self)) else (other,) * len(self)  # type: ignore[arg-type]
+        return type(self)(*(function(a, b) for a, b in zip(self, others, strict=True)))  # type: ignore[call-overload]
+
+    def __add__(self, other):
+        return self._map(operator.add, other)
+
+    def __sub__(self, other):
+        return self._map(operator.sub, other)
+
+    def __mul__(self, other):
+        return self._map(operator.mul, other)
+
+    def __truediv__(self, other):
+        return self._map(operator.truediv, other)
+
+    def __radd__(self, other):
+        return self._map(lambda a, b: b + a, other)
+
+    def __rsub__(self, other):
+        return self._map(lambda a, b: b - a, other)
+
+    def __rmul__(self, other):
+        return self._map(lambda a, b: b * a, other)
+
+    def __neg__(self):
+        return type(self)(*(-c for c in self))  # type: ignore[attr-defined, call-arg]
+
+    def __abs__(self):
+        return type(self)(*(abs(c) for c in self))  # type: ignore[attr-defined, call-arg]
+
+
+class Vec2(_Operators, namedtuple("Vec2", "x y")):  # type: ignore[misc]
+    """Two arrays of one shape, `x` and `y`."""
+
+    __slots__ = ()
+    x: Any
+    y: Any
+
+    @property
+    def yx(self) -> Vec2:
+        return Vec2(self.y, self.x)
+
+
+class Vec3(_Operators, namedtuple("Vec3", "x y z")):  # type: ignore[misc]
+    """Three arrays of one shape, `x`, `y` and `z`."""
+
+    __slots__ = ()
+    x: Any
+    y: Any
+    z: Any
+
+    @property
+    def xy(self) -> Vec2:
+        return Vec2(self.x, self.y)
+
+
+V = TypeVar("V", Vec2, Vec3)
+
+
+def sqrt(x):
+    return jnp.sqrt(x)
+
+
+def inversesqrt(x):
+    return 1.0 / jnp.sqrt(x)
+
+
+def maximum(a, b):
+    """The larger of the two, and `b` where `a` is NaN, as the GL device's own `max` has it."""
+    return jnp.where(a > b, a, b)
+
+
+def minimum(a, b):
+    """The smaller of the two, and `b` where `a` is NaN."""
+    return jnp.where(a < b, a, b)
+
+
+def select(condition, a, b):
+    """GLSL's `condition ? a : b`, for arrays and vectors."""
+    if isinstance(a, (Vec2, Vec3)):
+        return type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))
+    return jnp.where(condition, a, b)
+
+
+def dot(a: V, b: V):
+    products = a * b
+    return sum(products[1:], start=products[0])
+
+
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+
+
+def normalize(v: V) -> V:
+    """`v` at length 1; it must not be zero."""
+    return v * inversesqrt(dot(v, v))
+
+
+def unit(v: V) -> V:
+    """`v` at length 1, and the first axis where `v` is zero."""
+    length2 = dot(v, v)
+    first_axis = type(v)(*(jnp.float32(c) for c in (1.0, 0.0, 0.0)[: len(v)]))
+    return select(length2 > TINY, v * inversesqrt(length2), first_axis)
+
+
+def sign_not_zero(v):
+    """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
+    if isinstance(v, (Vec2, Vec3)):
+        return type(v)(*(sign_not_zero(c) for c in v))
+    return jnp.where(v < 0.0, jnp.float32(-1.0), jnp.float32(1.0))
+
+
+def direction_or_forward(v: Vec3) -> Vec3:
+    """`v` itself, or (0, 0, 1) where it is no direction: zero, NaN or infinite.
+
+    Every path into an encoder goes through this, so that no input makes a texel that is not a number.
+    """
+    length2 = dot(v, v)
+    is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)
+    return Vec3(*(jnp.where(is_direction, c, jnp.float32(f)) for c, f in zip(v, (0.0, 0.0, 1.0), strict=True)))
+
+
+def from_array(array) -> Vec3:
+    """Planes of an array of shape (..., 3), as float32."""
+    array = jnp.asarray(array, jnp.float32)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"normals have shape (..., 3), not {array.shape}")
+    return Vec3(array[..., 0], array[..., 1], array[..., 2])
+
+
+def to_array(v: Vec3) -> Array:
+    """An array of shape (..., 3) from three planes."""
+    return jnp.stack(list(v), axis=-1)

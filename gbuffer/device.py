@@ -1,0 +1,151 @@
+"""The GL device: a headless context, what it is, and how it rounds."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+import moderngl
+import numpy as np
+from jax import numpy as jnp
+
+from ..encodings.storage import ROUNDINGS, STORAGES, Storage, store_number
+from .shader import ShaderError, Source
+
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
+INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
+
+
+class NoDeviceError(Exception):
+    """This machine has no usable GL driver."""
+
+
+def _create_context() -> moderngl.Context:
+    # EGL needs no display; only Linux has it. A missing library is reported as a plain Exception by glcontext.
+    options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    try:
+        return moderngl.create_context(standalone=True, require=430, **options)
+    except Exception as error:
+        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL}") from error
+
+
+class Device:
+    """A GL context and the few operations the passes are made of.
+
+    Raises:
+        NoDeviceError: there is no GL 4.3 driver here; the message says what to install.
+    """
+
+    def __init__(self):
+        self.context = _create_context()
+        self.renderer = str(self.context.info["GL_RENDERER"])
+        self.version = str(self.context.info["GL_VERSION"])
+        self.is_software = any(word in self.renderer.lower() for word in SOFTWARE)
+        self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
+        self._native: dict[str, str] = {}
+
+    def _compile(self, *sources: Source, **stages: str):
+        try:
+            if "compute_shader" in stages:
+                return self.context.compute_shader(stages["compute_shader"])
+            return self.context.program(**stages)
+        except moderngl.Error as error:
+            raise ShaderError(sources[-1].explain(str(error))) from error
+
+    def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+        """A program that runs a fragment shader over a whole target, as a vertex array to render.
+
+        Raises:
+            ShaderError: it does not compile; the message names the file and the line.
+        """
+        vertex, fragment = Source("fullscreen.vert"), Source(path, defines, names)
+        program = self._compile(vertex, fragment, vertex_shader=vertex.text, fragment_shader=fragment.text)
+        return self.context.vertex_array(program, [])
+
+    def compute_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+        """A compute shader. Raises ShaderError as `fragment_pass` does."""
+        source = Source(path, defines, names)
+        return self._compile(source, compute_shader=source.text)
+
+    def target(self, size: tuple[int, int], storage: Storage) -> moderngl.Texture:
+        """A texture of a storage format, to render to and to fetch from."""
+        dtype = {"float": {16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
+        texture = self.context.texture(
+            size,
+            storage.channels,
+            dtype=dtype.get(storage.bits[0], "f1"),
+            internal_format=storage.internal_format,
+        )
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def upload(self, pixels: np.ndarray) -> moderngl.Texture:
+        """A float32 texture from an array of shape (height, width, channels)."""
+        height, width, channels = pixels.shape
+        data = np.ascontiguousarray(pixels, np.float32)
+        texture = self.context.texture((width, height), channels, data, dtype="f4")
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def render(self, passed: moderngl.VertexArray, targets: list[moderngl.Texture], **textures: moderngl.Texture):
+        """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out."""
+        framebuffer = self.context.framebuffer(targets)
+        try:
+            framebuffer.use()
+            for unit, (name, texture) in enumerate(textures.items()):
+                if name in passed.program:
+                    passed.program[name].value = unit  # type: ignore[union-attr]
+                    texture.use(unit)
+            passed.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            framebuffer.release()
+
+    def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
+        """float32 values of shape (height, width, 4), written to a target of the format as they are and read back."""
+        height, width, _ = values.shape
+        source, kept = self.upload(values), self.target((width, height), storage)
+        result = self.target((width, height), STORAGES["rgba32f"])
+        copy = self.fragment_pass("copy.frag")
+        self.render(copy, [kept], source=source)
+        self.render(copy, [result], source=kept)
+        pixels = read_pixels(result)
+        for texture in (source, kept, result):
+            texture.release()
+        return pixels
+
+    def native_rounding(self, storage: Storage) -> str:
+        """How the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
+        if storage.name not in self._native:
+            self._native[storage.name] = self._probe_rounding(storage)
+        return self._native[storage.name]
+
+    def _probe_rounding(self, storage: Storage) -> str:
+        if storage.kind == "float" and storage.bits[0] == 32:
+            return "nearest"
+        # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.
+        steps = 4085
+        values = np.linspace(-1.0 if storage.kind != "unorm" else 0.0, 1.0, steps + 1, dtype=np.float32)
+        pixels = np.repeat(values[None, :, None], 4, axis=2)
+        got = self.through(pixels, storage)[0, :, 0]
+        decoded = got * 2 - 1 if storage.kind == "unorm" else got
+        numbers = values * 2 - 1 if storage.kind == "unorm" else values
+        for rounding in ROUNDINGS:
+            expected = np.asarray(store_number(jnp.asarray(numbers), storage, 0, rounding))
+            if np.array_equal(decoded, expected):
+                return rounding
+        return "other"
+
+
+def read_pixels(texture: moderngl.Texture) -> np.ndarray:
+    """A float32 texture as an array of shape (height, width, channels)."""
+    width, height = texture.size
+    return np.frombuffer(texture.read(), np.float32).reshape(height, width, texture.components)
+
+
+@cache
+def device() -> Device:
+    """The process's one GL device. Raises NoDeviceError."""
+    return Device()

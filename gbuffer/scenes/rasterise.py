@@ -1,0 +1,118 @@
+"""A software rasteriser in NumPy: the same pixels on every machine, with or without a GL driver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .mesh import Mesh
+
+# Candidate pixels held at once; bounds memory whatever the scene.
+CHUNK = 1 << 20
+# How far outside a triangle, in its own barycentric weights, a pixel's centre still counts as on the edge.
+EDGE = 1e-9
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera at the origin of view space: x right, y up, looking down -z.
+
+    Attributes:
+        width, height: pixels.
+        fov: vertical field of view in degrees.
+        near, far: distances along -z.
+    """
+
+    width: int
+    height: int
+    fov: float
+    near: float
+    far: float
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """What is seen through each pixel.
+
+    Attributes:
+        normals: interpolated and renormalised, view space, (height, width, 3), float32; zero on the background.
+        positions: view-space positions, (height, width, 3), float32; (0, 0, -far) on the background.
+        covered: (height, width), bool. Row 0 is the top.
+    """
+
+    normals: np.ndarray
+    positions: np.ndarray
+    covered: np.ndarray
+
+
+def rasterise(mesh: Mesh, camera: Camera) -> Rendered:
+    """A mesh in view space, both sides of its triangles, the nearest at each pixel's centre.
+
+    Homogeneous rasterisation (Olano and Greer 1997): edge functions come from clip coordinates, so that triangles that
+    reach behind the eye need no clipping.
+    """
+    half = np.tan(np.radians(camera.fov) / 2)
+    corners = mesh.positions[mesh.triangles]
+    clip = corners * (1 / (half * camera.width / camera.height), 1 / half, -1.0)
+    # Left out: triangles seen edge on, poles' triangles that have no area, and what lies wholly before the near plane.
+    seen = (abs(np.linalg.det(clip)) > 1e-12) & np.any(clip[..., 2] > camera.near, axis=1)
+    corners, normals, clip = corners[seen], mesh.normals[mesh.triangles][seen], clip[seen]
+    inverse = np.linalg.inv(clip)
+    boxes = _pixel_boxes(clip, camera)
+    return _resolve(corners, normals, inverse, boxes, camera)
+
+
+def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
+    """First and last-plus-one column and row of each triangle, (triangles, 4); the whole target where it nears the eye."""
+    size = np.array([camera.width, camera.height])
+    w = clip[..., 2:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pixels = (clip[..., :2] / w * (0.5, -0.5) + 0.5) * size
+    low, high = np.floor(pixels.min(axis=1)), np.ceil(pixels.max(axis=1))
+    crosses = np.any(w[..., 0] < camera.near, axis=1)[:, None]
+    low = np.where(crosses, 0, np.clip(low, 0, size)).astype(np.int64)
+    high = np.where(crosses, size, np.clip(high, 0, size)).astype(np.int64)
+    return np.concatenate([low, np.maximum(high, low)], axis=1)
+
+
+def _candidates(boxes: np.ndarray):
+    """Yields (triangle, column, row) arrays that cover every box, a bounded number at a time."""
+    widths, heights = (boxes[:, 2:] - boxes[:, :2]).T
+    ends = np.cumsum(widths * heights)
+    for start in range(0, int(ends[-1]) if len(ends) else 0, CHUNK):
+        index = np.arange(start, min(start + CHUNK, int(ends[-1])))
+        triangle = np.searchsorted(ends, index, side="right")
+        within = index - (ends[triangle] - widths[triangle] * heights[triangle])
+        row, column = np.divmod(within, widths[triangle])
+        yield triangle, boxes[triangle, 0] + column, boxes[triangle, 1] + row
+
+
+def _resolve(corners, normals, inverse, boxes, camera: Camera) -> Rendered:
+    depth = np.full(camera.width * camera.height, np.inf)
+    normal = np.zeros((camera.width * camera.height, 3))
+    position = np.tile([0.0, 0.0, -camera.far], (camera.width * camera.height, 1))
+    for triangle, column, row in _candidates(boxes):
+        x = (column + 0.5) / camera.width * 2 - 1
+        y = 1 - (row + 0.5) / camera.height * 2
+        # Each edge function is a corner's weight over w; their sum is 1/w.
+        edges = np.einsum("nj,njk->nk", np.stack([x, y, np.ones_like(x)], axis=1), inverse[triangle])
+        one_over_w = edges.sum(axis=1)
+        # A centre on an edge two triangles share belongs to both, so that rounding leaves no crack between them.
+        inside = np.all(edges >= -EDGE * one_over_w[:, None], axis=1)
+        inside &= (one_over_w * camera.far >= 1) & (one_over_w * camera.near <= 1)
+        triangle, edges, one_over_w = triangle[inside], edges[inside], one_over_w[inside]
+        pixel, w = (row * camera.width + column)[inside], 1 / one_over_w
+        order = np.lexsort((w, pixel))
+        first = order[np.concatenate([[True], np.diff(pixel[order]) > 0])] if len(order) else order
+        first = first[w[first] < depth[pixel[first]]]
+        weights = (edges * w[:, None])[first]
+        depth[pixel[first]] = w[first]
+        normal[pixel[first]] = np.einsum("nc,nck->nk", weights, normals[triangle[first]])
+        position[pixel[first]] = np.einsum("nc,nck->nk", weights, corners[triangle[first]])
+    covered = np.isfinite(depth)
+    normal[covered] /= np.linalg.norm(normal[covered], axis=1, keepdims=True)
+    shape = (camera.height, camera.width)
+    return Rendered(
+        normal.reshape(*shape, 3).astype(np.float32), position.reshape(*shape, 3).astype(np.float32), covered.reshape(shape)
+    )

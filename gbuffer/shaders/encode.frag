@@ -1,0 +1,22 @@
+#version 430
+// Encodes a texture of normals into the render target under test.
+#include "code.glsl"
+#include "../../encodings/storage.glsl"
+
+uniform sampler2D normals;
+uniform sampler2D views;
+layout(location = 0) out vec4 texel;
+#if SIGN_BITS
+layout(location = 1) out float signed_depth;
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 view = texelFetch(views, pixel, 0).xyz;
+    vec4 code = widen(ENCODE(direction_or_forward(texelFetch(normals, pixel, 0).xyz), view));
+#if SIGN_BITS
+    signed_depth = -view.z * code[COMPONENTS];
+    code[COMPONENTS] = 0.0;
+#endif
+    texel = to_texel(code);
+}

@@ -1,0 +1,1 @@
+"""Tables and pictures. Takes data frames and images and knows no other room."""

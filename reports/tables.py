@@ -1,0 +1,92 @@
+"""One table, four ways to write it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+
+FORMATS = ("table", "json", "csv", "markdown")
+
+
+def _text(value: Any) -> str:
+    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    if isinstance(value, float):
+        return "inf" if math.isinf(value) else f"{value:.3e}" if 0 < abs(value) < 1e-3 else f"{value:.4f}"
+    return str(value)
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON can hold it: no infinities (an identical image is marked `exact`), no NumPy scalars."""
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def to_json(rows: Sequence[dict[str, Any]]) -> str:
+    return json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1) + "\n"
+
+
+def to_csv(rows: Sequence[dict[str, Any]]) -> str:
+    return pd.DataFrame(list(rows), dtype=object).to_csv(index=False)
+
+
+def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
+    """A table for a pull request, columns aligned as text so that the source reads too."""
+    rows, caption = _without_constants(rows)
+    columns = list(rows[0])
+    cells = [[_text(row[c]).replace("|", "\\|") for c in columns] for row in rows]
+    widths = [max(len(c), *(len(line[i]) for line in cells)) for i, c in enumerate(columns)]
+    numeric = [all(isinstance(row[c], int | float | None) for row in rows) for c in columns]
+
+    def line(values: Sequence[str]) -> str:
+        padded = (v.rjust(w) if n else v.ljust(w) for v, w, n in zip(values, widths, numeric, strict=True))
+        return "| " + " | ".join(padded) + " |"
+
+    rule = "|" + "|".join("-" * (w + 1) + (":" if n else "-") for w, n in zip(widths, numeric, strict=True)) + "|"
+    return "\n".join([line(columns), rule, *map(line, cells), "", caption]).rstrip() + "\n"
+
+
+def _without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
+    """The rows less the columns that are empty or say the same in each, and a line with what those say."""
+    if len(rows) < 2:
+        return [{k: v for k, v in row.items() if _text(v)} for row in rows], ""
+    texts = {column: [_text(row[column]) for row in rows] for column in rows[0]}
+    constant = {column: t[0] for column, t in texts.items() if len(set(t)) == 1}
+    caption = ", ".join(f"{column} {text}" for column, text in constant.items() if text and column != "exact")
+    return [{k: v for k, v in row.items() if k not in constant} for row in rows], caption
+
+
+def to_terminal(rows: Sequence[dict[str, Any]], width: int | None = None) -> str:
+    """A table for people; columns that say the same in every row go to the line below it."""
+    from io import StringIO
+
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    shown, caption = _without_constants(rows)
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in shown[0]:
+        numeric = all(isinstance(row[column], int | float | None) for row in shown)
+        table.add_column(column.replace("_", " "), justify="right" if numeric else "left", overflow="fold")
+    for row in shown:
+        table.add_row(*(escape(_text(v)) for v in row.values()))
+    console = Console(file=StringIO(), width=width or 200, highlight=False)
+    console.print(table)
+    if caption:
+        console.print(escape(caption), style="dim")
+    return "\n".join(line.rstrip() for line in console.file.getvalue().splitlines()) + "\n"  # type: ignore[attr-defined]
+
+
+def written(rows: Sequence[dict[str, Any]], format: str, width: int | None = None) -> str:
+    """Rows in one of FORMATS. The JSON is a list of flat rows; an infinite figure is null there."""
+    if format == "json":
+        return to_json(rows)
+    if format == "csv":
+        return to_csv(rows)
+    return to_markdown(rows) if format == "markdown" else to_terminal(rows, width)
