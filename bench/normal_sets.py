@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..encodings.elementary import sincos_pi
-from ..encodings.vec import Vec3, sqrt
+from ..encodings.vec import Vec3, from_array, sqrt
 from .errors import UsageError
 
 CHUNK_WIDTH = 512
@@ -105,7 +105,7 @@ def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
     return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
 
 
-def from_planes(name: str, title: str, n, view, covered, shape=None) -> NormalSet:
+def from_arrays(name: str, title: str, n, view, covered, shape=None) -> NormalSet:
     """A set of given normals.
 
     Args:
@@ -113,34 +113,29 @@ def from_planes(name: str, title: str, n, view, covered, shape=None) -> NormalSe
         covered: which of them count, bool of shape (...).
     """
     count = covered.size
-    padded = -(-count // CHUNK) * CHUNK
+    chunks = [
+        _padded_chunk(*(np.asarray(a).reshape(count, -1)[start : start + CHUNK] for a in (n, view, covered)))
+        for start in range(0, count, CHUNK)
+    ]
+    return NormalSet(name, title, None, count, shape, 0, lambda start: chunks[start // CHUNK])
 
-    def planes(array, fill) -> np.ndarray:
-        flat = np.asarray(array, np.float32).reshape(count, 3)
-        tail = np.broadcast_to(np.float32(fill), (padded - count, 3))
-        return np.ascontiguousarray(np.concatenate([flat, tail]).T)
 
-    n_planes, view_planes = planes(n, (0, 0, 1)), planes(view, (0, 0, -1))
-    mask = np.concatenate([np.asarray(covered, bool).ravel(), np.zeros(padded - count, bool)])
-
-    def chunk(start: int) -> Chunk:
-        part = slice(start, start + CHUNK)
-        return Chunk(Vec3(*n_planes[:, part]), Vec3(*view_planes[:, part]), mask[part])
-
-    return NormalSet(name, title, None, count, shape, 0, chunk)
+def _padded_chunk(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> Chunk:
+    """Part of a set as a whole chunk; what is missing does not count."""
+    missing = CHUNK - len(n)
+    n, view = (np.pad(np.asarray(a, np.float32), ((0, missing), (0, 0)), mode="edge") for a in (n, view))
+    planes = (jnp.asarray(np.ascontiguousarray(plane)) for plane in view.T)
+    return Chunk(from_array(n), Vec3(*planes), jnp.asarray(np.pad(covered[:, 0], (0, missing))))
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:
     """The six axis directions, with both zeros and one to three units in the last place of 1 around each."""
     ulp = float(np.spacing(np.float32(1)))
     near = [0.0, -0.0, *(s * k * ulp for k in (1, 2, 3) for s in (1, -1))]
-    rows = []
-    for axis, side in itertools.product(range(3), (1.0, -1.0)):
-        for a, b in itertools.product(near, near):
-            rows.append(np.insert([a, b], axis, side))
-    n = np.array(rows, np.float32)
-    view = np.broadcast_to(np.float32([0, 0, -1]), n.shape)
-    return from_planes("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
+    sides = itertools.product(range(3), (1.0, -1.0), near, near)
+    n = np.array([np.insert([a, b], axis, side) for axis, side, a, b in sides], np.float32)
+    view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    return from_arrays("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
 
 
 @cache
@@ -150,7 +145,7 @@ def playground(count: int = 0, seed: int = 0) -> NormalSet:
     from ..gbuffer.scenes.playground import playground as rendered
 
     seen = rendered()
-    return from_planes("playground", TITLE, seen.normals, seen.positions, seen.covered, seen.covered.shape)
+    return from_arrays("playground", TITLE, seen.normals, seen.positions, seen.covered, seen.covered.shape)
 
 
 NORMAL_SETS: Mapping[str, Callable[[int, int], NormalSet]] = MappingProxyType(

@@ -44,6 +44,9 @@ COLUMNS = (
     "skipped",
 )
 
+# What an unused channel is drawn as: -1 is black.
+UNUSED = -1.0
+
 Row = dict[str, Any]
 Tick = Callable[[], None]
 
@@ -68,7 +71,7 @@ def _meter(codec: Codec) -> Meter:
 
 @cache
 def _decoded_meter() -> Meter:
-    return Meter(lambda n, decoded: decoded)
+    return Meter(lambda _, decoded: decoded)
 
 
 def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
@@ -121,7 +124,7 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     codecs = list(codecs)
     fit = [codec for codec in codecs if codec.fits]
     left_out = [
-        f"{c.name}: {c.encoding.components} components do not fit the {c.storage.channels} channels of {c.storage.title}"
+        f"{c.name}: {c.encoding.components} components, but {c.storage.title} has {c.storage.channels} channels"
         for c in codecs
         if not c.fits
     ]
@@ -167,7 +170,7 @@ def _figures(s: Statistics, area: float | None) -> Row:
     }
 
 
-def rows(chosen: Iterable[Case], tick: Callable[[Case], None] = lambda case: None) -> Iterator[Row]:
+def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
     """The table, a row at a time."""
     for case in chosen:
         yield measure(case, lambda case=case: tick(case))
@@ -205,10 +208,11 @@ def image_round_trip(case: Case) -> RoundTrip:
         passes = CodecPasses(device(), case.codec)
         result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
         passes.release()
-        encoded, decoded = result.codes[..., :3], result.normals
+        encoded, decoded = result.codes[..., :3].copy(), result.normals
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
         code = case.codec.store(case.codec.encoding.encode(n, view))
         decoded = image(case.codec.encoding.decode(code, view))
         encoded = image([*code, *[np.zeros_like(code.x)] * (3 - len(code))])
+    encoded[..., case.codec.encoding.components + case.codec.encoding.sign_bits :] = UNUSED
     return RoundTrip(image(n), encoded, decoded, covered.reshape(height, width))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from .encoding import Encoding
 from .storage import Storage, store_number
-from .vec import Vec3, direction_or_forward
+from .vec import Vec3
 
 
 @dataclass(frozen=True)
@@ -40,5 +40,5 @@ class Codec:
         return type(code)(*stored)
 
     def round_trip(self, n: Vec3, view: Vec3) -> Vec3:
-        """Unit normals (any shape) encoded, stored and decoded; not renormalised."""
-        return self.encoding.decode(self.store(self.encoding.encode(direction_or_forward(n), view)), view)
+        """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised."""
+        return self.encoding.decode(self.store(self.encoding.encode(n, view)), view)

@@ -33,7 +33,7 @@ class Encoding:
         ulps_reason: why it is that many.
         sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.
-        tables: look-up tables by GLSL sampler name, arrays of shape (height, width, channels), float32; built on demand.
+        tables: makes the look-up tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
     """
 
     name: str

@@ -1,9 +1,9 @@
 """How numbers become texels and come back: the arithmetic of render target formats, emulated bit for bit.
 
-UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is clamped to
-[-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the even integer,
-NaN takes the lower end; what comes back is the integer times the float32 reciprocal of the scale. That is OpenGL 4.6,
-section 2.3.5, with the choices it leaves open made as the hardware tested makes them (tests/test_storage.py).
+UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is clamped
+to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the even
+integer, NaN takes the lower end; what comes back is the integer times the float32 reciprocal of the scale. That is
+OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (tests/test_storage.py).
 
 Half floats round to nearest even, or toward zero: GL allows both, and both ship. Where a device does not round as a
 codec asks, the shader rounds before the write (`storage.glsl`), and the row says so.

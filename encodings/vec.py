@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections import namedtuple
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
     import jax.numpy as jnp
@@ -26,7 +26,7 @@ else:
 
     jnp = _Lazy()
 
-# The least square of a length that is still told from zero: its root, 2^-60, is far below any rounding of a unit vector.
+# The least square of a length that is still told from zero; its root, 2^-60, is far below a unit vector's rounding.
 TINY = 2.0**-120
 
 CONSTANTS = {"TINY": TINY}
@@ -96,6 +96,7 @@ class Vec3(_Operators, namedtuple("Vec3", "x y z")):  # type: ignore[misc]
 
 
 V = TypeVar("V", Vec2, Vec3)
+S = TypeVar("S")
 
 
 def sqrt(x):
@@ -116,11 +117,13 @@ def minimum(a, b):
     return jnp.where(a < b, a, b)
 
 
-def select(condition, a, b):
+def select(condition, a: S, b: S) -> S:
     """GLSL's `condition ? a : b`, for arrays and vectors."""
-    if isinstance(a, (Vec2, Vec3)):
-        return type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))
-    return jnp.where(condition, a, b)
+    if isinstance(a, Vec2 | Vec3):
+        chosen = type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))  # type: ignore[arg-type]
+    else:
+        chosen = jnp.where(condition, a, b)  # type: ignore[arg-type]
+    return cast("S", chosen)
 
 
 def dot(a: V, b: V):
@@ -146,7 +149,7 @@ def unit(v: V) -> V:
 
 def sign_not_zero(v):
     """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
-    if isinstance(v, (Vec2, Vec3)):
+    if isinstance(v, Vec2 | Vec3):
         return type(v)(*(sign_not_zero(c) for c in v))
     return jnp.where(v < 0.0, jnp.float32(-1.0), jnp.float32(1.0))
 
@@ -154,7 +157,8 @@ def sign_not_zero(v):
 def direction_or_forward(v: Vec3) -> Vec3:
     """`v` itself, or (0, 0, 1) where it is no direction: zero, NaN or infinite.
 
-    Every path into an encoder goes through this, so that no input makes a texel that is not a number.
+    Every path into an encoder goes through this once, so that no input makes a texel that is not a number: arrays in
+    `from_array`, pixels in the shader that encodes them.
     """
     length2 = dot(v, v)
     is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)
@@ -162,11 +166,11 @@ def direction_or_forward(v: Vec3) -> Vec3:
 
 
 def from_array(array) -> Vec3:
-    """Planes of an array of shape (..., 3), as float32."""
+    """Planes of an array of shape (..., 3), as float32; what is no direction becomes (0, 0, 1)."""
     array = jnp.asarray(array, jnp.float32)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"normals have shape (..., 3), not {array.shape}")
-    return Vec3(array[..., 0], array[..., 1], array[..., 2])
+    return direction_or_forward(Vec3(array[..., 0], array[..., 1], array[..., 2]))
 
 
 def to_array(v: Vec3) -> Array:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -102,23 +102,19 @@ def exact_values(device: Device, encoding: Encoding, normals, views, given) -> t
     Returns:
         codes and decoded normals, float32 arrays of shape (count, 4).
     """
-    compute = device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
+    compute: Any = device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
     context, count = device.context, len(normals)
     inputs = [context.buffer(np.ascontiguousarray(a, np.float32)) for a in (normals, views, given)]
     outputs = [context.buffer(reserve=count * 16) for _ in range(2)]
     tables = {name: device.upload(table) for name, table in encoding.tables().items()}
     for binding, buffer in enumerate([*inputs, *outputs]):
         buffer.bind_to_storage_buffer(binding)
-    _bind(compute, tables.items())
+    for unit, (name, texture) in enumerate(tables.items()):
+        if name in compute:
+            compute[name].value = unit
+            texture.use(unit)
     compute.run(group_x=(count + 63) // 64)
     codes, decoded = (np.frombuffer(b.read(), np.float32).reshape(count, 4) for b in outputs)
     for thing in (*inputs, *outputs, *tables.values(), compute):
         thing.release()
     return codes, decoded
-
-
-def _bind(program, textures: Iterable) -> None:
-    for unit, (name, texture) in enumerate(textures):
-        if name in program:
-            program[name].value = unit
-            texture.use(unit)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -24,7 +26,7 @@ class NoDeviceError(Exception):
 
 def _create_context() -> moderngl.Context:
     # EGL needs no display; only Linux has it. A missing library is reported as a plain Exception by glcontext.
-    options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
     try:
         return moderngl.create_context(standalone=True, require=430, **options)
     except Exception as error:
@@ -47,14 +49,6 @@ class Device:
         self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
         self._native: dict[str, str] = {}
 
-    def _compile(self, *sources: Source, **stages: str):
-        try:
-            if "compute_shader" in stages:
-                return self.context.compute_shader(stages["compute_shader"])
-            return self.context.program(**stages)
-        except moderngl.Error as error:
-            raise ShaderError(sources[-1].explain(str(error))) from error
-
     def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         """A program that runs a fragment shader over a whole target, as a vertex array to render.
 
@@ -62,13 +56,15 @@ class Device:
             ShaderError: it does not compile; the message names the file and the line.
         """
         vertex, fragment = Source("fullscreen.vert"), Source(path, defines, names)
-        program = self._compile(vertex, fragment, vertex_shader=vertex.text, fragment_shader=fragment.text)
+        with explained(fragment):
+            program = self.context.program(vertex_shader=vertex.text, fragment_shader=fragment.text)
         return self.context.vertex_array(program, [])
 
     def compute_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         """A compute shader. Raises ShaderError as `fragment_pass` does."""
         source = Source(path, defines, names)
-        return self._compile(source, compute_shader=source.text)
+        with explained(source):
+            return self.context.compute_shader(source.text)
 
     def target(self, size: tuple[int, int], storage: Storage) -> moderngl.Texture:
         """A texture of a storage format, to render to and to fetch from."""
@@ -137,6 +133,15 @@ class Device:
             if np.array_equal(decoded, expected):
                 return rounding
         return "other"
+
+
+@contextmanager
+def explained(source: Source) -> Iterator[None]:
+    """Turns a compiler's complaint about a source into a ShaderError that names files and lines."""
+    try:
+        yield
+    except moderngl.Error as error:
+        raise ShaderError(source.explain(str(error))) from error
 
 
 def read_pixels(texture: moderngl.Texture) -> np.ndarray:

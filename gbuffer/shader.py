@@ -33,14 +33,10 @@ class Source:
         self.text = "\n".join([version, *head, "#line 2 0", *lines, ""])
 
     def _expand(self, path: Path) -> list[str]:
-        try:
-            text = path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ShaderError(f"{path}: cannot be read as a shader: {error}") from error
         index = len(self._files)
         self._files.append(path)
         lines = [f"#line 1 {index}"]
-        for number, line in enumerate(text.splitlines(), 1):
+        for number, line in enumerate(read_shader(path).splitlines(), 1):
             lines += self._include(path, number, line) if _INCLUDE.match(line) else [line]
             if _INCLUDE.match(line):
                 lines.append(f"#line {number + 1} {index}")
@@ -63,6 +59,14 @@ class Source:
             return f"{self._files[index]}:{line}" if index < len(self._files) else match[0]
 
         return _PLACE.sub(place, log.strip())
+
+
+def read_shader(path: Path) -> str:
+    """A shader file's text. Raises ShaderError."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ShaderError(f"{path}: cannot be read as a shader: {error}") from error
 
 
 def glsl_value(value) -> str:

@@ -42,10 +42,8 @@ def codec_pictures(
 
 
 def write_png(path: Path, pixels: np.ndarray) -> None:
-    """Write uint8 pixels of shape (height, width, 3), whole or not at all."""
-    partial = path.with_name(f".{path.name}.partial")
-    Image.fromarray(pixels).save(partial, format="png")
-    partial.replace(path)
+    """Write uint8 pixels of shape (height, width, 3). Raises OSError."""
+    Image.fromarray(pixels).save(path, format="png")
 
 
 def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2) -> np.ndarray:

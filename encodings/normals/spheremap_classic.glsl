@@ -1,8 +1,8 @@
 // Spheremap transform, n / p form, beside spheremap_classic.py.
 
 vec2 spheremap_classic_encode(vec3 n, vec3 view) {
-    // p = sqrt(n.x^2 + n.y^2 + (n.z + 1)^2) = sqrt(n . n + 2 n.z + 1), enc = n.xy / p
-    float p2 = dot(n, n) + 2.0 * n.z + 1.0;
+    // p = sqrt(n.x^2 + n.y^2 + (n.z + 1)^2), enc = n.xy / p
+    float p2 = dot(n.xy, n.xy) + (n.z + 1.0) * (n.z + 1.0);
     return p2 > 0.0 ? n.xy / sqrt(p2) : vec2(1.0, 0.0);
 }
 

@@ -64,7 +64,7 @@ def rasterise(mesh: Mesh, camera: Camera) -> Rendered:
 
 
 def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
-    """First and last-plus-one column and row of each triangle, (triangles, 4); the whole target where it nears the eye."""
+    """First and last-plus-one column and row of each triangle, (triangles, 4); all of them where it nears the eye."""
     size = np.array([camera.width, camera.height])
     w = clip[..., 2:]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -114,5 +114,7 @@ def _resolve(corners, normals, inverse, boxes, camera: Camera) -> Rendered:
     normal[covered] /= np.linalg.norm(normal[covered], axis=1, keepdims=True)
     shape = (camera.height, camera.width)
     return Rendered(
-        normal.reshape(*shape, 3).astype(np.float32), position.reshape(*shape, 3).astype(np.float32), covered.reshape(shape)
+        normal.reshape(*shape, 3).astype(np.float32),
+        position.reshape(*shape, 3).astype(np.float32),
+        covered.reshape(shape),
     )

@@ -15,7 +15,7 @@ void main() {
     vec3 view = texelFetch(views, pixel, 0).xyz;
     vec4 code = widen(ENCODE(direction_or_forward(texelFetch(normals, pixel, 0).xyz), view));
 #if SIGN_BITS
-    signed_depth = -view.z * code[COMPONENTS];
+    signed_depth = abs(view.z) * code[COMPONENTS];
     code[COMPONENTS] = 0.0;
 #endif
     texel = to_texel(code);

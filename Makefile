@@ -1,0 +1,29 @@
+# make bench   set up what is missing, then measure the default suite
+# make test    set up what is missing, then run the tests
+# make setup   virtual environment in .venv, packages, GL driver
+# make lint    ruff and the type checker
+
+PYTHON ?= python3
+BIN = .venv/bin
+
+.PHONY: bench test setup lint
+
+bench: .venv/ready
+	$(BIN)/normalbench run
+
+test: .venv/ready
+	$(BIN)/python -m pytest -n 2
+
+setup: .venv/ready
+
+lint: .venv/ready
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/basedpyright
+
+# The stamp is younger than what it was made from, so that a second call installs nothing.
+.venv/ready: pyproject.toml .ci/constraints.txt
+	$(PYTHON) -m venv .venv || { echo "normalbench: no venv for $(PYTHON); install python3-venv (Debian: apt-get install python3-venv)" >&2; rm -rf .venv; exit 3; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --editable ".[dev]"
+	.ci/prepare-gl $(BIN)/python
+	touch $@

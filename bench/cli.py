@@ -1,0 +1,126 @@
+"""The command line: `normalbench COMMAND`.
+
+Heavy packages are imported inside the commands, so that `--help` and `list` answer at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from typer.exceptions import Abort, TyperException
+
+from .errors import MissingError, UsageError
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Measures what compact normals cost in quality: encodings in JAX and GLSL, stored as hardware stores them.",
+)
+
+
+class Format(StrEnum):
+    table = "table"
+    json = "json"
+    csv = "csv"
+    markdown = "markdown"
+
+
+Names = "comma-separated, or all; `normalbench list` shows them"
+FormatOption = Annotated[Format, typer.Option("--format", help="How to write the rows.")]
+OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
+EncodingOption = Annotated[str, typer.Option("--encoding", help=f"Encodings, {Names}.")]
+StorageOption = Annotated[str, typer.Option("--storage", help=f"Storages, {Names}.")]
+RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate (toward zero), or both.")]
+NormalsOption = Annotated[str, typer.Option("--normals", help=f"Normal sets, {Names}.")]
+BackendOption = Annotated[str, typer.Option("--backend", help="jax, glsl, or both.")]
+CountOption = Annotated[int, typer.Option("--count", help="Normals in a uniform set.")]
+SeedOption = Annotated[int, typer.Option("--seed", help="What uniform sets are made with.")]
+
+
+@app.command("list")
+def list_command(
+    what: Annotated[str, typer.Argument(help="encodings, storages, normals, or all.")] = "all",
+    format: FormatOption = Format.table,
+    output: OutputOption = None,
+) -> None:
+    """What there is: encodings, storages and normal sets."""
+    from .listing import listing
+    from .output import write
+
+    write(listing(what), format, output)
+
+
+@app.command()
+def doctor(format: FormatOption = Format.table, output: OutputOption = None) -> None:
+    """What this machine has: versions, cores, the GL device and how it rounds."""
+    from .doctor import examine
+    from .output import write
+
+    write(examine(), format, output)
+
+
+@app.command()
+def quality(
+    encoding: EncodingOption = "all",
+    storage: StorageOption = "rgba8",
+    rounding: RoundingOption = "nearest",
+    normals: NormalsOption = "playground",
+    backend: BackendOption = "jax,glsl",
+    count: CountOption = 2**22,
+    seed: SeedOption = 0,
+    images: Annotated[
+        Path | None, typer.Option("--images", help="Write the seeds' pictures of each codec here (image sets).")
+    ] = None,
+    format: FormatOption = Format.table,
+    output: OutputOption = None,
+) -> None:
+    """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits."""
+    from .commands import Request, quality_command
+
+    quality_command(Request(encoding, storage, rounding, normals, backend, count, seed), images, format, output)
+
+
+@app.command()
+def run(
+    count: CountOption = 2**22,
+    seed: SeedOption = 0,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Results folder; must not exist. Default: results/<time>.")
+    ] = None,
+) -> None:
+    """The default suite: the seeds' encodings in rgba8 and rg16f, as a table and a results folder with pictures."""
+    from .commands import run_command
+
+    run_command(count, seed, output)
+
+
+def _say(message: str) -> None:
+    print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
+
+
+def main() -> int:
+    """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
+    try:
+        return app(standalone_mode=False) or 0
+    except (UsageError, MissingError) as error:
+        _say(str(error))
+        return error.exit_code
+    except TyperException as error:
+        _say(error.format_message())
+        return UsageError.exit_code
+    except (KeyboardInterrupt, Abort):
+        _say("interrupted")
+        return 130
+    except BrokenPipeError:
+        # The reader of our output has seen enough; there is nobody left to tell.
+        sys.stdout = None  # type: ignore[assignment]
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,52 @@
+"""What this machine has."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+import jax
+
+from ..encodings.storage import STORAGES
+from ..gbuffer.device import NoDeviceError, device
+
+PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib")
+
+
+def _cpu() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+        return names[0] if names else platform.processor()
+    except OSError:
+        return platform.processor() or platform.machine()
+
+
+def machine() -> dict[str, str]:
+    """What a result depends on: versions, processor, JAX's devices and the GL device, by name."""
+    facts = {
+        "python": platform.python_version(),
+        "system": platform.platform(),
+        "processor": f"{_cpu()}, {os.cpu_count()} cores",
+        **{package: version(package) for package in PACKAGES},
+        "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
+    }
+    try:
+        gl = device()
+    except NoDeviceError as error:
+        return facts | {"GL": str(error)}
+    return facts | {
+        "GL": gl.renderer,
+        "GL version": gl.version,
+        "GL is software": "yes" if gl.is_software else "no",
+        "GL largest texture": str(gl.max_size),
+        **{f"GL rounds {s.name}": gl.native_rounding(s) for s in STORAGES.values()},
+    }
+
+
+def examine() -> list[dict[str, str]]:
+    """Rows of name and value. "GL rounds ..." is the device's own conversion; where it is not what a codec asks for,
+    the shader rounds before the write."""
+    return [{"name": name, "value": value} for name, value in machine().items()]

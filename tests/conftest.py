@@ -1,0 +1,21 @@
+"""Strict JAX, and the GL device. A test run of continuous integration without a GL driver fails instead of skipping."""
+
+import os
+
+import jax
+import pytest
+
+from normalbench.gbuffer.device import NoDeviceError, device
+
+jax.config.update("jax_numpy_rank_promotion", "raise")
+jax.config.update("jax_numpy_dtype_promotion", "strict")
+
+
+@pytest.fixture(scope="session")
+def gl():
+    try:
+        return device()
+    except NoDeviceError as error:
+        if os.environ.get("CI"):
+            raise
+        pytest.skip(str(error))

@@ -1,0 +1,236 @@
+"""The two languages agree: before storage to a few units in the last place, after it code for code."""
+
+import itertools
+import re
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from directions import NOT_DIRECTIONS, hard_directions, random_directions, view_positions
+
+from normalbench.bench import quality
+from normalbench.bench.normal_sets import playground, sphere
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer import shader
+from normalbench.gbuffer.codec_passes import CodecPasses, exact_values
+from normalbench.gbuffer.shader import ShaderError
+
+ULP = 2.0**-23
+EVERY = sorted(ENCODINGS)
+
+
+def planes(array: np.ndarray) -> vec.Vec3:
+    return vec.Vec3(*(jnp.asarray(np.ascontiguousarray(c)) for c in array.T[:3]))
+
+
+def widened(array: np.ndarray) -> np.ndarray:
+    return np.concatenate([array, np.zeros((len(array), 4 - array.shape[1]), np.float32)], axis=1)
+
+
+def codes_by_jax(encoding, n: np.ndarray, view: np.ndarray) -> np.ndarray:
+    code = jax.jit(encoding.encode)(vec.from_array(n), planes(view))
+    return np.stack([np.asarray(c) for c in code], axis=1)
+
+
+def normals_by_jax(encoding, code: np.ndarray, view: np.ndarray) -> np.ndarray:
+    vector = vec.Vec2 if code.shape[1] == 2 else vec.Vec3
+    n = jax.jit(encoding.decode)(vector(*(jnp.asarray(c) for c in code.T)), planes(view))
+    return np.stack([np.asarray(c) for c in n], axis=1)
+
+
+def given_codes(encoding, codes: np.ndarray) -> np.ndarray:
+    """Codes to decode: those of the directions, and in front of them the corners, edges and centre of the code space."""
+    corners = np.array(list(itertools.product((-1.0, 0.0, 0.5, 1.0), repeat=codes.shape[1])), np.float32)
+    if encoding.sign_bits:
+        corners[:, -1] = np.where(corners[:, -1] > 0, 1, -1)
+    given = codes.copy()
+    given[: len(corners)] = corners
+    return given
+
+
+def worst_of(what: str, inputs: np.ndarray, expected: np.ndarray, got: np.ndarray) -> tuple[float, str]:
+    """The largest difference in units in the last place (of 1, or of the value where it is larger), and its story."""
+    ulps = np.abs(expected.astype(np.float64) - got) / np.maximum(1.0, np.abs(expected)) / ULP
+    ulps = np.where(np.isfinite(ulps), ulps, np.inf).max(axis=1)
+    i = int(np.argmax(ulps))
+    return float(ulps[i]), f"{what} {inputs[i]!r}: JAX {expected[i]!r}, GLSL {got[i]!r}, {ulps[i]:.1f} ulp"
+
+
+def disagreement(gl, encoding) -> tuple[tuple[float, str], tuple[float, str]]:
+    """The worst difference of encode and of decode over the harness's inputs."""
+    n = np.concatenate([hard_directions(), random_directions(2**16)])
+    view = view_positions(len(n))
+    codes = codes_by_jax(encoding, n, view)
+    given = given_codes(encoding, codes)
+    gl_codes, gl_normals = exact_values(gl, encoding, widened(n), widened(view), widened(given))
+    return (
+        worst_of(f"{encoding.name}_encode", n, codes, gl_codes[:, : codes.shape[1]]),
+        worst_of(f"{encoding.name}_decode", given, normals_by_jax(encoding, given, view), gl_normals[:, :3]),
+    )
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_before_storage_the_languages_differ_by_no_more_ulps_than_the_encoding_states(gl, name):
+    encoding = ENCODINGS[name]
+    for (ulps, story), allowed in zip(disagreement(gl, encoding), encoding.ulps, strict=True):
+        assert ulps <= allowed, f"{story}; allowed {allowed}: {encoding.ulps_reason}"
+
+
+@pytest.mark.parametrize("storage", ["rgba8", "rg8_snorm", "rgb10a2", "rg16", "rg16_snorm"])
+@pytest.mark.parametrize("name", EVERY)
+def test_stored_codes_agree(gl, name, storage):
+    """Equal for 99.9 % of 2^20 directions at 8 and 10 bits, for 97 % at 16, nowhere more than a step apart."""
+    codec = Codec(ENCODINGS[name], STORAGES[storage])
+    if not codec.fits:
+        pytest.skip(f"{name} has no room in {storage}")
+    n, view = random_directions(2**20), view_positions(2**20)
+    code = jax.jit(lambda n, v: codec.store(codec.encoding.encode(n, v)))(vec.from_array(n), planes(view))
+    by_jax = np.stack([np.asarray(c) for c in code], axis=1)
+    passes = CodecPasses(gl, codec)
+    shape = (1024, 1024, 4)
+    by_gl = passes.round_trip(widened(n).reshape(shape), widened(view).reshape(shape)).codes.reshape(-1, 4)
+    passes.release()
+    step = (2 if codec.storage.kind == "unorm" else 1) / codec.storage.scale(0)
+    apart = np.round(np.abs(by_jax - by_gl[:, : by_jax.shape[1]]) / step)
+    equal = np.mean(np.all(apart == 0, axis=1))
+    wanted = 0.97 if codec.storage.bits[0] == 16 else 0.999
+    assert equal >= wanted, f"{codec.name}: {equal:.5f} of the codes are equal, wanted {wanted}"
+    # Beyond one step only across a seam, where codes far apart mean neighbouring directions.
+    far = np.flatnonzero(apart.max(axis=1) > 1)
+    a, b = (normals_by_jax(codec.encoding, c[far], view[far]) for c in (by_jax, by_gl[:, : by_jax.shape[1]]))
+    gap = np.linalg.norm(a - b, axis=1)
+    assert np.all(gap <= 4 * step), f"{codec.name}: {n[far][np.argmax(gap)]!r} is stored {gap.max()} apart"
+
+
+def rows_to_compare() -> list:
+    found = []
+    for name, storage, rounding in itertools.product(EVERY, STORAGES, ("nearest", "truncate")):
+        codec = Codec(ENCODINGS[name], STORAGES[storage], rounding)
+        if codec.fits and storage != "rgba32f" and (rounding == "nearest" or storage in ("rgba8", "rg16f")):
+            found.append(pytest.param(codec, id=codec.name))
+    return found
+
+
+@pytest.mark.parametrize("codec", rows_to_compare())
+@pytest.mark.usefixtures("gl")
+def test_the_two_back_ends_give_the_same_psnr(codec):
+    for normals in (sphere(2**18), playground()):
+        by_jax, by_gl = (quality.measure(quality.Case(codec, normals, backend))["psnr_db"] for backend in ("jax", "glsl"))
+        assert abs(by_jax - by_gl) <= 0.02, f"{codec.name} on {normals.name}: JAX {by_jax} dB, GLSL {by_gl} dB"
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_what_is_no_direction_is_stored_as_forward(gl, name):
+    """Zero, NaN and infinite vectors give the code of (0, 0, 1), in both languages."""
+    encoding = ENCODINGS[name]
+    n = np.concatenate([NOT_DIRECTIONS, [[0, 0, 1]]]).astype(np.float32)
+    view = np.broadcast_to(np.float32([0.3, -0.2, -1.0]), n.shape)
+    by_jax = codes_by_jax(encoding, n, view)
+    by_gl, _ = exact_values(gl, encoding, widened(n), widened(view), widened(by_jax))
+    for what, codes in (("JAX", by_jax), ("GLSL", by_gl[:, : by_jax.shape[1]])):
+        assert np.all(codes == codes[-1]), f"{name} by {what}: {codes!r}"
+        assert np.all(np.isfinite(codes)), f"{name} by {what}: {codes!r}"
+
+
+@pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "rgba32f"])
+@pytest.mark.parametrize("name", EVERY)
+def test_every_direction_comes_back_finite(name, storage):
+    codec = Codec(ENCODINGS[name], STORAGES[storage])
+    n = np.concatenate([hard_directions(), NOT_DIRECTIONS])
+    decoded = np.asarray(vec.to_array(codec.round_trip(vec.from_array(n), planes(view_positions(len(n))))))
+    bad = ~np.isfinite(decoded).all(axis=1)
+    assert not bad.any(), f"{codec.name}: {n[bad][0]!r} comes back as {decoded[bad][0]!r}"
+
+
+COMMUTATIVE = {"dot", "max", "min"}
+CALL = re.compile(r"\b([A-Za-z_]\w*)\(")
+# Which encoding's harness sees the shared functions that no other encoding of this list would notice.
+SHARED = {
+    "spherical": ["elementary.glsl"],
+    "octahedral": ["vec.glsl:sign_not_zero"],
+    "cryengine3": ["vec.glsl:unit(vec2"],
+    "per_pixel_view": ["vec.glsl:unit(vec3"],
+}
+
+
+def split_arguments(text: str, start: int) -> tuple[list[str], int]:
+    """The arguments of a call whose parenthesis opens just before `start`, and where it closes."""
+    depth, begin, arguments = 0, start, []
+    for i in range(start, len(text)):
+        if text[i] in "([":
+            depth += 1
+        elif text[i] in ")]" and depth:
+            depth -= 1
+        elif text[i] in ",)" and not depth:
+            arguments.append(text[begin:i].strip())
+            begin = i + 1
+            if text[i] == ")":
+                return arguments, i
+    return arguments, len(text)
+
+
+def exchanged(arguments: list[str]) -> list[str]:
+    """The first two change places; in a definition their names do, and the types stay."""
+    first, second = (a.split(" ") for a in arguments[:2])
+    if len(first) == len(second) == 2 and first[0] in ("float", "vec2", "vec3"):
+        return [f"{first[0]} {second[1]}", f"{second[0]} {first[1]}", *arguments[2:]]
+    return [arguments[1], arguments[0], *arguments[2:]]
+
+
+def swapped_calls(text: str) -> list[tuple[str, str]]:
+    """(what, text) for each call or definition in a GLSL text with its first two arguments exchanged."""
+    found = []
+    text = re.sub(r"//[^\n]*", lambda comment: " " * len(comment[0]), text)
+    for match in CALL.finditer(text):
+        arguments, end = split_arguments(text, match.end())
+        if match[1] in COMMUTATIVE or match[1] in ("if", "for") or len(arguments) < 2 or arguments[0] == arguments[1]:
+            continue
+        swapped = ", ".join(exchanged(arguments))
+        found.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
+    return found
+
+
+def part_of(text: str, function: str) -> tuple[int, int]:
+    """Where the definition that holds `function` starts and ends; the whole text for none."""
+    if not function:
+        return 0, len(text)
+    start = text.index(function)
+    return start, text.find("\n", start)
+
+
+def mutants() -> list:
+    found = []
+    for name in EVERY:
+        path = ENCODINGS[name].glsl
+        for spec in ["", *SHARED.get(name, [])]:
+            file_name, _, function = spec.partition(":")
+            file = path.parents[1] / file_name if file_name else path
+            text = file.read_text()
+            start, end = part_of(text, function)
+            for what, changed in swapped_calls(text[start:end]):
+                found.append(pytest.param(name, file, text[:start] + changed + text[end:], id=f"{name}: {what}"))
+    return found
+
+
+@pytest.mark.parametrize("name, file, text", mutants())
+def test_swapping_two_arguments_is_noticed(gl, monkeypatch, name, file, text):
+    """The harness is strict enough: no swap of two arguments in any GLSL function of an encoding goes unseen."""
+    original = shader.read_shader
+    monkeypatch.setattr(shader, "read_shader", lambda path: text if path == file else original(path))
+    try:
+        found = disagreement(gl, ENCODINGS[name])
+    except ShaderError:
+        return  # the types disagree: nobody can ship that
+    stories = [story for _, story in found]
+    assert any(u > allowed for (u, _), allowed in zip(found, ENCODINGS[name].ulps, strict=True)), stories
+
+
+def test_the_mutants_cover_every_call():
+    """There is something to swap in each encoding but those that are one argument deep."""
+    names = {str(m.values[0]) for m in mutants()}
+    assert names == set(EVERY)
+    assert len(mutants()) > 40
