@@ -111,7 +111,9 @@ def main() -> int:
         _say(str(error))
         return error.exit_code
     except TyperException as error:
-        _say(error.format_message())
+        commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
+        hint = f" Commands: {commands}." if "command" in error.format_message() else ""
+        _say(error.format_message() + hint)
         return UsageError.exit_code
     except (KeyboardInterrupt, Abort):
         _say("interrupted")

@@ -24,6 +24,8 @@ from .errors import UsageError, pick
 from .normal_sets import NORMAL_SETS, checked_count
 from .output import check_folder, check_writable, whole_file, whole_folder, write
 
+# What a narrow terminal goes without, the first first.
+EXPENDABLE = ("device", "rounded_by", "mse", "angle_rms_deg", "count", "angle_p99_deg")
 # What the one sheet of a run shows: the seeds' methods, and the one that most people use today.
 SHEET = (*seeds.PSNR_DB, "octahedral")
 
@@ -97,7 +99,10 @@ def quality_command(request: Request, images: Path | None, format: str, output: 
     rows = _measured(cases)
     if images:
         write_pictures(cases, images)
-    write(rows, format, output)
+    if format == "table":
+        # Infinity is shown as such, and why a row is empty has been said.
+        rows = [{column: value for column, value in row.items() if column not in ("exact", "skipped")} for row in rows]
+    write(rows, format, output, EXPENDABLE)
 
 
 def _round_trip(case: quality.Case) -> quality.RoundTrip:
@@ -140,7 +145,7 @@ def run_command(count: int, seed: int, output: Path | None) -> None:
         _write_results(partial, cases, rows)
     for (normals, storage), part in _grouped(rows):
         print(f"\n{normals}, {storage}: dB by back end, angles in degrees")
-        write(beside(part), "table", None)
+        write(beside(part), "table", None, ("p99", "psnr_db_glsl", "mean"))
     print(f"\nEvery figure, the pictures and the machine they come from: {folder}")
 
 

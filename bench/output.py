@@ -65,11 +65,11 @@ def whole_folder(folder: Path) -> Iterator[Path]:
         shutil.rmtree(partial, ignore_errors=True)
 
 
-def write(rows: Sequence[dict[str, Any]], format: str, output: Path | None) -> None:
-    """Rows to a file, or to standard output."""
+def write(rows: Sequence[dict[str, Any]], format: str, output: Path | None, expendable: Sequence[str] = ()) -> None:
+    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns."""
     if output is None:
-        width = shutil.get_terminal_size((200, 40)).columns
-        sys.stdout.write(tables.written(rows, format, width))
+        width = shutil.get_terminal_size((120, 40)).columns
+        sys.stdout.write(tables.written(rows, format, width, expendable))
         sys.stdout.flush()
         return
     check_writable(output)

@@ -39,6 +39,8 @@ class _Operators:
     __array_ufunc__ = None  # a NumPy array on the left must ask __rmul__ here, not take the tuple for an array
 
     def _map(self, function, other):
+        if isinstance(other, _Operators) and not isinstance(other, type(self)):
+            raise TypeError(f"{type(self).__name__} and {type(other).__name__} do not mix")
         others = other if isinstance(other, type(self)) else (other,) * len(self)  # type: ignore[arg-type]
         return type(self)(*(function(a, b) for a, b in zip(self, others, strict=True)))  # type: ignore[call-overload]
 

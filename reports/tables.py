@@ -7,16 +7,18 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import pandas as pd
-
 FORMATS = ("table", "json", "csv", "markdown")
+GAP = 2
+# Longer cells are prose and may break between words.
+PROSE = 40
 
 
 def _text(value: Any) -> str:
-    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+    """A value for people: four digits of a number, nothing for nothing."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
-    if isinstance(value, float):
-        return "inf" if math.isinf(value) else f"{value:.3e}" if 0 < abs(value) < 1e-3 else f"{value:.4f}"
+    if isinstance(value, float) and math.isfinite(value):
+        return f"{value:.2e}" if 0 < abs(value) < 1e-3 else f"{value:#.4g}".removesuffix(".")
     return str(value)
 
 
@@ -32,6 +34,8 @@ def to_json(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> str:
+    import pandas as pd
+
     return pd.DataFrame(list(rows), dtype=object).to_csv(index=False)
 
 
@@ -61,8 +65,27 @@ def _without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, A
     return [{k: v for k, v in row.items() if k not in constant} for row in rows], caption
 
 
-def to_terminal(rows: Sequence[dict[str, Any]], width: int | None = None) -> str:
-    """A table for people; columns that say the same in every row go to the line below it."""
+def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str]) -> list[str]:
+    """The columns that fit a width without breaking a number; of those that may be spared the first go first."""
+    columns = list(rows[0])
+    spared = [column for column in expendable if column in columns]
+    while spared and sum(_widths(rows, columns)) + GAP * (len(columns) - 1) > width:
+        columns.remove(spared.pop(0))
+    return columns
+
+
+def _widths(rows: Sequence[dict[str, Any]], columns: Sequence[str]) -> list[int]:
+    """What each column needs: headers may break between words, cells nowhere but in long prose."""
+    longest = (max(len(_text(row[column])) for row in rows) for column in columns)
+    return [max(min(cell, PROSE), *map(len, c.split("_"))) for cell, c in zip(longest, columns, strict=True)]
+
+
+def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str] = ()) -> str:
+    """A table for people.
+
+    Columns that say the same in every row go to the line below it; where the rest does not fit, columns named in
+    `expendable` are left out, the first first, and that is said.
+    """
     from io import StringIO
 
     from rich.console import Console
@@ -70,23 +93,28 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int | None = None) -> str
     from rich.table import Table
 
     shown, caption = _without_constants(rows)
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in shown[0]:
+    columns = _fitting(shown, width, expendable)
+    table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
+    widths = _widths(shown, columns)
+    for column, needed in zip(columns, widths, strict=True):
         numeric = all(isinstance(row[column], int | float | None) for row in shown)
-        table.add_column(column.replace("_", " "), justify="right" if numeric else "left", overflow="fold")
+        table.add_column(column.replace("_", " "), justify="right" if numeric else "left", width=needed)
     for row in shown:
-        table.add_row(*(escape(_text(v)) for v in row.values()))
-    console = Console(file=StringIO(), width=width or 200, highlight=False)
+        table.add_row(*(escape(_text(row[column])) for column in columns))
+    stream = StringIO()
+    console = Console(file=stream, width=max(width, sum(widths) + GAP * len(columns)), highlight=False)
     console.print(table)
-    if caption:
-        console.print(escape(caption), style="dim")
-    return "\n".join(line.rstrip() for line in console.file.getvalue().splitlines()) + "\n"  # type: ignore[attr-defined]
+    left_out = [column for column in shown[0] if column not in columns]
+    notes = [caption, f"not shown in this width: {', '.join(left_out)}" if left_out else ""]
+    for note in filter(None, notes):
+        console.print(escape(note), style="dim")
+    return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
 
 
-def written(rows: Sequence[dict[str, Any]], format: str, width: int | None = None) -> str:
+def written(rows: Sequence[dict[str, Any]], format: str, width: int = 200, expendable: Sequence[str] = ()) -> str:
     """Rows in one of FORMATS. The JSON is a list of flat rows; an infinite figure is null there."""
     if format == "json":
         return to_json(rows)
     if format == "csv":
         return to_csv(rows)
-    return to_markdown(rows) if format == "markdown" else to_terminal(rows, width)
+    return to_markdown(rows) if format == "markdown" else to_terminal(rows, width, expendable)

@@ -1,0 +1,130 @@
+"""The house: rooms and who knows whom, the package list, the catalogue, and twins."""
+
+import ast
+import inspect
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench import listing, normal_sets, quality
+from normalbench.encodings.catalogue import ENCODINGS, NAMES
+from normalbench.encodings.storage import STORAGES
+
+ROOT = Path(__file__).parents[1]
+ROOMS = {
+    "encodings": {"encodings"},
+    "gbuffer": {"gbuffer", "encodings"},
+    "reports": {"reports"},
+    "bench": {"bench", "gbuffer", "encodings", "reports"},
+}
+SOURCES = [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]
+
+
+def imported(path: Path) -> set[str]:
+    """Every module a file imports, relative ones from the root."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = path.relative_to(ROOT).parts[: -node.level] if node.level else ()
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            found |= {module or alias.name for alias in node.names}
+    return found
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_rooms_import_only_whom_they_may(path):
+    room = path.relative_to(ROOT).parts[0]
+    others = {m.split(".")[0] for m in imported(path)} & set(ROOMS)
+    assert others <= ROOMS[room], f"{path.name} imports {others - ROOMS[room]}"
+    assert not any(m.startswith("normalbench") for m in imported(path)), "between the rooms imports are relative"
+
+
+def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
+    for path in (ROOT / "encodings").rglob("*.py"):
+        tops = {m.split(".")[0] for m in imported(path)}
+        assert tops - sys.stdlib_module_names <= {"encodings", "jax", "numpy"}, path.name
+        others = [m for m in imported(path) if m.startswith("encodings.normals.")]
+        assert not others, f"{path.name} imports {others}"
+
+
+def test_the_package_list_is_the_folders():
+    """setuptools maps the four folders into normalbench; the list is spelled out and must not drift."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    listed = set(project["tool"]["setuptools"]["packages"])
+    files = [p for room in ROOMS for p in (ROOT / room).rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    folders = {".".join(["normalbench", *p.parent.relative_to(ROOT).parts]) for p in files}
+    assert listed == folders
+    patterns = project["tool"]["setuptools"]["package-data"]["*"]
+    assert {"*" + p.suffix for p in files if p.suffix != ".py"} == set(patterns)
+
+
+def test_python_starts_with_the_checkout_on_its_path():
+    """encodings/ shadows a package of the standard library's name; without an __init__.py that does no harm."""
+    assert not (ROOT / "encodings" / "__init__.py").exists()
+    environment = {"PYTHONPATH": str(ROOT), "PATH": ""}
+    done = subprocess.run([sys.executable, "-c", "pass"], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_catalogue_and_the_files_are_the_same():
+    files = {suffix: {p.stem for p in (ROOT / "encodings/normals").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
+    assert files[".py"] == files[".glsl"] == set(NAMES) == set(ENCODINGS)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_encoding_is_complete(name):
+    encoding = ENCODINGS[name]
+    assert encoding.name == name
+    assert encoding.components in (1, 2, 3) and encoding.sign_bits in (0, 1)
+    assert encoding.domain in ("sphere", "hemisphere", "view")
+    assert encoding.title and encoding.citation and encoding.ulps_reason
+    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "shapes and special cases are said"
+    glsl = encoding.glsl.read_text()
+    size = encoding.components + encoding.sign_bits
+    assert re.search(rf"vec{size} {name}_encode\(vec3 n, vec3 view\)", glsl)
+    assert re.search(rf"vec3 {name}_decode\(vec{size} e, vec3 view\)", glsl)
+    assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_twins_carry_the_same_formula(name):
+    """The formula stands above the line in both languages, in the same symbols."""
+    encoding = ENCODINGS[name]
+    python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
+    glsl = set(re.findall(r"^    // (.+)$", encoding.glsl.read_text(), re.M))
+    assert python == glsl
+
+
+def test_no_number_is_typed_in_both_languages():
+    """Numbers other than small whole ones, halves and powers of two come to GLSL from Python."""
+    for path in ROOT.glob("*/**/*.glsl"):
+        code = re.sub(r"//[^\n]*", "", path.read_text())
+        for number in re.findall(r"(?<![\w.])\d+\.\d+(?:e-?\d+)?", code):
+            value = float(number) * 4
+            assert value == int(value) and value <= 96, f"{path.name}: {number}"
+
+
+def test_the_list_command_knows_every_normal_set():
+    assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
+    assert {row["name"] for row in listing.listing("all")} == {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS}
+
+
+def test_rows_have_the_columns_of_the_table():
+    from normalbench.encodings.codec import Codec
+
+    case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rg8"]), normal_sets.axes(), "jax")
+    assert tuple(quality.measure(case)) == quality.COLUMNS
+
+
+def test_no_runner_asks_for_a_variants_name():
+    """A variant's special need is a field on it."""
+    for path in SOURCES:
+        if path.parts[-2] != "normals":
+            for name in (*NAMES, *STORAGES):
+                assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"

@@ -1,0 +1,157 @@
+"""The statistics of a row, against NumPy in float64 and against the laws they obey."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from directions import random_directions
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from skimage.metrics import peak_signal_noise_ratio
+
+from normalbench.bench import normal_sets, quality
+from normalbench.bench.metrics import Meter, _bounded_map, angle_between, psnr_db, squared_errors
+from normalbench.bench.normal_sets import CHUNK, from_arrays, hemisphere, sphere
+from normalbench.bench.numpy_baseline import angles, whole_row
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+
+AHEAD = np.float32([0, 0, -1])
+
+
+def turned(n: np.ndarray, degrees: np.ndarray, seed: int = 3) -> np.ndarray:
+    """Each direction turned by an angle about a random axis across it; float64."""
+    across = np.cross(n, random_directions(len(n), seed)).astype(np.float64)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    angle = np.radians(degrees)[:, None]
+    return n * np.cos(angle) + np.cross(across, n) * np.sin(angle)
+
+
+def measured_angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray(jax.jit(angle_between)(vec.Vec3(*jnp.asarray(a.T)), vec.Vec3(*jnp.asarray(b.T))))
+
+
+def test_small_angles_keep_six_digits_in_float32():
+    """From 1e-5 to 180 degrees the angle equals the float64 one of the same float32 vectors within 1e-6 of it."""
+    n = random_directions(2**16)
+    degrees = np.geomspace(1e-5, 179.9, len(n))
+    other = turned(n, degrees).astype(np.float32)
+    got, expected = measured_angles(n, other), angles(n, other)
+    worst = np.argmax(np.abs(got - expected) / expected)
+    assert got[worst] == pytest.approx(expected[worst], rel=2e-6), f"at {degrees[worst]} degrees"
+
+
+def test_the_angle_does_not_depend_on_the_decodes_length():
+    n = random_directions(4096)
+    other = turned(n, np.full(len(n), 7.0)).astype(np.float32)
+    assert np.allclose(measured_angles(n, other), measured_angles(n, other * np.float32(0.9)), rtol=1e-5)
+
+
+def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
+    n = random_directions(8)
+    assert np.all(measured_angles(n, np.zeros_like(n)) == 180)
+    broken = Meter(lambda n, _: n * jnp.nan).measure(from_arrays("", "", n, n, np.ones(8, bool)))
+    assert broken.angle_max_deg == pytest.approx(180) and broken.mse == pytest.approx(4 / 3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(1, 3 * CHUNK // 2), st.floats(0.01, 60))
+def test_a_row_equals_numpys(count, degrees):
+    """Means, RMS and largest to 1e-5; the percentile to 0.1 %; for any count, whole chunks or not."""
+    count = min(count, 40_000) if count % 2 else count
+    n = random_directions(count, seed=count)
+    spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
+    other = turned(n, spread).astype(np.float32)
+    got = DECODED.measure(from_arrays("", "", n, other, np.ones(count, bool)))
+    mse, seed_mse, mean, rms, p99, largest = whole_row(n, other)
+    assert got.count == got.pixels == count
+    assert got.mse == pytest.approx(mse, rel=1e-4)
+    assert got.seed_mse == pytest.approx(seed_mse, rel=1e-3, abs=1e-12)
+    assert got.angle_mean_deg == pytest.approx(mean, rel=1e-5)
+    assert got.angle_rms_deg == pytest.approx(rms, rel=1e-5)
+    assert got.angle_max_deg == pytest.approx(largest, rel=1e-5)
+    if count > 10_000:
+        assert got.angle_p99_deg == pytest.approx(p99, rel=2e-3)
+
+
+DECODED = Meter(lambda _, decoded: decoded)
+
+
+def test_the_background_counts_for_the_seeds_measure_alone():
+    n = random_directions(1000)
+    other = turned(n, np.full(1000, 2.0)).astype(np.float32)
+    covered = np.arange(1000) < 500
+    half = DECODED.measure(from_arrays("", "", n, other, covered))
+    only = DECODED.measure(from_arrays("", "", n[:500], other[:500], covered[:500]))
+    assert half.count == 500 and half.pixels == 1000
+    assert half.mse == pytest.approx(only.mse) and half.angle_mean_deg == pytest.approx(only.angle_mean_deg)
+    assert half.seed_mse == pytest.approx(only.seed_mse / 2)
+
+
+def test_psnr_is_scikit_images():
+    rng = np.random.default_rng(0)
+    a, b = rng.uniform(-1, 1, (2, 64, 64, 3))
+    assert psnr_db(float(np.mean((a - b) ** 2))) == pytest.approx(peak_signal_noise_ratio(a, b, data_range=1))
+
+
+def test_identical_normals_have_infinite_psnr():
+    row = quality.measure(quality.Case(Codec(ENCODINGS["xyz"], STORAGES["rgba32f"]), sphere(1000), "jax"))
+    assert row["psnr_db"] == np.inf and row["exact"] and row["angle_max_deg"] == 0 and row["angle_p99_deg"] == 0
+
+
+def test_the_fast_path_gives_the_same_sums():
+    codec = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
+    n = random_directions(2**16)
+    view = np.broadcast_to(AHEAD, n.shape)
+    total, largest = squared_errors(codec)(vec.from_array(n), vec.from_array(-view))
+    row = quality.measure(quality.Case(codec, from_arrays("", "", n, view, np.ones(len(n), bool)), "jax"))
+    assert total / (3 * len(n)) == pytest.approx(row["mse"], rel=1e-6)
+    assert np.degrees(np.sqrt(largest)) == pytest.approx(row["angle_max_deg"], rel=1e-3)
+
+
+@pytest.mark.parametrize("make, z_mean, z2_mean", [(sphere, 0, 1 / 3), (hemisphere, 1 / 2, 1 / 3)])
+def test_uniform_sets_are_uniform(make, z_mean, z2_mean):
+    """Moments of a uniform sphere (Archimedes: z is uniform), unit lengths, and every octant alike."""
+    chunk = make(CHUNK).chunk(0)
+    n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
+    assert np.allclose(np.linalg.norm(n, axis=1), 1, atol=3e-7)
+    assert n[:, 2].mean() == pytest.approx(z_mean, abs=1e-4)
+    assert (n**2).mean(axis=0) == pytest.approx([1 / 3, 1 / 3, z2_mean], abs=1e-4)
+    octant = (n > 0) @ [1, 2, 4]
+    shares = np.bincount(octant, minlength=8) / len(n)
+    expected = np.full(8, 1 / 8) if make is sphere else np.repeat([0, 1 / 4], 4)
+    assert shares == pytest.approx(expected, abs=1e-3)
+
+
+def test_a_seed_moves_the_set_and_little_else():
+    a, b, again = (sphere(2**18, seed) for seed in (0, 1, 0))
+    x = [np.asarray(s.chunk(0).n.x) for s in (a, b, again)]
+    assert np.array_equal(x[0], x[2]) and not np.array_equal(x[0], x[1])
+    codec = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
+    psnr = [quality.measure(quality.Case(codec, s, "jax"))["psnr_db"] for s in (a, b)]
+    assert psnr[0] == pytest.approx(psnr[1], abs=0.01)
+
+
+def test_counting_stops_where_it_is_told_to():
+    row = quality.measure(quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), sphere(CHUNK + 7), "jax"))
+    assert row["count"] == CHUNK + 7
+
+
+def test_the_largest_count_can_be_addressed():
+    """The last chunk of 2^32 normals is as good as the first."""
+    last = sphere(normal_sets.MAX_COUNT).chunk(normal_sets.MAX_COUNT - CHUNK)
+    assert np.asarray(last.covered).all()
+    assert np.all(np.isfinite(np.asarray(last.n.z)))
+
+
+def test_work_in_flight_is_bounded():
+    from concurrent.futures import ThreadPoolExecutor
+
+    taken = []
+    with ThreadPoolExecutor(2) as pool:
+        results = _bounded_map(pool, lambda i: i, (taken.append(i) or i for i in range(100)))
+        assert next(results) == 0
+        assert len(taken) <= 4
+        assert list(results) == list(range(1, 100))

@@ -1,0 +1,80 @@
+"""Angular errors of published and independently computed codes are reproduced."""
+
+import math
+
+import pytest
+
+from normalbench.bench import quality
+from normalbench.bench.normal_sets import hemisphere, sphere
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+
+COUNT = 4_000_000
+
+# Mean, RMS and supremum of the angle in degrees, uniform directions, computed in float64 with a search for the worst
+# case. Octahedral 8:8 and xyz SNORM8 also stand in Cigolle et al., JCGT 3(2), 2014 (0.33709 and 0.17015).
+FIGURES = [
+    ("octahedral", "rg8_snorm", "nearest", sphere, 0.336890, 0.371170, 0.956992),
+    ("octahedral", "rg8", "nearest", sphere, 0.335610, 0.369824, 0.953181),
+    ("octahedral", "rg8", "truncate", sphere, 0.671067, 0.739498, 1.906265),
+    ("spherical", "rg8", "nearest", sphere, 0.372156, 0.461192, 5.075859),
+    ("spheremap", "rg8", "nearest", hemisphere, 0.352483, 0.379227, 0.899604),
+    ("spheremap", "rg8", "nearest", sphere, 0.492355, 0.719445, 11.918),
+    ("stereographic", "rg8", "nearest", hemisphere, 0.458578, 0.498289, 1.129611),
+    ("xy", "rg8", "nearest", hemisphere, 0.467529, 0.778805, 5.959707),
+    ("xyz_renormalised", "rgba8_snorm", "nearest", sphere, 0.170119, 0.184113, 0.390376),
+    ("octahedral", "rg16_snorm", "nearest", sphere, 0.001306, 0.001439, 0.003709),
+    ("octahedral", "rg16f", "nearest", sphere, 0.014993, 0.017636, 0.059345),
+]
+
+
+@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", FIGURES)
+def test_the_reference_figures_are_reproduced(encoding, storage, rounding, normals, mean, rms, sup):
+    """Means within 0.5 %, RMS within 1 %; the largest of four million samples is below the supremum, and not far."""
+    codec = Codec(ENCODINGS[encoding], STORAGES[storage], rounding)
+    row = quality.measure(quality.Case(codec, normals(COUNT), "jax"))
+    assert row["count"] == COUNT
+    assert row["angle_mean_deg"] == pytest.approx(mean, rel=0.005), codec.name
+    assert row["angle_rms_deg"] == pytest.approx(rms, rel=0.01), codec.name
+    # At 16 bits float32's own rounding of input and decode adds up to 1e-5 degrees.
+    assert 0.9 * sup <= row["angle_max_deg"] <= sup * 1.001 + 1e-5, codec.name
+
+
+@pytest.mark.parametrize("name", sorted(ENCODINGS))
+def test_no_row_is_better_than_its_codes_allow(name):
+    """The RMS of N codes cannot beat the hexagonal quantiser's: effective bits never exceed the bits stored."""
+    for storage in ("rgba8", "rgb10a2", "rgba8_snorm"):
+        codec = Codec(ENCODINGS[name], STORAGES[storage])
+        row = quality.measure(quality.Case(codec, sphere(2**20), "jax"))
+        assert row["effective_bits"] <= row["bits"] + 1e-3, f"{codec.name}: {row['effective_bits']} of {row['bits']}"
+
+
+def test_effective_bits_of_the_limit_itself():
+    """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
+    from normalbench.bench.metrics import effective_bits
+
+    assert effective_bits(0.31773, 4 * math.pi) == pytest.approx(16, abs=1e-4)
+
+
+def test_unorm8_cannot_hold_an_axis_and_snorm8_can():
+    """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact to the set's own few ulps."""
+    from normalbench.bench.normal_sets import axes
+
+    largest = {
+        storage: quality.measure(quality.Case(Codec(ENCODINGS["octahedral"], STORAGES[storage]), axes(), "jax"))
+        for storage in ("rg8", "rg8_snorm")
+    }
+    # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
+    assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
+    assert largest["rg8_snorm"]["angle_max_deg"] < 1e-4
+
+
+def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere():
+    """Poles and rims included, none of the six axes comes back as another direction."""
+    from normalbench.bench.normal_sets import axes
+
+    for name, encoding in ENCODINGS.items():
+        if encoding.domain == "sphere":
+            row = quality.measure(quality.Case(Codec(encoding, STORAGES["rgba8"]), axes(), "jax"))
+            assert row["angle_max_deg"] < 12, f"{name}: {row['angle_max_deg']} degrees on an axis"

@@ -1,0 +1,42 @@
+"""The shader loader: includes once, and errors that name the file and the line."""
+
+import pytest
+
+from normalbench.gbuffer.shader import ShaderError, Source, glsl_value
+
+
+def test_an_include_is_pasted_once(tmp_path):
+    (tmp_path / "a.glsl").write_text("float a;\n")
+    (tmp_path / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
+    (tmp_path / "main.frag").write_text('#version 430\n#include "a.glsl"\n#include "b.glsl"\n#include NAMED\n')
+    text = Source(tmp_path / "main.frag", {"X": 1.5}, {"NAMED": tmp_path / "b.glsl"}).text
+    assert text.count("float a;") == text.count("float b;") == 1
+    assert text.startswith("#version 430\n#define X 1.5\n")
+
+
+def test_values_are_written_as_glsl_writes_them():
+    assert glsl_value(2.0**-120) == "7.52316384526264e-37"
+    assert glsl_value((1.0, 0.5)) == "float[2](1.0, 0.5)"
+    assert glsl_value(3) == "3"
+
+
+def test_a_compile_error_names_the_included_file_and_its_line(gl, tmp_path):
+    (tmp_path / "mine.glsl").write_text("float fine;\n\nvec2 broken() { return nonsense; }\n")
+    (tmp_path / "main.frag").write_text(
+        '#version 430\n#include "mine.glsl"\nout vec4 o;\nvoid main() { o = vec4(0); }\n'
+    )
+    with pytest.raises(ShaderError, match=r"mine\.glsl:3"):
+        gl.fragment_pass(tmp_path / "main.frag")
+    (tmp_path / "mine.glsl").write_text("float fine;\n")
+    (tmp_path / "main.frag").write_text('#version 430\n#include "mine.glsl"\nout vec4 o;\nvoid main() { o = oops; }\n')
+    with pytest.raises(ShaderError, match=r"main\.frag:4"):
+        gl.fragment_pass(tmp_path / "main.frag")
+
+
+def test_a_missing_include_is_one_line(tmp_path):
+    (tmp_path / "main.frag").write_text('#version 430\n#include "nowhere.glsl"\n')
+    with pytest.raises(ShaderError, match=r"nowhere\.glsl: cannot be read"):
+        Source(tmp_path / "main.frag")
+    (tmp_path / "main.frag").write_text("#version 430\n#include NOBODY\n")
+    with pytest.raises(ShaderError, match=r"main\.frag:2: nothing is named NOBODY"):
+        Source(tmp_path / "main.frag")

@@ -1,0 +1,147 @@
+"""What the emulation stores is what the GL device stores, bit for bit."""
+
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_snorm, store_unorm
+from normalbench.gbuffer.codec_passes import storage_defines
+
+INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float"]
+HALVES = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] == 16]
+
+
+def around(values: np.ndarray, ulps: int = 3) -> np.ndarray:
+    """float32 values and their neighbours, `ulps` to each side."""
+    found = [values.astype(np.float32)]
+    for towards in (np.float32(-np.inf), np.float32(np.inf)):
+        step = found[0]
+        for _ in range(ulps):
+            step = np.nextafter(step, towards)
+            found.append(step)
+    return np.concatenate(found)
+
+
+OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.inf, -np.inf], np.float32)
+
+
+def integer_inputs(storage) -> np.ndarray:
+    """Every code and every tie between codes with neighbours, values out of range, infinities, and random ones."""
+    scale = storage.scale(0)
+    codes = np.arange(-scale if storage.kind == "snorm" else 0, scale + 1)
+    random = np.random.default_rng(0).uniform(-1.2, 1.2, 2**16)
+    return np.concatenate([around(codes / scale), around((codes + 0.5) / scale), OUTSIDE, random.astype(np.float32)])
+
+
+def half_inputs() -> np.ndarray:
+    """All finite half floats and every tie between neighbours, with their float32 neighbours, and what overflows."""
+    halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
+    exact = np.unique(halves[np.isfinite(halves)].astype(np.float32))
+    ties = (exact[1:] + exact[:-1]) / 2
+    edges = np.array([65504, 65519.996, 65520, 65536, 1e-8, 2.0**-25, 2.0**-26], np.float32)
+    return np.concatenate([around(exact, 1), around(ties, 2), edges, -edges, OUTSIDE])
+
+
+def as_pixels(values: np.ndarray) -> np.ndarray:
+    width = 1024
+    padded = np.zeros(-(-len(values) // width) * width, np.float32)
+    padded[: len(values)] = values
+    return np.repeat(padded.reshape(-1, width, 1), 4, axis=2)
+
+
+def emulated(values: np.ndarray, storage, rounding: str) -> np.ndarray:
+    x = jnp.asarray(values)
+    if storage.kind == "float":
+        return np.asarray(store_half(x, rounding))
+    store = store_unorm if storage.kind == "unorm" else store_snorm
+    return np.asarray(store(x, storage.scale(0), rounding))
+
+
+def assert_same_bits(values, expected, got, what: str) -> None:
+    # The sign of a zero is kept by float formats alone; there it must be right too.
+    different = np.flatnonzero((expected != got) & ~(np.isnan(expected) & np.isnan(got)))
+    if len(different):
+        i = different[0]
+        pytest.fail(f"{what}: {len(different)} of {len(values)} differ; {values[i]!r}: {expected[i]!r}, GL {got[i]!r}")
+
+
+@pytest.mark.parametrize("name", [*INTEGERS, *HALVES])
+def test_the_device_stores_what_the_emulation_says(gl, name):
+    """The format's own conversion, for the rounding the device was found to use."""
+    storage = STORAGES[name]
+    rounding = gl.native_rounding(storage)
+    if rounding == "other":
+        # Neither nearest nor toward zero: llvmpipe makes 10 bits of 16 by dropping six. Codecs round before the write,
+        # which test_the_shader_rounds_as_the_emulation_does holds to the emulation.
+        assert name == "rgb10a2" and gl.is_software, f"{gl.renderer} rounds {name} in a way that is not emulated"
+        return
+    values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
+    got = gl.through(as_pixels(values), storage)[..., 0].ravel()[: len(values)]
+    assert_same_bits(values, emulated(values, storage, rounding), got, f"{name} on {gl.renderer}, {rounding}")
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+@pytest.mark.parametrize("name", [*INTEGERS, *HALVES])
+def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
+    """Rounded in the shader, then written: what the device's conversion does no longer matters."""
+    storage = STORAGES[name]
+    values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
+    defines = storage_defines(storage, rounding, shader_rounds=True)
+    passed = gl.fragment_pass(Path(__file__).with_name("round.frag"), defines)
+    source, target = gl.upload(as_pixels(values)), gl.target((1024, -(-len(values) // 1024)), storage)
+    gl.render(passed, [target], source=source)
+    result = gl.target(target.size, STORAGES["rgba32f"])
+    gl.render(gl.fragment_pass("copy.frag"), [result], source=target)
+    got = np.frombuffer(result.read(), np.float32).reshape(-1, 4)[: len(values), 0]
+    assert_same_bits(values, emulated(values, storage, rounding), got, f"{name} rounded in the shader, {rounding}")
+
+
+def test_every_half_float_survives_both_roundings():
+    halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
+    for rounding in ROUNDINGS:
+        back = np.asarray(store_half(jnp.asarray(halves.astype(np.float32)), rounding)).astype(np.float16)
+        same = (back == halves) | (np.isnan(back) & np.isnan(halves))
+        assert same.all(), f"{rounding}: {halves[~same][0]!r} became {back[~same][0]!r}"
+
+
+def test_half_floats_round_as_numpy_rounds():
+    """NumPy's conversion is the oracle for nearest even, and for its overflow to infinity at 65520."""
+    values = half_inputs()
+    with np.errstate(over="ignore"):
+        expected = values.astype(np.float16).astype(np.float32)
+    assert_same_bits(values, expected, np.asarray(store_half(jnp.asarray(values))), "nearest")
+
+
+def test_truncated_halves_never_grow():
+    values = half_inputs()
+    kept = np.asarray(store_half(jnp.asarray(values), "truncate"))
+    finite = np.isfinite(values)
+    assert np.all(np.abs(kept[finite]) <= np.abs(values[finite]))
+    inside = np.abs(values) < 65504
+    step = np.spacing(np.abs(kept[inside]).astype(np.float16)).astype(np.float64)
+    assert np.all(np.abs(values[inside].astype(np.float64) - kept[inside]) < step), "more than a step was cut off"
+
+
+@pytest.mark.parametrize("name", INTEGERS)
+def test_every_code_decodes_to_itself_and_ties_go_to_even(name):
+    storage = STORAGES[name]
+    scale = storage.scale(0)
+    codes = np.arange(-scale if storage.kind == "snorm" else 0, scale + 1).astype(np.float32)
+    back = emulated(codes * np.float32(1 / scale), storage, "nearest")
+    assert np.array_equal(np.round(back * scale), codes), f"{name}: a code is not stored as itself"
+    # The only real tie a float32 can hold: one half of an odd scale.
+    assert emulated(np.float32([0.5]), storage, "nearest")[0] * scale == pytest.approx((scale + 1) / 2, abs=1e-3)
+
+
+def test_what_is_not_a_number_takes_the_lower_end():
+    """Documented, and what llvmpipe does; no encoder makes one."""
+    nan = np.float32([np.nan])
+    assert emulated(nan, STORAGES["rgba8"], "nearest")[0] == 0
+    assert emulated(nan, STORAGES["rgba8_snorm"], "nearest")[0] == -1
+
+
+def test_snorm_has_no_code_below_minus_one():
+    """-128 would equal -127: the emulation never makes it, and -1 is exact."""
+    assert emulated(np.float32([-1, -1.003, -5]), STORAGES["rg8_snorm"], "nearest").tolist() == [-1, -1, -1]
