@@ -1,0 +1,93 @@
+"""What the README says is so: its commands run, its table is measured, its example passes."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench import cli, quality, seeds
+from normalbench.bench.normal_sets import playground
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+
+ROOT = Path(__file__).parents[1]
+TEXT = (ROOT / "README.md").read_text()
+COMMANDS = re.findall(r"^    ((?:normalbench|python -m) [^#\n]+?) *(?:#.*)?$", TEXT, re.M)
+
+
+def test_there_are_commands_to_run():
+    assert len(COMMANDS) >= 8
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(command)
+    if words[0] == "python":
+        done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return
+    monkeypatch.setattr(sys, "argv", words)
+    assert cli.main() == 0, capsys.readouterr().err
+    for option in ("-o", "--images"):
+        if option in words:
+            assert (tmp_path / words[words.index(option) + 1]).exists()
+
+
+def test_the_make_targets_exist():
+    makefile = (ROOT / "Makefile").read_text()
+    for target in re.findall(r"^    make (\w+)", TEXT, re.M):
+        assert f"\n{target}:" in makefile
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_table_is_what_is_measured():
+    table = TEXT[TEXT.index("<!-- normalbench run -->") :]
+    lines = re.findall(r"^\| `(\w+)` +\| +(\d+) \| +([\d.]*) \| +([\d.]+) \| +([\d.]+) \|$", table, re.M)
+    assert {line[0] for line in lines} == {*seeds.PSNR_DB, "octahedral"}
+    for name, bits, article, by_jax, by_glsl in lines:
+        codec = Codec(ENCODINGS[name], STORAGES[seeds.STORAGE])
+        assert codec.bits == int(bits)
+        assert not article or float(article) == pytest.approx(seeds.PSNR_DB[name], abs=0.0051)
+        for backend, figure in (("jax", by_jax), ("glsl", by_glsl)):
+            row = quality.measure(quality.Case(codec, playground(), backend))
+            assert float(figure) == pytest.approx(row["psnr_seed_db"], abs=0.02), f"{name} by {backend}"
+
+
+def test_the_gate_it_shows_passes():
+    (example,) = re.findall(r"```python\n(.*?)```", TEXT, re.S)
+    names: dict = {}
+    exec(example, names)
+    names["test_normals_in_two_bytes_are_good_enough"]()
+
+
+def test_the_picture_it_shows_is_there():
+    for picture in re.findall(r"!\[[^]]*\]\(([^)]+)\)", TEXT):
+        assert (ROOT / picture).stat().st_size > 10_000
+
+
+def test_an_encoding_is_added_as_it_says(tmp_path):
+    """A copy of the tree, a pair of files, a line: the table has a new row in both languages."""
+    package = tmp_path / "normalbench"
+    for room in ("encodings", "gbuffer", "bench", "reports"):
+        for source in (ROOT / room).rglob("*"):
+            if source.is_file() and "__pycache__" not in source.parts:
+                target = package / source.relative_to(ROOT)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(source.read_bytes())
+    normals, catalogue = package / "encodings/normals", package / "encodings/catalogue.py"
+    for suffix in (".py", ".glsl"):
+        text = (normals / f"octahedral{suffix}").read_text()
+        renamed = text.replace("octahedral_", "mine_").replace('name="octahedral"', 'name="mine"')
+        (normals / f"mine{suffix}").write_text(renamed)
+    catalogue.write_text(catalogue.read_text().replace('    "octahedral",\n', '    "octahedral",\n    "mine",\n'))
+    command = [sys.executable, "-m", "normalbench.bench", "quality", "--encoding", "mine", "--format", "csv"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    header, *rows = done.stdout.splitlines()
+    figures = [dict(zip(header.split(","), row.split(","), strict=False))["psnr_db"] for row in rows]
+    assert [round(float(f), 2) for f in figures] == [49.95, 49.95]
