@@ -89,24 +89,20 @@ def _scan(round_trip: Callable[[Vec3, Vec3], Vec3], chunk: Chunk):
 def compiled(function):
     """`function` jitted with the widest vectors XLA will use: 1.2 to 1.5 times as fast where there are 512 bits."""
     wide = jax.jit(function, compiler_options={"xla_cpu_prefer_vector_width": 512})
-    plain = jax.jit(function)
-    usable: list[bool] = []
+    usable = [wide]
 
     def call(*arguments):
-        if not usable:
-            usable.append(_accepts(wide, arguments))
-        return (wide if usable[0] else plain)(*arguments)
+        try:
+            return usable[0](*arguments)
+        except Exception:
+            # The option is XLA's own affair and may go away, and another back end has never heard of it. Whatever else
+            # was wrong is raised again by the plain function.
+            if usable[0] is not wide:
+                raise
+            usable[0] = jax.jit(function)
+            return usable[0](*arguments)
 
     return call
-
-
-def _accepts(function, arguments) -> bool:
-    # An option is XLA's own affair and may go away; another back end has never heard of it.
-    try:
-        function.lower(*arguments).compile()
-    except Exception:
-        return False
-    return True
 
 
 def squared_errors(codec: Codec):

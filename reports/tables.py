@@ -56,11 +56,15 @@ def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
-    """The rows less the columns that are empty or say the same in each, and a line with what those say."""
+    """The rows less the columns that are empty or say the same in each, and a line with what those say.
+
+    Measured figures, which are floats, stay in the table: that two are the same is what it is there to show.
+    """
     if len(rows) < 2:
         return [{k: v for k, v in row.items() if _text(v)} for row in rows], ""
     texts = {column: [_text(row[column]) for row in rows] for column in rows[0]}
-    constant = {column: t[0] for column, t in texts.items() if len(set(t)) == 1}
+    figures = {column for column in texts if any(isinstance(row[column], float) for row in rows)}
+    constant = {column: t[0] for column, t in texts.items() if len(set(t)) == 1 and column not in figures}
     caption = ", ".join(f"{column} {text}" for column, text in constant.items() if text and column != "exact")
     return [{k: v for k, v in row.items() if k not in constant} for row in rows], caption
 

@@ -12,18 +12,18 @@ import numpy as np
 
 from .mesh import Mesh, grid_triangles, joined
 
-# A quarter circle's control points lie at this share of the radius; the lid's knob alone has another.
+# A quarter circle's inner control points lie at this share of the radius; the knob of the lid alone has another.
 QUARTER = 0.56
-KNOB_QUARTER = 0.5625
+KNOB = 0.5625
 
-# (radius, height) of the four control circles of each patch.
+# That share, and (radius, height) of the four control circles, of each turned patch.
 PROFILES = {
-    "rim": ((1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4)),
-    "upper body": ((1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9)),
-    "lower body": ((2.0, 0.9), (2.0, 0.45), (1.5, 0.225), (1.5, 0.15)),
-    "knob": ((0.0, 3.15), (0.8, 3.15), (0.0, 2.85), (0.2, 2.7)),
-    "lid": ((0.2, 2.7), (0.4, 2.55), (1.3, 2.55), (1.3, 2.4)),
-    "bottom": ((0.0, 0.0), (1.425, 0.0), (1.5, 0.075), (1.5, 0.15)),
+    "rim": (QUARTER, ((1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4))),
+    "upper body": (QUARTER, ((1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9))),
+    "lower body": (QUARTER, ((2.0, 0.9), (2.0, 0.45), (1.5, 0.225), (1.5, 0.15))),
+    "knob": (KNOB, ((0.0, 3.15), (0.8, 3.15), (0.0, 2.85), (0.2, 2.7))),
+    "lid": (QUARTER, ((0.2, 2.7), (0.4, 2.55), (1.3, 2.55), (1.3, 2.4))),
+    "bottom": (QUARTER, ((0.0, 0.0), (1.425, 0.0), (1.5, 0.075), (1.5, 0.15))),
 }
 
 # (x, y, z) of 4 x 4 control points each: a row goes from the plane y = 0 around to it again.
@@ -60,8 +60,7 @@ HEIGHT = 3.15
 def control_points() -> np.ndarray:
     """The 32 patches, float64 of shape (32, 4, 4, 3)."""
     patches = []
-    for name, profile in PROFILES.items():
-        k = KNOB_QUARTER if name == "knob" else QUARTER
+    for k, profile in PROFILES.values():
         quarter = np.array([(1.0, 0.0), (1.0, k), (k, 1.0), (0.0, 1.0)])
         for turn in range(4):
             c, s = np.round([np.cos(turn * np.pi / 2), np.sin(turn * np.pi / 2)])
