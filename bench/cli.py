@@ -5,6 +5,7 @@ Heavy packages are imported inside the commands, so that `--help` and `list` ans
 
 from __future__ import annotations
 
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -14,10 +15,10 @@ import typer
 from typer.exceptions import Abort, TyperException
 
 from .errors import MissingError, UsageError
+from .listing import DEFAULT_COUNT
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="Measures what compact normals cost in quality: encodings in JAX and GLSL, stored as hardware stores them.",
 )
@@ -35,7 +36,7 @@ FormatOption = Annotated[Format, typer.Option("--format", help="How to write the
 OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
 EncodingOption = Annotated[str, typer.Option("--encoding", help=f"Encodings, {Names}.")]
 StorageOption = Annotated[str, typer.Option("--storage", help=f"Storages, {Names}.")]
-RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate (toward zero), or both.")]
+RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate (cut off), or both.")]
 NormalsOption = Annotated[str, typer.Option("--normals", help=f"Normal sets, {Names}.")]
 BackendOption = Annotated[str, typer.Option("--backend", help="jax, glsl, or both.")]
 CountOption = Annotated[int, typer.Option("--count", help="Normals in a uniform set.")]
@@ -71,7 +72,7 @@ def quality(
     rounding: RoundingOption = "nearest",
     normals: NormalsOption = "playground",
     backend: BackendOption = "jax,glsl",
-    count: CountOption = 2**22,
+    count: CountOption = DEFAULT_COUNT,
     seed: SeedOption = 0,
     images: Annotated[
         Path | None, typer.Option("--images", help="Write the seeds' pictures of each codec here (image sets).")
@@ -87,7 +88,7 @@ def quality(
 
 @app.command()
 def run(
-    count: CountOption = 2**22,
+    count: CountOption = DEFAULT_COUNT,
     seed: SeedOption = 0,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Results folder; must not exist. Default: results/<time>.")
@@ -103,10 +104,16 @@ def _say(message: str) -> None:
     print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
 
 
+def _abandon_output() -> None:
+    # Python flushes standard output once more at exit, and would complain of what it cannot write.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main() -> int:
     """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
     try:
-        return app(standalone_mode=False) or 0
+        # Alone, the command shows its help; that is no error.
+        return app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
     except (UsageError, MissingError) as error:
         _say(str(error))
         return error.exit_code
@@ -120,8 +127,12 @@ def main() -> int:
         return 130
     except BrokenPipeError:
         # The reader of our output has seen enough; there is nobody left to tell.
-        sys.stdout = None  # type: ignore[assignment]
+        _abandon_output()
         return 0
+    except OSError as error:
+        _abandon_output()
+        _say(f"cannot write: {error.strerror or error}")
+        return UsageError.exit_code
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import sys
 import time
@@ -15,8 +16,6 @@ import numpy as np
 from ..encodings.catalogue import ENCODINGS
 from ..encodings.codec import Codec
 from ..encodings.storage import ROUNDINGS, STORAGES
-from ..gbuffer.device import NoDeviceError
-from ..gbuffer.shader import ShaderError
 from ..reports import pictures, tables
 from . import quality, seeds
 from .doctor import machine
@@ -90,12 +89,12 @@ def _measured(cases: Sequence[quality.Case]) -> list[quality.Row]:
 def quality_command(request: Request, images: Path | None, format: str, output: Path | None) -> None:
     """Measure, write the pictures if asked for, then the rows."""
     cases = request.cases()
+    if images and not any(case.normal_set.shape for case in cases):
+        raise UsageError(f"--images needs a normal set that is an image: {seeds.NORMALS}")
+    if images:
+        check_folder(images)
     if output:
         check_writable(output)
-    if images:
-        if not any(case.normal_set.shape for case in cases):
-            raise UsageError(f"--images needs a normal set that is an image: {seeds.NORMALS}")
-        check_folder(images)
     rows = _measured(cases)
     if images:
         write_pictures(cases, images)
@@ -108,7 +107,7 @@ def quality_command(request: Request, images: Path | None, format: str, output: 
 def _round_trip(case: quality.Case) -> quality.RoundTrip:
     try:
         return quality.image_round_trip(case)
-    except (NoDeviceError, ShaderError):
+    except quality.UNMEASURABLE:
         return quality.image_round_trip(replace(case, backend="jax"))
 
 
@@ -135,7 +134,7 @@ def write_pictures(cases: Iterable[quality.Case], folder: Path) -> Pictures:
 
 def run_command(count: int, seed: int, output: Path | None) -> None:
     """The default suite into a results folder, its table to standard output."""
-    folder = output or Path("results") / time.strftime("%Y%m%d-%H%M%S")
+    folder = output or _new_folder()
     wide = Request("all", "rgba8", "nearest", "playground,hemisphere", "jax,glsl", count, seed)
     two = ",".join(name for name, encoding in ENCODINGS.items() if encoding.components == 2)
     half = replace(wide, encoding=two, storage="rg16f")
@@ -144,9 +143,15 @@ def run_command(count: int, seed: int, output: Path | None) -> None:
         rows = _measured(cases)
         _write_results(partial, cases, rows)
     for (normals, storage), part in _grouped(rows):
-        print(f"\n{normals}, {storage}: dB by back end, angles in degrees")
+        print(f"\n{normals}, {storage}: dB by back end; angles in degrees, by {part[0]['backend']}")
         write(beside(part), "table", None, ("p99", "psnr_db_glsl", "mean"))
     print(f"\nEvery figure, the pictures and the machine they come from: {folder}")
+
+
+def _new_folder() -> Path:
+    named = Path("results") / time.strftime("%Y%m%d-%H%M%S")
+    others = (named.with_name(f"{named.name}-{number}") for number in itertools.count(2))
+    return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
 def _grouped(rows: Iterable[quality.Row]) -> Iterator[tuple[tuple[str, str], list[quality.Row]]]:
@@ -164,7 +169,7 @@ def beside(rows: Iterable[quality.Row]) -> list[quality.Row]:
         if row["normals"] == seeds.NORMALS and row["storage"] == seeds.STORAGE:
             line["the_seeds_db"] = seeds.PSNR_DB.get(row["encoding"])
         line |= {f"{column}_{row['backend']}": row[column] for column in ("psnr_seed_db", "psnr_db")}
-        if row["angle_mean_deg"] is not None:
+        if row["angle_mean_deg"] is not None and "mean" not in line:
             shown = ("angle_mean_deg", "angle_p99_deg", "angle_max_deg", "effective_bits")
             line |= {column.removeprefix("angle_").removesuffix("_deg"): row[column] for column in shown}
     first = ("encoding", "bits", "the_seeds_db")

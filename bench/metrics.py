@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -23,7 +22,6 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..encodings.elementary import atan2_pi
 from ..encodings.vec import Vec3, cross, dot, minimum, select
-from .normal_sets import Chunk, NormalSet
 
 BLOCK = 2**14
 FAST_BLOCK = 2**15
@@ -33,6 +31,10 @@ BIN_SHIFT = 13
 FIRST_BIN = int(np.float32(2.0**-40).view(np.uint32)) >> BIN_SHIFT
 BINS = (int(np.float32(256.0).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN
 UNCOVERED = BINS
+
+
+def idle() -> None:
+    """What is done at each chunk when nobody watches."""
 
 
 class Sums(NamedTuple):
@@ -67,12 +69,20 @@ def _histogram_key(angle, covered):
     return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED)
 
 
-def _scan(round_trip: Callable[[Vec3, Vec3], Vec3], chunk: Chunk):
+class Decoded(NamedTuple):
+    """CHUNK normals, what they were decoded as, and which of them count."""
+
+    n: Vec3
+    decoded: Vec3
+    covered: Any
+
+
+def _scan(decode: Callable[[Any], Vec3], chunk):
     """Sums (float64 over lanes), the largest angle and each normal's histogram bin, for one chunk."""
 
-    def step(carry, block: Chunk):
+    def step(carry, block):
         sums, largest = carry
-        squared, seed_squared, angle = _errors(block.n, round_trip(block.n, block.view), block.covered)
+        squared, seed_squared, angle = _errors(block.n, decode(block), block.covered)
         key = _histogram_key(angle, block.covered)
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
         squared, seed_squared, angle, key = jax.lax.optimization_barrier((squared, seed_squared, angle, key))
@@ -185,46 +195,42 @@ def _percentile(histogram: np.ndarray, largest: float, share: float) -> float:
 
 
 class Meter:
-    """Measures round trips over normal sets; compiled once and used for every chunk."""
+    """Measures what a decoder makes of normal sets; compiled once and used for every chunk.
 
-    def __init__(self, round_trip: Callable[[Vec3, Vec3], Vec3]):
-        self._scan = compiled(lambda chunk: _scan(round_trip, chunk))
+    Args:
+        decode: a traced function from a block to decoded normals. A block is a pytree of planes with the unit normals
+            `n`, which of them count, `covered`, and whatever else the decoder needs.
+    """
 
-    def _one(self, load: Callable[[], Chunk]):
-        chunk = load()
+    def __init__(self, decode: Callable[[Any], Vec3]):
+        self._scan = compiled(lambda chunk: _scan(decode, chunk))
+
+    def _one(self, load: Callable[[], Any]):
         with jax.enable_x64(True):
-            sums, largest, keys = self._scan(jax.tree.map(jnp.asarray, chunk))
+            sums, largest, keys = self._scan(jax.tree.map(jnp.asarray, load()))
             histogram = np.bincount(np.asarray(keys), minlength=BINS + 1)
             return np.array([float(s) for s in sums]), float(largest), histogram
 
-    def measure(
-        self,
-        normal_set: NormalSet,
-        prepare: Callable[[Chunk], Chunk] | None = None,
-        tick: Callable[[], None] = lambda: None,
-    ) -> Statistics:
-        """Statistics of a whole set, its chunks shared among the cores.
+    def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
+        """Statistics of a set, its chunks shared among the cores.
 
         Args:
-            normal_set: what to measure on.
-            prepare: changes each chunk before it is measured, in the calling thread (which a GL context is bound to).
+            loads: for each chunk a function that gives it. The iterable is run in the calling thread, which a GL
+                context is bound to; the functions in worker threads.
+            pixels: how many normals the set has, background included.
             tick: called when a chunk is done.
         """
         sums, largest, histogram = np.zeros(4), 0.0, np.zeros(BINS + 1, np.int64)
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            for part, peak, counts in _bounded_map(pool, self._one, _loads(normal_set, prepare)):
+        with ThreadPoolExecutor(cores()) as pool:
+            for part, peak, counts in _bounded_map(pool, self._one, loads):
                 sums, largest, histogram = sums + part, max(largest, peak), histogram + counts
                 tick()
-        return _statistics(normal_set, sums, largest, histogram)
+        return _statistics(pixels, sums, largest, histogram)
 
 
-def _loads(normal_set: NormalSet, prepare: Callable[[Chunk], Chunk] | None) -> Iterator[Callable[[], Chunk]]:
-    for start in normal_set.starts:
-        if prepare is None:
-            yield partial(normal_set.chunk, start)
-        else:
-            prepared = prepare(normal_set.chunk(start))
-            yield lambda prepared=prepared: prepared
+def cores() -> int:
+    """The cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
@@ -238,14 +244,14 @@ def _bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
         yield future.result()
 
 
-def _statistics(normal_set: NormalSet, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:
+def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:
     count = int(histogram[:BINS].sum())
     squared, seed_squared, angle, angle_squared = sums
     return Statistics(
         count=count,
-        pixels=normal_set.count,
+        pixels=pixels,
         mse=squared / (3 * count),
-        seed_mse=seed_squared / 255**2 / (3 * normal_set.count),
+        seed_mse=seed_squared / 255**2 / (3 * pixels),
         angle_mean_deg=angle / count,
         angle_rms_deg=math.sqrt(angle_squared / count),
         angle_p99_deg=_percentile(histogram, largest, 0.99),

@@ -14,18 +14,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..encodings.elementary import sincos_pi
 from ..encodings.vec import Vec3, from_array, sqrt
 from .errors import UsageError
+from .listing import DEFAULT_COUNT
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
 MAX_COUNT = 2**32
-DEFAULT_COUNT = 2**22
 
-# R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32.
+# R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32; odd,
+# so that neither coordinate repeats before 2^32.
 PLASTIC = 1.3247179572447460
-STEPS = tuple(round(2**32 / PLASTIC**k) for k in (1, 2))
+STEPS = tuple(round(2**32 / PLASTIC**k) | 1 for k in (1, 2))
 
 
 class Chunk(NamedTuple):
@@ -69,28 +69,33 @@ def _straight_ahead(like) -> Vec3:
 
 
 def _unit_interval(index, step: int, offset):
-    """The fraction of offset + index * step in units of 2^-32, exact in integers; never 0 or 1."""
+    """The fraction of offset + index * step in units of 2^-32, exact in float64; never 0 or 1."""
     fixed = index * jnp.uint32(step) + offset
-    return (fixed >> 8).astype(jnp.float32) * 2.0**-24 + 2.0**-25
+    return (fixed.astype(jnp.float64) + 0.5) * 2.0**-32
 
 
 @partial(jax.jit, static_argnames="whole")
 def _uniform(start, count, offsets, *, whole: bool) -> Chunk:
-    """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes)."""
+    """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes).
+
+    Computed in float64 and rounded once, so that x, y and z carry independent rounding errors as any normal does: some
+    encodings subtract z from 1, and live or die by them.
+    """
     lane = jnp.arange(CHUNK, dtype=jnp.uint32)
     u, v = (_unit_interval(start + lane, step, offset) for step, offset in zip(STEPS, offsets, strict=True))
     # 1 - z^2 as a product, which does not cancel near the poles.
     z, r = (1.0 - 2.0 * u, 2.0 * sqrt(u * (1.0 - u))) if whole else (u, sqrt((1.0 - u) * (1.0 + u)))
-    sine, cosine = sincos_pi(2.0 * v - 1.0)
-    n = Vec3(cosine * r, sine * r, z)
-    return Chunk(n, _straight_ahead(z), lane < count)
+    angle = 2.0 * jnp.pi * v
+    n = Vec3(*(c.astype(jnp.float32) for c in (jnp.cos(angle) * r, jnp.sin(angle) * r, z)))
+    return Chunk(n, _straight_ahead(n.z), lane < count)
 
 
 def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> NormalSet:
     offsets = np.random.default_rng(seed).integers(0, 2**32, 2, dtype=np.uint32)
 
     def chunk(start: int) -> Chunk:
-        return _uniform(np.uint32(start), np.uint32(min(count - start, CHUNK)), tuple(offsets), whole=whole)
+        with jax.enable_x64(True):
+            return _uniform(np.uint32(start), np.uint32(min(count - start, CHUNK)), tuple(offsets), whole=whole)
 
     return NormalSet(name, title, (4 if whole else 2) * math.pi, count, None, seed, chunk)
 
@@ -138,9 +143,13 @@ def axes(count: int = 0, seed: int = 0) -> NormalSet:
     return from_arrays("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
 
 
-@cache
 def playground(count: int = 0, seed: int = 0) -> NormalSet:
     """The seeds' scene as its camera sees it, 640 x 480."""
+    return _playground()
+
+
+@cache
+def _playground() -> NormalSet:
     from ..gbuffer.scenes.playground import TITLE
     from ..gbuffer.scenes.playground import playground as rendered
 

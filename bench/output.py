@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import tempfile
@@ -18,30 +19,48 @@ def check_writable(path: Path) -> None:
     """Raises UsageError where a file of this name cannot be written; asked before anything is measured."""
     if path.is_dir():
         raise UsageError(f"{path} is a folder; name a file")
-    check_folder(path.parent)
+    if not _is_special(path):
+        check_folder(path.resolve().parent)
 
 
 def check_folder(folder: Path) -> None:
-    """Raises UsageError where no file can be made in a folder; the folder itself is made, with its parents."""
+    """Raises UsageError where no file can be made in a folder, or the folder cannot be made. Leaves nothing behind."""
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
+        with tempfile.TemporaryFile(dir=there):
             pass
     except OSError as error:
         raise UsageError(f"cannot write to {folder}: {error.strerror or error}") from error
 
 
+def _is_special(path: Path) -> bool:
+    """A pipe or a device: what is written there goes through, and the name must stay what it is."""
+    return path.exists() and not path.is_file()
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A name to write to that becomes `path` when all is well and vanishes otherwise."""
-    partial = path.with_name(f".{path.name}.partial")
+    """A name to write to that becomes `path` when all is well and vanishes otherwise.
+
+    Missing folders are made. A link's target is written, not the link.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    path = path.resolve()
+    partial = path if _is_special(path) else path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         yield partial
-        partial.replace(path)
+        if partial != path:
+            partial.replace(path)
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
-        partial.unlink(missing_ok=True)
+        if partial != path:
+            partial.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -53,12 +72,12 @@ def whole_folder(folder: Path) -> Iterator[Path]:
     """
     if folder.exists():
         raise UsageError(f"{folder} exists already; name a folder that does not")
-    check_folder(folder.parent)
-    partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
+    check_folder(folder)
+    partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
     try:
+        partial.mkdir(parents=True)
         yield partial
-        partial.chmod(0o755)
-        partial.replace(folder)
+        partial.rename(folder)
     except OSError as error:
         raise UsageError(f"cannot write {folder}: {error.strerror or error}") from error
     finally:

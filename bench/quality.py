@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from types import MappingProxyType
 from typing import Any
 
@@ -15,10 +15,10 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..encodings.vec import Vec3
 from ..gbuffer.codec_passes import CodecPasses
-from ..gbuffer.device import Device, NoDeviceError, device
+from ..gbuffer.device import Device, FormatError, NoDeviceError, device
 from ..gbuffer.shader import ShaderError
 from .errors import MissingError, UsageError
-from .metrics import Meter, Statistics, effective_bits, psnr_db
+from .metrics import Decoded, Meter, Statistics, effective_bits, idle, psnr_db
 from .normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
 
 COLUMNS = (
@@ -44,6 +44,8 @@ COLUMNS = (
     "skipped",
 )
 
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
@@ -66,12 +68,12 @@ class Case:
 
 @cache
 def _meter(codec: Codec) -> Meter:
-    return Meter(codec.round_trip)
+    return Meter(lambda chunk: codec.round_trip(chunk.n, chunk.view))
 
 
 @cache
 def _decoded_meter() -> Meter:
-    return Meter(lambda _, decoded: decoded)
+    return Meter(lambda chunk: chunk.decoded)
 
 
 def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
@@ -82,26 +84,29 @@ def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
 
 
 def _by_jax(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
-    return _meter(case.codec).measure(case.normal_set, tick=tick), {
-        "device": jax.devices()[0].device_kind,
-        "rounded_by": "emulation",
-    }
+    normals = case.normal_set
+    loads = (partial(normals.chunk, start) for start in normals.starts)
+    how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+    return _meter(case.codec).measure(loads, normals.count, tick), how
 
 
 def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
-    gl = device()
-    passes = CodecPasses(gl, case.codec)
+    gl, normals = device(), case.normal_set
+    with CodecPasses(gl, case.codec) as passes:
 
-    def prepare(chunk: Chunk) -> Chunk:
-        pixels = (_rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
-        decoded = passes.round_trip(*pixels).normals.reshape(-1, 3)
-        return chunk._replace(view=Vec3(*np.ascontiguousarray(decoded.T)))
+        def decoded(chunk: Chunk) -> Decoded:
+            pixels = (_rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
+            n = passes.round_trip(*pixels).normals.reshape(-1, 3)
+            return Decoded(chunk.n, Vec3(*np.ascontiguousarray(n.T)), chunk.covered)
 
-    try:
-        statistics = _decoded_meter().measure(case.normal_set, prepare, tick)
-    finally:
-        passes.release()
-    return statistics, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+        loads = (partial(identity, decoded(normals.chunk(start))) for start in normals.starts)
+        statistics = _decoded_meter().measure(loads, normals.count, tick)
+        return statistics, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+
+
+def identity(value: Any) -> Any:
+    """The value, for a load that is there already."""
+    return value
 
 
 BACKENDS: Mapping[str, Callable[[Case, Tick], tuple[Statistics, dict[str, str]]]] = MappingProxyType(
@@ -133,7 +138,7 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     return fit, left_out
 
 
-def measure(case: Case, tick: Tick = lambda: None) -> Row:
+def measure(case: Case, tick: Tick = idle) -> Row:
     """One row of the quality table; `tick` is called as each chunk of the set is done.
 
     A row that the device cannot give has its reason in `skipped` and no figures.
@@ -150,7 +155,7 @@ def measure(case: Case, tick: Tick = lambda: None) -> Row:
     }
     try:
         statistics, how = BACKENDS[case.backend](case, tick)
-    except (NoDeviceError, ShaderError) as error:
+    except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
     return row | _figures(statistics, case.normal_set.area) | how
 
@@ -195,7 +200,7 @@ class RoundTrip:
 
 
 def image_round_trip(case: Case) -> RoundTrip:
-    """What a codec makes of a set that is an image. Raises NoDeviceError or ShaderError by the GLSL back end."""
+    """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
     assert case.normal_set.shape
     height, width = case.normal_set.shape
     chunks = [case.normal_set.chunk(start) for start in case.normal_set.starts]
@@ -205,9 +210,8 @@ def image_round_trip(case: Case) -> RoundTrip:
         return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)
 
     if case.backend == "glsl":
-        passes = CodecPasses(device(), case.codec)
-        result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
-        passes.release()
+        with CodecPasses(device(), case.codec) as passes:
+            result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
         encoded, decoded = result.codes[..., :3].copy(), result.normals
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))

@@ -1,8 +1,8 @@
 """Trigonometry that both languages compute the same way.
 
 GLSL promises next to nothing of `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and an
-absolute 2^-11), so a table made with them would measure the driver's polynomial, not the encoding. These are minimax
-polynomials for float32, fitted by the project with Lawson's weighted least squares, in half turns: an angle of 1 is pi.
+absolute 2^-11), so a table made with them would measure the driver's polynomial, not the encoding. These are near
+minimax polynomials with float32 coefficients, in half turns: an angle of 1 is pi.
 The GLSL twin of this file is `elementary.glsl`, which takes the coefficients from here.
 """
 
@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from .vec import TINY, jnp, maximum, minimum, select
 
-# atan(sqrt s) / (pi sqrt s) on [0, 1], relative error 1.5e-8; sin(pi sqrt s) / sqrt s, relative error 3.2e-9, and
-# cos(pi sqrt s), absolute error 4.7e-11, on [0, 1/16]. Lowest power first.
+# atan(sqrt s) / (pi sqrt s) on [0, 1], relative error below 5e-8; on [0, 1/16] sin(pi sqrt s) / sqrt s, relative error
+# below 4e-8, and cos(pi sqrt s), absolute error below 1e-8. Lowest power first.
 ATAN2_PI = (
     0.31830987334251404,
     -0.10610246658325195,
@@ -37,7 +37,7 @@ def _horner(coefficients, s):
 
 
 def atan2_pi(y, x):
-    """atan2(y, x) / pi in [-1, 1], within 2 units in the last place; 0 at the origin."""
+    """atan2(y, x) / pi in [-1, 1], within 2 units in the last place of 1; 0 at the origin."""
     low, high = minimum(abs(x), abs(y)), maximum(abs(x), abs(y))
     t = low / maximum(high, TINY)
     a = t * _horner(ATAN2_PI, t * t)

@@ -29,7 +29,7 @@ class Encoding:
         citation: where it comes from.
         glsl: the GLSL twin.
         ulps: how far the two languages may differ before storage, encode and decode, in 2^-23 (a unit in the last
-            place of 1).
+            place of 1), times how far the map moves its result for a unit of its input where that is more than one.
         ulps_reason: why it is that many.
         sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.

@@ -1,5 +1,6 @@
 // Rounding in the shader, beside storage.py, for a device that does not round as the codec asks.
-// STORAGE_KIND is 0 for UNORM, 1 for SNORM, 2 for half, 3 for float; STORAGE_SCALE is the integer that stands for 1;
+// STORAGE_KIND is 0 for UNORM, 1 for SNORM, 2 for half, 3 for float; STORAGE_SCALE the integers that stand
+// for 1, by channel;
 // STORAGE_TRUNCATE is 1 for rounding toward zero; SHADER_ROUNDS is 1 where the shader must round before the write.
 
 float round_half(float x) {
@@ -17,18 +18,20 @@ float round_half(float x) {
     return abs(x) < exp2(-14.0) ? small : uintBitsToFloat(sign | magnitude);
 }
 
-float round_number(float x) {
+float round_number(float x, int channel) {
+    const float scales[] = STORAGE_SCALE;
+    float scale = scales[channel];
 #if STORAGE_KIND == 0
-    float product = clamp(x, 0.0, 1.0) * STORAGE_SCALE;
+    float product = clamp(x, 0.0, 1.0) * scale;
 #elif STORAGE_KIND == 1
-    float product = clamp(x, -1.0, 1.0) * STORAGE_SCALE;
+    float product = clamp(x, -1.0, 1.0) * scale;
 #endif
 #if STORAGE_KIND >= 2
     return STORAGE_KIND == 2 ? round_half(x) : x;
 #elif STORAGE_TRUNCATE
-    return trunc(product) / STORAGE_SCALE;
+    return trunc(product) / scale;
 #else
-    return roundEven(product) / STORAGE_SCALE;
+    return roundEven(product) / scale;
 #endif
 }
 
@@ -36,7 +39,7 @@ float round_number(float x) {
 vec4 to_texel(vec4 code) {
     vec4 texel = STORAGE_KIND == 0 ? code * 0.5 + 0.5 : code;
 #if SHADER_ROUNDS
-    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i]);
+    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i], i);
 #endif
     return texel;
 }

@@ -5,7 +5,8 @@ to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float
 integer, NaN takes the lower end; what comes back is the integer times the float32 reciprocal of the scale. That is
 OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (tests/test_storage.py).
 
-Half floats round to nearest even, or toward zero: GL allows both, and both ship. Where a device does not round as a
+Half floats round to nearest even, or are cut off: GL allows both, and both ship. To truncate is to cut off the texel:
+UNORM goes down, which is toward -1 in the code; SNORM and floats go toward zero. Where a device does not round as a
 codec asks, the shader rounds before the write (`storage.glsl`), and the row says so.
 """
 
@@ -43,7 +44,9 @@ class Storage:
         return len(self.bits)
 
     def scale(self, channel: int) -> int:
-        """The integer that stands for 1 in a channel."""
+        """The integer that stands for 1 in a channel; 1 for float formats."""
+        if self.kind == "float":
+            return 1
         return 2 ** (self.bits[channel] - (self.kind == "snorm")) - 1
 
 
@@ -74,7 +77,8 @@ def store_snorm(x, scale: int, rounding: str = "nearest"):
     """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
     product = minimum(maximum(x, -1.0), 1.0) * jnp.float32(scale)
     code = jnp.round(product) if rounding == "nearest" else jnp.trunc(product)
-    return code * jnp.float32(1.0 / scale)
+    # An integer has no negative zero.
+    return code.astype(jnp.int32).astype(jnp.float32) * jnp.float32(1.0 / scale)
 
 
 def store_half(x, rounding: str = "nearest"):

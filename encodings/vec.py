@@ -102,10 +102,12 @@ S = TypeVar("S")
 
 
 def sqrt(x):
+    """The square root."""
     return jnp.sqrt(x)
 
 
 def inversesqrt(x):
+    """One over the square root."""
     return 1.0 / jnp.sqrt(x)
 
 
@@ -129,11 +131,13 @@ def select(condition, a: S, b: S) -> S:
 
 
 def dot(a: V, b: V):
+    """The sum of the products of components: one array."""
     products = a * b
     return sum(products[1:], start=products[0])
 
 
 def cross(a: Vec3, b: Vec3) -> Vec3:
+    """The vector product, right-handed: cross(x, y) = z."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
@@ -145,7 +149,7 @@ def normalize(v: V) -> V:
 def unit(v: V) -> V:
     """`v` at length 1, and the first axis where `v` is zero."""
     length2 = dot(v, v)
-    first_axis = type(v)(*(jnp.float32(c) for c in (1.0, 0.0, 0.0)[: len(v)]))
+    first_axis = type(v)(*(1.0, 0.0, 0.0)[: len(v)])
     return select(length2 > TINY, v * inversesqrt(length2), first_axis)
 
 
@@ -153,7 +157,7 @@ def sign_not_zero(v):
     """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
     if isinstance(v, Vec2 | Vec3):
         return type(v)(*(sign_not_zero(c) for c in v))
-    return jnp.where(v < 0.0, jnp.float32(-1.0), jnp.float32(1.0))
+    return jnp.where(v < 0.0, -1.0, 1.0)
 
 
 def direction_or_forward(v: Vec3) -> Vec3:
@@ -164,11 +168,15 @@ def direction_or_forward(v: Vec3) -> Vec3:
     """
     length2 = dot(v, v)
     is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)
-    return Vec3(*(jnp.where(is_direction, c, jnp.float32(f)) for c, f in zip(v, (0.0, 0.0, 1.0), strict=True)))
+    return select(is_direction, v, Vec3(0.0, 0.0, 1.0))
 
 
 def from_array(array) -> Vec3:
-    """Planes of an array of shape (..., 3), as float32; what is no direction becomes (0, 0, 1)."""
+    """Planes of an array of unit vectors of shape (..., 3), as float32; what is no direction becomes (0, 0, 1).
+
+    Raises:
+        ValueError: another shape.
+    """
     array = jnp.asarray(array, jnp.float32)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"normals have shape (..., 3), not {array.shape}")

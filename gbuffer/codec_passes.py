@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,7 +37,7 @@ def storage_defines(storage: Storage, rounding: str, shader_rounds: bool) -> dic
     kind = KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] == 32)
     return {
         "STORAGE_KIND": kind,
-        "STORAGE_SCALE": float(storage.scale(0)) if storage.kind != "float" else 1.0,
+        "STORAGE_SCALE": tuple(float(storage.scale(i % storage.channels)) for i in range(4)),
         "STORAGE_TRUNCATE": int(rounding == "truncate"),
         "SHADER_ROUNDS": int(shader_rounds),
     }
@@ -51,7 +52,7 @@ class Decoded:
 
 
 class CodecPasses:
-    """A codec on a GL device.
+    """A codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
         rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
@@ -69,27 +70,38 @@ class CodecPasses:
             **storage_defines(codec.storage, codec.rounding, self.rounded_by == "shader"),
         }
         names = {"ENCODING": codec.encoding.glsl}
-        self._encode = device.fragment_pass("encode.frag", defines, names)
-        self._decode = device.fragment_pass("decode.frag", defines, names)
-        self._tables = {name: device.upload(table) for name, table in codec.encoding.tables().items()}
+        with ExitStack() as stack:
+            self._encode = device.owned(stack, device.fragment_pass("encode.frag", defines, names))
+            self._decode = device.owned(stack, device.fragment_pass("decode.frag", defines, names))
+            tables = codec.encoding.tables().items()
+            self._tables = {name: device.owned(stack, device.upload(table)) for name, table in tables}
+            self._stack = stack.pop_all()
 
-    def release(self) -> None:
-        for thing in (self._encode, self._decode, *self._tables.values()):
-            thing.release()
+    def __enter__(self) -> CodecPasses:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
 
     def round_trip(self, normals: np.ndarray, views: np.ndarray) -> Decoded:
-        """Normals and view-space positions, float32 of shape (height, width, 4), encoded, stored and decoded."""
+        """Normals and view-space positions, float32 of shape (height, width, 4), encoded, stored and decoded.
+
+        Raises:
+            FormatError: the device cannot render to the storage's format.
+        """
         size = (normals.shape[1], normals.shape[0])
         device, storage = self._device, self._codec.storage
-        sources = {"normals": device.upload(normals), "views": device.upload(views), **self._tables}
-        texels, depths = device.target(size, storage), device.target(size, DEPTH)
-        results = [device.target(size, STORAGES["rgba32f"]) for _ in range(2)]
-        kept = [texels, depths] if self._codec.encoding.sign_bits else [texels]
-        device.render(self._encode, kept, **sources)
-        device.render(self._decode, results, texels=texels, signed_depths=depths, **sources)
-        decoded, codes = (read_pixels(result) for result in results)
-        for texture in (sources["normals"], sources["views"], texels, depths, *results):
-            texture.release()
+        with ExitStack() as stack:
+            given = {"normals": normals, "views": views}
+            sources = {name: device.owned(stack, device.upload(pixels)) for name, pixels in given.items()}
+            texels, depths, *results = (
+                device.owned(stack, device.target(size, kind))
+                for kind in (storage, DEPTH, STORAGES["rgba32f"], STORAGES["rgba32f"])
+            )
+            kept = [texels, depths] if self._codec.encoding.sign_bits else [texels]
+            device.render(self._encode, kept, **sources, **self._tables)
+            device.render(self._decode, results, texels=texels, signed_depths=depths, **sources, **self._tables)
+            decoded, codes = (read_pixels(result) for result in results)
         return Decoded(decoded[..., :3], codes)
 
 
@@ -102,19 +114,20 @@ def exact_values(device: Device, encoding: Encoding, normals, views, given) -> t
     Returns:
         codes and decoded normals, float32 arrays of shape (count, 4).
     """
-    compute: Any = device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
     context, count = device.context, len(normals)
-    inputs = [context.buffer(np.ascontiguousarray(a, np.float32)) for a in (normals, views, given)]
-    outputs = [context.buffer(reserve=count * 16) for _ in range(2)]
-    tables = {name: device.upload(table) for name, table in encoding.tables().items()}
-    for binding, buffer in enumerate([*inputs, *outputs]):
-        buffer.bind_to_storage_buffer(binding)
-    for unit, (name, texture) in enumerate(tables.items()):
-        if name in compute:
-            compute[name].value = unit
-            texture.use(unit)
-    compute.run(group_x=(count + 63) // 64)
-    codes, decoded = (np.frombuffer(b.read(), np.float32).reshape(count, 4) for b in outputs)
-    for thing in (*inputs, *outputs, *tables.values(), compute):
-        thing.release()
+    with ExitStack() as stack:
+        compute: Any = device.owned(
+            stack, device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
+        )
+        inputs = [context.buffer(np.ascontiguousarray(a, np.float32)) for a in (normals, views, given)]
+        outputs = [context.buffer(reserve=count * 16) for _ in range(2)]
+        for binding, buffer in enumerate([*inputs, *outputs]):
+            device.owned(stack, buffer).bind_to_storage_buffer(binding)
+        for unit, (name, table) in enumerate(encoding.tables().items()):
+            texture = device.owned(stack, device.upload(table))
+            if name in compute:
+                compute[name].value = unit
+                texture.use(unit)
+        compute.run(group_x=(count + 63) // 64)
+        codes, decoded = (np.frombuffer(b.read(), np.float32).reshape(count, 4) for b in outputs)
     return codes, decoded

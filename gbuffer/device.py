@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import moderngl
 import numpy as np
@@ -17,7 +17,10 @@ from ..encodings.storage import ROUNDINGS, STORAGES, Storage, store_number
 from .shader import ShaderError, Source
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
+DITHER = 0x0BD0
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
+
+Owned = TypeVar("Owned", moderngl.Texture, moderngl.VertexArray, moderngl.Buffer, moderngl.ComputeShader)
 
 
 class NoDeviceError(Exception):
@@ -34,6 +37,10 @@ def _create_context() -> moderngl.Context:
         raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL}") from error
 
 
+class FormatError(Exception):
+    """The device cannot render to a format."""
+
+
 class Device:
     """A GL context and the few operations the passes are made of.
 
@@ -48,6 +55,8 @@ class Device:
         self.is_software = any(word in self.renderer.lower() for word in SOFTWARE)
         self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
         self._native: dict[str, str] = {}
+        # GL dithers by default, where it dithers at all: what is stored would not be what was written.
+        self.context.disable_direct(DITHER)
 
     def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         """A program that runs a fragment shader over a whole target, as a vertex array to render.
@@ -87,8 +96,15 @@ class Device:
         return texture
 
     def render(self, passed: moderngl.VertexArray, targets: list[moderngl.Texture], **textures: moderngl.Texture):
-        """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out."""
-        framebuffer = self.context.framebuffer(targets)
+        """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out.
+
+        Raises:
+            FormatError: the device cannot render to one of the targets.
+        """
+        try:
+            framebuffer = self.context.framebuffer(targets)
+        except moderngl.Error as error:
+            raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
         try:
             framebuffer.use()
             for unit, (name, texture) in enumerate(textures.items()):
@@ -102,15 +118,22 @@ class Device:
     def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
         """float32 values of shape (height, width, 4), written to a target of the format as they are and read back."""
         height, width, _ = values.shape
-        source, kept = self.upload(values), self.target((width, height), storage)
-        result = self.target((width, height), STORAGES["rgba32f"])
-        copy = self.fragment_pass("copy.frag")
-        self.render(copy, [kept], source=source)
-        self.render(copy, [result], source=kept)
-        pixels = read_pixels(result)
-        for texture in (source, kept, result):
-            texture.release()
-        return pixels
+        with ExitStack() as stack:
+            source = self.owned(stack, self.upload(values))
+            kept = self.owned(stack, self.target((width, height), storage))
+            result = self.owned(stack, self.target((width, height), STORAGES["rgba32f"]))
+            copy = self.owned(stack, self.fragment_pass("copy.frag"))
+            self.render(copy, [kept], source=source)
+            self.render(copy, [result], source=kept)
+            return read_pixels(result)
+
+    @staticmethod
+    def owned(stack: ExitStack, thing: Owned) -> Owned:
+        """`thing`, released with the stack; a pass takes its program along, which a vertex array does not own."""
+        stack.callback(thing.release)
+        if isinstance(thing, moderngl.VertexArray):
+            stack.callback(thing.program.release)
+        return thing
 
     def native_rounding(self, storage: Storage) -> str:
         """How the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""

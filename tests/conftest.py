@@ -1,4 +1,4 @@
-"""Strict JAX, and the GL device. A test run of continuous integration without a GL driver fails instead of skipping."""
+"""Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
 
 import os
 

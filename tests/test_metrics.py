@@ -1,5 +1,7 @@
 """The statistics of a row, against NumPy in float64 and against the laws they obey."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -29,6 +31,10 @@ def turned(n: np.ndarray, degrees: np.ndarray, seed: int = 3) -> np.ndarray:
     return n * np.cos(angle) + np.cross(across, n) * np.sin(angle)
 
 
+def measured(meter: Meter, normals):
+    return meter.measure([partial(normals.chunk, start) for start in normals.starts], normals.count)
+
+
 def measured_angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.asarray(jax.jit(angle_between)(vec.Vec3(*jnp.asarray(a.T)), vec.Vec3(*jnp.asarray(b.T))))
 
@@ -52,39 +58,39 @@ def test_the_angle_does_not_depend_on_the_decodes_length():
 def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
     n = random_directions(8)
     assert np.all(measured_angles(n, np.zeros_like(n)) == 180)
-    broken = Meter(lambda n, _: n * jnp.nan).measure(from_arrays("", "", n, n, np.ones(8, bool)))
+    broken = measured(Meter(lambda block: block.n * jnp.nan), from_arrays("", "", n, n, np.ones(8, bool)))
     assert broken.angle_max_deg == pytest.approx(180) and broken.mse == pytest.approx(4 / 3)
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(1, 3 * CHUNK // 2), st.floats(0.01, 60))
 def test_a_row_equals_numpys(count, degrees):
-    """Means, RMS and largest to 1e-5; the percentile to 0.1 %; for any count, whole chunks or not."""
+    """Sums and largest to float32's precision, the percentile to 0.1 %; for any count, whole chunks or not."""
     count = min(count, 40_000) if count % 2 else count
     n = random_directions(count, seed=count)
     spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
     other = turned(n, spread).astype(np.float32)
-    got = DECODED.measure(from_arrays("", "", n, other, np.ones(count, bool)))
+    got = measured(DECODED, from_arrays("", "", n, other, np.ones(count, bool)))
     mse, seed_mse, mean, rms, p99, largest = whole_row(n, other)
     assert got.count == got.pixels == count
-    assert got.mse == pytest.approx(mse, rel=1e-4)
-    assert got.seed_mse == pytest.approx(seed_mse, rel=1e-3, abs=1e-12)
-    assert got.angle_mean_deg == pytest.approx(mean, rel=1e-5)
-    assert got.angle_rms_deg == pytest.approx(rms, rel=1e-5)
-    assert got.angle_max_deg == pytest.approx(largest, rel=1e-5)
+    assert got.mse == pytest.approx(mse, rel=1e-6)
+    assert got.seed_mse == pytest.approx(seed_mse, rel=1e-5, abs=1e-12)
+    assert got.angle_mean_deg == pytest.approx(mean, rel=1e-6)
+    assert got.angle_rms_deg == pytest.approx(rms, rel=1e-6)
+    assert got.angle_max_deg == pytest.approx(largest, rel=1e-6)
     if count > 10_000:
-        assert got.angle_p99_deg == pytest.approx(p99, rel=2e-3)
+        assert got.angle_p99_deg == pytest.approx(p99, rel=1e-3)
 
 
-DECODED = Meter(lambda _, decoded: decoded)
+DECODED = Meter(lambda block: block.view)
 
 
 def test_the_background_counts_for_the_seeds_measure_alone():
     n = random_directions(1000)
     other = turned(n, np.full(1000, 2.0)).astype(np.float32)
     covered = np.arange(1000) < 500
-    half = DECODED.measure(from_arrays("", "", n, other, covered))
-    only = DECODED.measure(from_arrays("", "", n[:500], other[:500], covered[:500]))
+    half = measured(DECODED, from_arrays("", "", n, other, covered))
+    only = measured(DECODED, from_arrays("", "", n[:500], other[:500], covered[:500]))
     assert half.count == 500 and half.pixels == 1000
     assert half.mse == pytest.approx(only.mse) and half.angle_mean_deg == pytest.approx(only.angle_mean_deg)
     assert half.seed_mse == pytest.approx(only.seed_mse / 2)
@@ -123,6 +129,18 @@ def test_uniform_sets_are_uniform(make, z_mean, z2_mean):
     shares = np.bincount(octant, minlength=8) / len(n)
     expected = np.full(8, 1 / 8) if make is sphere else np.repeat([0, 1 / 4], 4)
     assert shares == pytest.approx(expected, abs=1e-3)
+
+
+def test_a_uniform_sets_rounding_errors_are_independent():
+    """The lengths of its float32 vectors scatter as those of any rounded unit vectors do: z is not privileged."""
+    chunk = sphere(CHUNK).chunk(0)
+    n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
+    any_unit = random_directions(CHUNK).astype(np.float64)
+    scatter, expected = (np.std(np.linalg.norm(v, axis=1) - 1) for v in (n, any_unit))
+    assert scatter == pytest.approx(expected, rel=0.02)
+    # On a lattice of z near -1, spheremap would look 14 dB better in 16 bits than it is.
+    row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg16"]), sphere(), "jax"))
+    assert row["psnr_db"] == pytest.approx(73.1, abs=1) and row["angle_max_deg"] > 10
 
 
 def test_a_seed_moves_the_set_and_little_else():

@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from functools import cache
 
 import jax
 import jax.numpy as jnp
@@ -52,24 +53,59 @@ def given_codes(encoding, codes: np.ndarray) -> np.ndarray:
     return given
 
 
-def worst_of(what: str, inputs: np.ndarray, expected: np.ndarray, got: np.ndarray) -> tuple[float, str]:
-    """The largest difference in units in the last place (of 1, or of the value where it is larger), and its story."""
+def condition(function, inputs: np.ndarray) -> np.ndarray:
+    """How many units the exact map's result moves for a unit of its input: 1 to 4096, by differences in float64.
+
+    Where a root cancels, at a horizon or a rim, two right float32 results lie that far apart.
+    """
+    with jax.enable_x64(True):
+        exact = jax.jit(lambda a: jnp.stack([c.astype(jnp.float64) for c in function(a)]))
+        base = exact(jnp.asarray(inputs.T, jnp.float64))
+        moved = jnp.zeros(len(inputs))
+        for component, side in itertools.product(range(inputs.shape[1]), (ULP, -ULP)):
+            step = np.zeros((inputs.shape[1], 1))
+            step[component] = side
+            there = exact(jnp.asarray(inputs.T + step))
+            moved = jnp.maximum(moved, jnp.abs(there - base).max(axis=0) / ULP)
+        return np.clip(np.nan_to_num(np.asarray(moved), nan=4096.0), 1, 4096)
+
+
+def worst_of(what: str, inputs, expected, got, conditions) -> tuple[float, str]:
+    """The largest difference in units in the last place (of 1, or of the value where it is larger), less what the
+    condition of the map there excuses, and its story."""
     ulps = np.abs(expected.astype(np.float64) - got) / np.maximum(1.0, np.abs(expected)) / ULP
     ulps = np.where(np.isfinite(ulps), ulps, np.inf).max(axis=1)
-    i = int(np.argmax(ulps))
-    return float(ulps[i]), f"{what} {inputs[i]!r}: JAX {expected[i]!r}, GLSL {got[i]!r}, {ulps[i]:.1f} ulp"
+    excused = ulps / conditions
+    i = int(np.argmax(excused))
+    story = f"JAX {expected[i]!r}, GLSL {got[i]!r}, {ulps[i]:.1f} ulp where the map's condition is {conditions[i]:.0f}"
+    return float(excused[i]), f"{what} {inputs[i]!r}: {story}"
 
 
-def disagreement(gl, encoding) -> tuple[tuple[float, str], tuple[float, str]]:
-    """The worst difference of encode and of decode over the harness's inputs."""
+@cache
+def inputs_and_expected(name: str):
+    """The harness's inputs, the JAX results and their conditions; the same for every mutant of the GLSL."""
+    encoding = ENCODINGS[name]
     n = np.concatenate([hard_directions(), random_directions(2**16)])
     view = view_positions(len(n))
     codes = codes_by_jax(encoding, n, view)
     given = given_codes(encoding, codes)
+    vector = vec.Vec2 if codes.shape[1] == 2 else vec.Vec3
+    with jax.enable_x64(True):
+        views = vec.Vec3(*jnp.asarray(view.T, jnp.float64))
+        signs = [jnp.asarray(c, jnp.float64) for c in given.T[encoding.components :]]
+    encode_condition = condition(lambda a: encoding.encode(vec.Vec3(*a), views), n)
+    free = given[:, : encoding.components]
+    decode_condition = condition(lambda a: encoding.decode(vector(*a, *signs), views), free)
+    return n, view, codes, given, normals_by_jax(encoding, given, view), encode_condition, decode_condition
+
+
+def disagreement(gl, encoding) -> tuple[tuple[float, str], tuple[float, str]]:
+    """The worst difference of encode and of decode over the harness's inputs."""
+    n, view, codes, given, normals, encode_condition, decode_condition = inputs_and_expected(encoding.name)
     gl_codes, gl_normals = exact_values(gl, encoding, widened(n), widened(view), widened(given))
     return (
-        worst_of(f"{encoding.name}_encode", n, codes, gl_codes[:, : codes.shape[1]]),
-        worst_of(f"{encoding.name}_decode", given, normals_by_jax(encoding, given, view), gl_normals[:, :3]),
+        worst_of(f"{encoding.name}_encode", n, codes, gl_codes[:, : codes.shape[1]], encode_condition),
+        worst_of(f"{encoding.name}_decode", given, normals, gl_normals[:, :3], decode_condition),
     )
 
 
@@ -85,26 +121,32 @@ def codecs(storages, roundings=("nearest",)) -> list:
     return [pytest.param(codec, id=codec.name) for codec in every if codec.fits]
 
 
-@pytest.mark.parametrize("codec", codecs(["rgba8", "rg8_snorm", "rgb10a2", "rg16", "rg16_snorm"]))
+@pytest.mark.parametrize("codec", codecs(["rgba8", "rg8_snorm", "rgb10a2", "rg16", "rg16_snorm", "rg16f"]))
 def test_stored_codes_agree(gl, codec):
     """Equal for 99.9 % of 2^20 directions at 8 and 10 bits, for 97 % at 16, nowhere more than a step apart."""
     n, view = random_directions(2**20), view_positions(2**20)
     code = jax.jit(lambda n, v: codec.store(codec.encoding.encode(n, v)))(vec.from_array(n), planes(view))
     by_jax = np.stack([np.asarray(c) for c in code], axis=1)
-    passes = CodecPasses(gl, codec)
     shape = (1024, 1024, 4)
-    by_gl = passes.round_trip(widened(n).reshape(shape), widened(view).reshape(shape)).codes.reshape(-1, 4)
-    passes.release()
-    step = (2 if codec.storage.kind == "unorm" else 1) / codec.storage.scale(0)
-    apart = np.round(np.abs(by_jax - by_gl[:, : by_jax.shape[1]]) / step)
-    equal = np.mean(np.all(apart == 0, axis=1))
+    with CodecPasses(gl, codec) as passes:
+        by_gl = passes.round_trip(widened(n).reshape(shape), widened(view).reshape(shape)).codes.reshape(-1, 4)
+    by_gl = by_gl[:, : by_jax.shape[1]]
+    # Numbers read back differ by a unit where one language fuses 2 x - 1; codes are whole steps apart, or the same.
+    apart = np.abs(by_jax - by_gl) / step_of(codec.storage, by_jax)
+    equal = np.mean(np.all(apart < 0.5, axis=1))
     wanted = 0.97 if codec.storage.bits[0] == 16 else 0.999
     assert equal >= wanted, f"{codec.name}: {equal:.5f} of the codes are equal, wanted {wanted}"
-    # Beyond one step only across a seam, where codes far apart mean neighbouring directions.
-    far = np.flatnonzero(apart.max(axis=1) > 1)
-    a, b = (normals_by_jax(codec.encoding, c[far], view[far]) for c in (by_jax, by_gl[:, : by_jax.shape[1]]))
-    gap = np.linalg.norm(a - b, axis=1)
-    assert np.all(gap <= 4 * step), f"{codec.name}: {n[far][np.argmax(gap)]!r} is stored {gap.max()} apart"
+    worst = np.unravel_index(np.argmax(apart), apart.shape)[0]
+    story = f"{n[worst]!r} is stored as {by_jax[worst]!r} by JAX, {by_gl[worst]!r} by GLSL"
+    assert apart.max() < 1.5, f"{codec.name}: {story}, {apart.max():.1f} steps apart"
+
+
+def step_of(storage, values: np.ndarray):
+    """The distance between neighbouring codes. Half floats are finer near zero than float32 arithmetic on numbers near
+    1 is exact: there the step is two of its units."""
+    if storage.kind == "float":
+        return np.maximum(np.spacing(np.abs(values).astype(np.float16)).astype(np.float64), 2 * ULP)
+    return (2 if storage.kind == "unorm" else 1) / storage.scale(0)
 
 
 NOT_FP32 = [name for name in STORAGES if name != "rgba32f"]
@@ -170,24 +212,29 @@ def split_arguments(text: str, start: int) -> tuple[list[str], int]:
     return arguments, len(text)
 
 
-def exchanged(arguments: list[str]) -> list[str]:
-    """The first two change places; in a definition their names do, and the types stay."""
-    first, second = (a.split(" ") for a in arguments[:2])
+def exchanged(arguments: list[str], i: int, j: int) -> list[str]:
+    """Two change places; in a definition their names do, and the types stay."""
+    swapped = list(arguments)
+    first, second = arguments[i].split(" "), arguments[j].split(" ")
     if len(first) == len(second) == 2 and first[0] in ("float", "vec2", "vec3"):
-        return [f"{first[0]} {second[1]}", f"{second[0]} {first[1]}", *arguments[2:]]
-    return [arguments[1], arguments[0], *arguments[2:]]
+        swapped[i], swapped[j] = f"{first[0]} {second[1]}", f"{second[0]} {first[1]}"
+    else:
+        swapped[i], swapped[j] = arguments[j], arguments[i]
+    return swapped
 
 
 def swapped_calls(text: str) -> list[tuple[str, str]]:
-    """(what, text) for each call or definition in a GLSL text with its first two arguments exchanged."""
+    """(what, text) for each call or definition in a GLSL text, and each two of its arguments exchanged."""
     found = []
     text = re.sub(r"//[^\n]*", lambda comment: " " * len(comment[0]), text)
     for match in CALL.finditer(text):
         arguments, end = split_arguments(text, match.end())
-        if match[1] in COMMUTATIVE or match[1] in ("if", "for") or len(arguments) < 2 or arguments[0] == arguments[1]:
+        if match[1] in COMMUTATIVE or match[1] in ("if", "for"):
             continue
-        swapped = ", ".join(exchanged(arguments))
-        found.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
+        for i, j in itertools.combinations(range(len(arguments)), 2):
+            if arguments[i] != arguments[j]:
+                swapped = ", ".join(exchanged(arguments, i, j))
+                found.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
     return found
 
 

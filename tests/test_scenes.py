@@ -33,11 +33,17 @@ def test_the_teapots_normals_point_out():
 
 
 def test_patches_meet():
-    """Every corner of a patch but the mirrored limbs' open ends is also a corner of another."""
-    corners = control_points()[:24, ::3, ::3].reshape(-1, 3)
-    unique = {tuple(np.round(c, 6) + 0.0) for c in corners}
-    # Rings of four at five radii, knob tip, bottom centre: the lid's edge and the rim are open.
-    assert len(unique) == 4 * 6 + 2
+    """Where patches meet they share all four control points of the edge: along the profile and around it."""
+    turned = control_points()[:24].reshape(6, 4, 4, 4, 3)
+    rim, upper, lower, knob, lid, bottom = turned
+    for above, below in ((rim, upper), (upper, lower), (knob, lid)):
+        assert np.allclose(above[:, 3], below[:, 0])
+    assert np.allclose(lower[:, 3], bottom[:, 3])
+    for ring in turned:
+        assert np.allclose(ring[:, :, 3], np.roll(ring, -1, axis=0)[:, :, 0])
+    limbs = control_points()[24:].reshape(2, 2, 2, 4, 4, 3)
+    for first, second in limbs:
+        assert np.allclose(first[:, 3], second[:, 0]), "handle and spout continue from one patch to the next"
 
 
 def test_placement_transforms_normals_by_the_inverse_transpose():

@@ -1,5 +1,6 @@
 """What the emulation stores is what the GL device stores, bit for bit."""
 
+from contextlib import ExitStack
 from pathlib import Path
 
 import jax.numpy as jnp
@@ -8,6 +9,7 @@ import pytest
 
 from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_snorm, store_unorm
 from normalbench.gbuffer.codec_passes import storage_defines
+from normalbench.gbuffer.device import read_pixels
 
 INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float"]
 HALVES = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] == 16]
@@ -60,8 +62,9 @@ def emulated(values: np.ndarray, storage, rounding: str) -> np.ndarray:
 
 
 def assert_same_bits(values, expected, got, what: str) -> None:
-    # The sign of a zero is kept by float formats alone; there it must be right too.
-    different = np.flatnonzero((expected != got) & ~(np.isnan(expected) & np.isnan(got)))
+    # Bits, so that the sign of a zero counts; one NaN is as good as another.
+    same = (expected.view(np.uint32) == got.view(np.uint32)) | (np.isnan(expected) & np.isnan(got))
+    different = np.flatnonzero(~same)
     if len(different):
         i = different[0]
         pytest.fail(f"{what}: {len(different)} of {len(values)} differ; {values[i]!r}: {expected[i]!r}, GL {got[i]!r}")
@@ -72,14 +75,30 @@ def test_the_device_stores_what_the_emulation_says(gl, name):
     """The format's own conversion, for the rounding the device was found to use."""
     storage = STORAGES[name]
     rounding = gl.native_rounding(storage)
-    if rounding == "other":
-        # Neither nearest nor toward zero: llvmpipe makes 10 bits of 16 by dropping six. Codecs round before the write,
-        # which test_the_shader_rounds_as_the_emulation_does holds to the emulation.
-        assert name == "rgb10a2" and gl.is_software, f"{gl.renderer} rounds {name} in a way that is not emulated"
-        return
     values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
-    got = gl.through(as_pixels(values), storage)[..., 0].ravel()[: len(values)]
+    got = gl.through(as_pixels(values), storage)[..., 0].ravel()[: len(values)].copy()
+    if rounding == "other":
+        # llvmpipe makes 10 bits of 16 by dropping six. Codecs round before the write, which the next test holds to the
+        # emulation.
+        assert name == "rgb10a2" and gl.is_software, f"{gl.renderer} rounds {name} in a way that is not emulated"
+        sixteen = np.rint(np.clip(values, 0, 1) * np.float32(65535)).astype(np.int64)
+        assert_same_bits(values, (sixteen >> 6).astype(np.float32) * np.float32(1 / 1023), got, name)
+        return
     assert_same_bits(values, emulated(values, storage, rounding), got, f"{name} on {gl.renderer}, {rounding}")
+
+
+def rounded_in_the_shader(gl, values: np.ndarray, storage, rounding: str) -> np.ndarray:
+    """Numbers rounded by storage.glsl, written to the format and read back; (count, 4)."""
+    with ExitStack() as stack:
+        defines = storage_defines(storage, rounding, shader_rounds=True)
+        passed = gl.owned(stack, gl.fragment_pass(Path(__file__).with_name("round.frag"), defines))
+        copy = gl.owned(stack, gl.fragment_pass("copy.frag"))
+        source = gl.owned(stack, gl.upload(as_pixels(values)))
+        target = gl.owned(stack, gl.target(source.size, storage))
+        result = gl.owned(stack, gl.target(source.size, STORAGES["rgba32f"]))
+        gl.render(passed, [target], source=source)
+        gl.render(copy, [result], source=target)
+        return read_pixels(result).reshape(-1, 4)[: len(values)]
 
 
 @pytest.mark.parametrize("rounding", ROUNDINGS)
@@ -88,14 +107,19 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
     """Rounded in the shader, then written: what the device's conversion does no longer matters."""
     storage = STORAGES[name]
     values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
-    defines = storage_defines(storage, rounding, shader_rounds=True)
-    passed = gl.fragment_pass(Path(__file__).with_name("round.frag"), defines)
-    source, target = gl.upload(as_pixels(values)), gl.target((1024, -(-len(values) // 1024)), storage)
-    gl.render(passed, [target], source=source)
-    result = gl.target(target.size, STORAGES["rgba32f"])
-    gl.render(gl.fragment_pass("copy.frag"), [result], source=target)
-    got = np.frombuffer(result.read(), np.float32).reshape(-1, 4)[: len(values), 0]
-    assert_same_bits(values, emulated(values, storage, rounding), got, f"{name} rounded in the shader, {rounding}")
+    got = rounded_in_the_shader(gl, values, storage, rounding)[:, 0]
+    assert_same_bits(
+        values, emulated(values, storage, rounding), got.copy(), f"{name} rounded in the shader, {rounding}"
+    )
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+def test_the_two_bits_of_alpha_are_rounded_by_their_own_scale(gl, rounding):
+    storage = STORAGES["rgb10a2"]
+    values = np.concatenate([around(np.arange(4) / 3), around((np.arange(3) + 0.5) / 3), OUTSIDE])
+    got = rounded_in_the_shader(gl, values, storage, rounding)[:, 3]
+    expected = np.asarray(store_unorm(jnp.asarray(values), storage.scale(3), rounding))
+    assert_same_bits(values, expected, got.copy(), f"alpha, {rounding}")
 
 
 def test_every_half_float_survives_both_roundings():
@@ -125,21 +149,32 @@ def test_truncated_halves_never_grow():
 
 
 @pytest.mark.parametrize("name", INTEGERS)
-def test_every_code_decodes_to_itself_and_ties_go_to_even(name):
+def test_every_code_decodes_to_itself(name):
     storage = STORAGES[name]
-    scale = storage.scale(0)
-    codes = np.arange(-scale if storage.kind == "snorm" else 0, scale + 1).astype(np.float32)
-    back = emulated(codes * np.float32(1 / scale), storage, "nearest")
-    assert np.array_equal(np.round(back * scale), codes), f"{name}: a code is not stored as itself"
-    # The only real tie a float32 can hold: one half of an odd scale.
-    assert emulated(np.float32([0.5]), storage, "nearest")[0] * scale == pytest.approx((scale + 1) / 2, abs=1e-3)
+    codes = np.arange(-storage.scale(0) if storage.kind == "snorm" else 0, storage.scale(0) + 1).astype(np.float32)
+    back = emulated(codes * np.float32(1 / storage.scale(0)), storage, "nearest")
+    assert np.array_equal(np.round(back * storage.scale(0)), codes), f"{name}: a code is not stored as itself"
 
 
-def test_what_is_not_a_number_takes_the_lower_end():
-    """Documented, and what llvmpipe does; no encoder makes one."""
+@pytest.mark.parametrize("name", INTEGERS)
+def test_ties_of_the_float32_product_go_to_the_even_code(name):
+    storage = STORAGES[name]
+    scale = np.float32(storage.scale(0))
+    lower = np.arange(0, storage.scale(0), dtype=np.float32)
+    middle = (lower + np.float32(0.5)) / scale
+    ties = middle * scale == lower + np.float32(0.5)
+    stored = np.round(emulated(middle[ties], storage, "nearest") * scale)
+    assert ties.sum() > len(lower) / 2
+    assert np.all(stored % 2 == 0), f"{name}: {middle[ties][stored % 2 == 1][0]!r} goes to an odd code"
+
+
+def test_what_is_not_a_number_takes_the_lower_end(gl):
+    """Documented of the emulation, and what llvmpipe does; other devices may differ, and no encoder makes one."""
     nan = np.float32([np.nan])
-    assert emulated(nan, STORAGES["rgba8"], "nearest")[0] == 0
-    assert emulated(nan, STORAGES["rgba8_snorm"], "nearest")[0] == -1
+    for name, lower in (("rgba8", 0), ("rgba8_snorm", -1)):
+        assert emulated(nan, STORAGES[name], "nearest")[0] == lower
+        if gl.is_software:
+            assert gl.through(np.full((1, 1, 4), np.nan, np.float32), STORAGES[name])[0, 0, 0] == lower
 
 
 def test_snorm_has_no_code_below_minus_one():

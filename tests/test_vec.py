@@ -7,7 +7,7 @@ import pytest
 from directions import NOT_DIRECTIONS, random_directions
 
 from normalbench.encodings import vec
-from normalbench.encodings.elementary import atan2_pi, sincos_pi
+from normalbench.encodings.elementary import ATAN2_PI, COS_PI, SIN_PI, atan2_pi, sincos_pi
 from normalbench.encodings.vec import Vec2, Vec3
 
 
@@ -49,6 +49,16 @@ def test_what_is_no_direction_becomes_forward():
 def test_unit_of_zero_is_the_first_axis():
     assert [float(c) for c in vec.unit(Vec2(jnp.float32(0), jnp.float32(-0.0)))] == [1, 0]
     assert [float(c) for c in vec.unit(Vec3(*[jnp.float32(0)] * 3))] == [1, 0, 0]
+
+
+def test_the_polynomials_are_as_exact_as_they_say():
+    """The coefficients as shipped, in float64."""
+    s = np.linspace(1e-12, 1, 100_001)
+    r = np.sqrt(s)
+    assert abs(np.polyval(ATAN2_PI[::-1], s) / (np.arctan(r) / r / np.pi) - 1).max() < 5e-8
+    s, r = s / 16, r / 4
+    assert abs(np.polyval(SIN_PI[::-1], s) / (np.sin(np.pi * r) / r) - 1).max() < 4e-8
+    assert abs(np.polyval(COS_PI[::-1], s) - np.cos(np.pi * r)).max() < 1e-8
 
 
 def test_the_angle_is_the_arc_tangent_within_two_units():

@@ -2,6 +2,9 @@
 
 Drobot's slides ("Sphere Map - macro") write the same map with the other orientation: enc = normalize(n.xy)
 sqrt(n.z/2 + 1/2), n.z = 2 |enc|^2 - 1, n.xy = normalize(enc) sqrt(1 - n.z^2).
+
+Here 1/2 - n.z/2 cancels near +z: in float32 directions around it, though not +z itself, are 0.014 degrees off whatever
+the storage.
 """
 
 from pathlib import Path
@@ -33,6 +36,6 @@ ENCODING = Encoding(
     domain="sphere",
     citation="M. Mittring, A bit more Deferred - CryEngine 3, Triangle Game Conference 2009; M. Drobot, slide 46",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(4, 4096),
-    ulps_reason="a normalise of two components and a root; 1 - e.e cancels at the rim: sqrt(2^-24) = 2048 units",
+    ulps=(3, 2),
+    ulps_reason="a normalise of two components and a root; one root",
 )

@@ -30,6 +30,6 @@ ENCODING = Encoding(
     domain="sphere",
     citation="Q. Meyer et al., On Floating-Point Normal Vectors, EGSR 2010; Z. Cigolle et al., JCGT 2014",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(3, 4),
+    ulps=(2, 2),
     ulps_reason="one reciprocal and one product; one normalise",
 )

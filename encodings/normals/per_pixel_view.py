@@ -35,6 +35,6 @@ ENCODING = Encoding(
     domain="view",
     citation="Y. O'Donnell, in method #8 of A. Pranckevicius 2010",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(6, 4096),
-    ulps_reason="two normalises and a cross product; 1 - e.e cancels at the horizon: sqrt(2^-24) = 2048 units",
+    ulps=(4, 3),
+    ulps_reason="two normalises, a cross product and three products summed",
 )

@@ -34,6 +34,6 @@ ENCODING = Encoding(
     domain="sphere",
     citation="SIGGRAPH 99 advanced OpenGL course notes, sphere maps; method #4 of A. Pranckevicius 2009",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(4, 4096),
-    ulps_reason="three squares, a root and a division; 4 f - 1 cancels at the rim: 2^-24 there is 2048 units",
+    ulps=(2, 2),
+    ulps_reason="three squares, a root and a division; one root",
 )

@@ -32,7 +32,7 @@ ENCODING = Encoding(
     domain="hemisphere",
     citation="S. Barrett and I. Castano, in method #7 of A. Pranckevicius 2010",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(4, 4),
+    ulps=(2, 2),
     ulps_reason="one division each way, the encoder's by a sum that is 1 or more on the hemisphere",
     constants={"STEREOGRAPHIC_SCALE": SCALE},
 )

@@ -26,6 +26,6 @@ ENCODING = Encoding(
     domain="hemisphere",
     citation="M. Valient, Deferred Rendering in Killzone 2, 2007; method #1 of A. Pranckevicius 2010",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(0, 4096),
-    ulps_reason="1 - e.e cancels at the horizon: a rounding of 2^-24 there is sqrt(2^-24) = 2048 units in z",
+    ulps=(0, 2),
+    ulps_reason="two squares summed, one root",
 )

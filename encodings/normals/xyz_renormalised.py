@@ -25,6 +25,6 @@ ENCODING = Encoding(
     domain="sphere",
     citation="Z. Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (snorm)",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(0, 3),
+    ulps=(0, 2),
     ulps_reason="three products summed, one reciprocal square root, one product",
 )

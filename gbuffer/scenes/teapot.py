@@ -10,20 +10,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from .mesh import Mesh, grid_triangles, joined
+from .mesh import Mesh, grid_triangles, grid_uv, joined
 
-# A quarter circle's inner control points lie at this share of the radius; the knob of the lid alone has another.
+# A quarter circle's inner control points lie at this share of the radius, unless a circle names another.
 QUARTER = 0.56
-KNOB = 0.5625
 
-# That share, and (radius, height) of the four control circles, of each turned patch.
-PROFILES = {
-    "rim": (QUARTER, ((1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4))),
-    "upper body": (QUARTER, ((1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9))),
-    "lower body": (QUARTER, ((2.0, 0.9), (2.0, 0.45), (1.5, 0.225), (1.5, 0.15))),
-    "knob": (KNOB, ((0.0, 3.15), (0.8, 3.15), (0.0, 2.85), (0.2, 2.7))),
-    "lid": (QUARTER, ((0.2, 2.7), (0.4, 2.55), (1.3, 2.55), (1.3, 2.4))),
-    "bottom": (QUARTER, ((0.0, 0.0), (1.425, 0.0), (1.5, 0.075), (1.5, 0.15))),
+# (radius, height) of the four control circles of each turned patch; a third number stands in for QUARTER.
+PROFILES: dict[str, tuple[tuple[float, ...], ...]] = {
+    "rim": ((1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4)),
+    "upper body": ((1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9)),
+    "lower body": ((2.0, 0.9), (2.0, 0.45), (1.5, 0.225), (1.5, 0.15)),
+    "knob": ((0.0, 3.15), (0.8, 3.15, 0.5625), (0.0, 2.85), (0.2, 2.7)),
+    "lid": ((0.2, 2.7), (0.4, 2.55), (1.3, 2.55), (1.3, 2.4)),
+    "bottom": ((0.0, 0.0), (1.425, 0.0), (1.5, 0.075), (1.5, 0.15)),
 }
 
 # (x, y, z) of 4 x 4 control points each: a row goes from the plane y = 0 around to it again.
@@ -57,15 +56,18 @@ MIRRORED = {
 HEIGHT = 3.15
 
 
+def _quarter_circle(turn: int, radius: float, height: float, k: float = QUARTER) -> list[tuple[float, float, float]]:
+    c, s = np.round([np.cos(turn * np.pi / 2), np.sin(turn * np.pi / 2)])
+    xy = radius * np.array([(1.0, 0.0), (1.0, k), (k, 1.0), (0.0, 1.0)]) @ np.array([[c, s], [-s, c]])
+    return [(x, y, height) for x, y in xy]
+
+
 def control_points() -> np.ndarray:
     """The 32 patches, float64 of shape (32, 4, 4, 3)."""
     patches = []
-    for k, profile in PROFILES.values():
-        quarter = np.array([(1.0, 0.0), (1.0, k), (k, 1.0), (0.0, 1.0)])
+    for profile in PROFILES.values():
         for turn in range(4):
-            c, s = np.round([np.cos(turn * np.pi / 2), np.sin(turn * np.pi / 2)])
-            xy = quarter @ np.array([[c, s], [-s, c]])
-            patches.append([[(r * x, r * y, z) for x, y in xy] for r, z in profile])
+            patches.append([_quarter_circle(turn, *circle) for circle in profile])
     for half in MIRRORED.values():
         for side in (1.0, -1.0):
             patches.append(np.array(half, float) * (1.0, side, 1.0))
@@ -96,7 +98,7 @@ def _patch_mesh(patch: np.ndarray, steps: int) -> Mesh:
     flat = np.linalg.norm(normals, axis=1) < 1e-9
     normals[flat] = _evaluate(patch, np.clip(u[flat], 1e-4, 1 - 1e-4), np.clip(v[flat], 1e-4, 1 - 1e-4))[1]
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Mesh(positions, normals, grid_triangles(steps, steps))
+    return Mesh(positions, normals, grid_uv(steps, steps), grid_triangles(steps, steps))
 
 
 def teapot(steps: int) -> Mesh:
@@ -111,4 +113,4 @@ def _outward(mesh: Mesh, index: int) -> Mesh:
     turned = index < 4 * len(PROFILES)
     inside = np.array([0.0, 0.0, HEIGHT / 2]) if turned else middle * (1.0, 0.0, 1.0)
     out = np.sum(mesh.normals * (mesh.positions - inside))
-    return mesh if out > 0 else Mesh(mesh.positions, -mesh.normals, mesh.triangles)
+    return mesh if out > 0 else Mesh(mesh.positions, -mesh.normals, mesh.uv, mesh.triangles)
