@@ -5,7 +5,7 @@ Heavy packages are imported inside the commands, so that `--help` and `list` ans
 
 from __future__ import annotations
 
-import os
+import signal
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -14,14 +14,19 @@ from typing import Annotated
 import typer
 from typer.exceptions import Abort, TyperException
 
+from ..encodings.errors import CatalogueError
 from .errors import MissingError, UsageError
 from .listing import DEFAULT_COUNT
+from .output import abandon_output
 
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Measures what compact normals cost in quality: encodings in JAX and GLSL, stored as hardware stores them.",
 )
+
+
+INTERRUPTED = 130
 
 
 class Format(StrEnum):
@@ -36,9 +41,9 @@ FormatOption = Annotated[Format, typer.Option("--format", help="How to write the
 OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
 EncodingOption = Annotated[str, typer.Option("--encoding", help=f"Encodings, {Names}.")]
 StorageOption = Annotated[str, typer.Option("--storage", help=f"Storages, {Names}.")]
-RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate (cut off), or both.")]
+RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate; comma-separated, or all.")]
 NormalsOption = Annotated[str, typer.Option("--normals", help=f"Normal sets, {Names}.")]
-BackendOption = Annotated[str, typer.Option("--backend", help="jax, glsl, or both.")]
+BackendOption = Annotated[str, typer.Option("--backend", help="jax, glsl; comma-separated, or all.")]
 CountOption = Annotated[int, typer.Option("--count", help="Normals in a uniform set.")]
 SeedOption = Annotated[int, typer.Option("--seed", help="What uniform sets are made with.")]
 
@@ -104,19 +109,24 @@ def _say(message: str) -> None:
     print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
 
 
-def _abandon_output() -> None:
-    # Python flushes standard output once more at exit, and would complain of what it cannot write.
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def main() -> int:
     """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
+    # A terminated run clears up after itself as an interrupted one does.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
+        if sys.stdout is None:
+            raise UsageError("standard output is closed; name a file with -o")
         # Alone, the command shows its help; that is no error.
-        return app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
+        status = app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
+        if status == INTERRUPTED:
+            _say("interrupted")
+        return status
     except (UsageError, MissingError) as error:
         _say(str(error))
         return error.exit_code
+    except CatalogueError as error:
+        _say(str(error))
+        return UsageError.exit_code
     except TyperException as error:
         commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
         hint = f" Commands: {commands}." if "command" in error.format_message() else ""
@@ -124,13 +134,9 @@ def main() -> int:
         return UsageError.exit_code
     except (KeyboardInterrupt, Abort):
         _say("interrupted")
-        return 130
-    except BrokenPipeError:
-        # The reader of our output has seen enough; there is nobody left to tell.
-        _abandon_output()
-        return 0
+        return INTERRUPTED
     except OSError as error:
-        _abandon_output()
+        abandon_output()
         _say(f"cannot write: {error.strerror or error}")
         return UsageError.exit_code
 

@@ -21,7 +21,7 @@ from . import quality, seeds
 from .doctor import machine
 from .errors import UsageError, pick
 from .normal_sets import NORMAL_SETS, checked_count
-from .output import check_folder, check_writable, whole_file, whole_folder, write
+from .output import check_folder, check_writable, say, whole_file, whole_folder, write
 
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = ("device", "rounded_by", "mse", "angle_rms_deg", "count", "angle_p99_deg")
@@ -58,8 +58,11 @@ class Request:
         makers = pick("normal set", self.normals, NORMAL_SETS)
         backends = pick("back end", self.backend, {name: name for name in quality.BACKENDS})
         codecs, left_out = quality.fitting(codecs)
+        quality.require_jax()
         if backends == ["glsl"]:
             quality.require_device()
+        for encoding in {codec.encoding for codec in codecs}:
+            quality.check_twin(encoding)
         for line in left_out:
             print(f"normalbench: left out: {line}", file=sys.stderr)
         return quality.cases(codecs, [make(count, self.seed) for make in makers], backends)
@@ -82,7 +85,13 @@ def _measured(cases: Sequence[quality.Case]) -> list[quality.Row]:
     with _progress(cases) as tick:
         rows = list(quality.rows(cases, tick))
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
+        if all(row["skipped"] for row in rows):
+            raise UsageError(reason)
         print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+    for row in rows:
+        if row["invalid"]:
+            what = f"{row['encoding']}/{row['storage']} on {row['normals']} by {row['backend']}"
+            print(f"normalbench: {what}: {row['invalid']} decodes are no number", file=sys.stderr)
     return rows
 
 
@@ -99,8 +108,9 @@ def quality_command(request: Request, images: Path | None, format: str, output: 
     if images:
         write_pictures(cases, images)
     if format == "table":
-        # Infinity is shown as such, and why a row is empty has been said.
-        rows = [{column: value for column, value in row.items() if column not in ("exact", "skipped")} for row in rows]
+        # Infinity is shown as such, and why a row is empty or has odd figures has been said.
+        hidden = ("exact", "skipped", "invalid")
+        rows = [{column: value for column, value in row.items() if column not in hidden} for row in rows]
     write(rows, format, output, EXPENDABLE)
 
 
@@ -143,9 +153,9 @@ def run_command(count: int, seed: int, output: Path | None) -> None:
         rows = _measured(cases)
         _write_results(partial, cases, rows)
     for (normals, storage), part in _grouped(rows):
-        print(f"\n{normals}, {storage}: dB by back end; angles in degrees, by {part[0]['backend']}")
+        say(f"\n{normals}, {storage}: dB by back end; angles in degrees, by {part[0]['backend']}\n")
         write(beside(part), "table", None, ("p99", "psnr_db_glsl", "mean"))
-    print(f"\nEvery figure, the pictures and the machine they come from: {folder}")
+    say(f"\nEvery figure, the pictures and the machine they come from: {folder}\n")
 
 
 def _new_folder() -> Path:
@@ -167,12 +177,12 @@ def beside(rows: Iterable[quality.Row]) -> list[quality.Row]:
     for row in rows:
         line = lines.setdefault(row["encoding"], {"encoding": row["encoding"], "bits": row["bits"]})
         if row["normals"] == seeds.NORMALS and row["storage"] == seeds.STORAGE:
-            line["the_seeds_db"] = seeds.PSNR_DB.get(row["encoding"])
+            line["article_db"] = seeds.PSNR_DB.get(row["encoding"])
         line |= {f"{column}_{row['backend']}": row[column] for column in ("psnr_seed_db", "psnr_db")}
         if row["angle_mean_deg"] is not None and "mean" not in line:
             shown = ("angle_mean_deg", "angle_p99_deg", "angle_max_deg", "effective_bits")
             line |= {column.removeprefix("angle_").removesuffix("_deg"): row[column] for column in shown}
-    first = ("encoding", "bits", "the_seeds_db")
+    first = ("encoding", "bits", "article_db")
     found = dict.fromkeys(column for line in lines.values() for column in line)
     order = [column for column in first if column in found] + sorted(c for c in found if c.startswith("psnr"))[::-1]
     order += [column for column in found if column not in order]

@@ -12,6 +12,11 @@ import jax
 from ..encodings.storage import STORAGES
 from ..gbuffer.device import NoDeviceError, device
 
+ROUNDS = {
+    "nearest": "nearest",
+    "truncate": "truncate (nearest is rounded in the shader)",
+    "other": "neither nearest nor truncate (both are rounded in the shader)",
+}
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib")
 
 
@@ -42,7 +47,7 @@ def machine() -> dict[str, str]:
         "GL version": gl.version,
         "GL is software": "yes" if gl.is_software else "no",
         "GL largest texture": str(gl.max_size),
-        **{f"GL rounds {s.name}": gl.native_rounding(s) for s in STORAGES.values()},
+        **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
 
 

@@ -38,12 +38,14 @@ def idle() -> None:
 
 
 class Sums(NamedTuple):
-    """Sums over lanes: squared error, the seeds' squared error (in units of 1/255), angle and its square (degrees)."""
+    """Sums over lanes: squared error, the seeds' squared error (in units of 1/255), angle and its square (degrees), and
+    how many decodes were no number."""
 
     squared: Any
     seed_squared: Any
     angle: Any
     angle_squared: Any
+    invalid: Any
 
 
 def angle_between(a: Vec3, b: Vec3):
@@ -54,14 +56,16 @@ def angle_between(a: Vec3, b: Vec3):
 
 
 def _errors(n: Vec3, decoded: Vec3, covered):
-    """Per normal: squared error, the seeds' squared error, angle. A decode that is no number counts as the opposite."""
+    """Per normal: squared error, the seeds' squared error, angle, and 1 where the decode is no number, which counts as
+    the opposite direction."""
     finite = jnp.isfinite(dot(decoded, decoded))
     decoded = select(finite, decoded, -n)
     difference = select(covered, n - decoded, n * 0.0)
     # The seeds' difference image was |n - n'| in eight bits per channel.
     eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
     angle = jnp.where(covered, angle_between(n, decoded), 0.0)
-    return dot(difference, difference), dot(eighths, eighths), angle
+    invalid = jnp.where(finite | ~covered, 0.0, 1.0).astype(jnp.float32)
+    return dot(difference, difference), dot(eighths, eighths), angle, invalid
 
 
 def _histogram_key(angle, covered):
@@ -82,17 +86,19 @@ def _scan(decode: Callable[[Any], Vec3], chunk):
 
     def step(carry, block):
         sums, largest = carry
-        squared, seed_squared, angle = _errors(block.n, decode(block), block.covered)
+        squared, seed_squared, angle, invalid = _errors(block.n, decode(block), block.covered)
         key = _histogram_key(angle, block.covered)
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
-        squared, seed_squared, angle, key = jax.lax.optimization_barrier((squared, seed_squared, angle, key))
-        parts = (squared, seed_squared, angle, angle * angle)
+        squared, seed_squared, angle, invalid, key = jax.lax.optimization_barrier(
+            (squared, seed_squared, angle, invalid, key)
+        )
+        parts = (squared, seed_squared, angle, angle * angle, invalid)
         added = Sums(*(s + p.sum(0).astype(jnp.float64) for s, p in zip(sums, parts, strict=True)))
         return (added, jnp.maximum(largest, angle.max(0))), key
 
     blocks = jax.tree.map(lambda a: a.reshape(-1, BLOCK // LANES, LANES), chunk)
     zero = jnp.zeros(LANES, jnp.float64)
-    (sums, largest), keys = jax.lax.scan(step, (Sums(zero, zero, zero, zero), zero.astype(jnp.float32)), blocks)
+    (sums, largest), keys = jax.lax.scan(step, (Sums(*[zero] * len(Sums._fields)), zero.astype(jnp.float32)), blocks)
     return Sums(*(s.sum() for s in sums)), largest.max(), keys.ravel()
 
 
@@ -152,6 +158,7 @@ class Statistics:
     Attributes:
         count: normals that count; background is left out.
         pixels: all of them, background included.
+        invalid: decodes that were no number; each counts as the opposite direction.
         mse: mean squared error over the three components of covered normals, not renormalised.
         seed_mse: the seeds' own: |n - n'| rounded to 8 bits, over every pixel.
         angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
@@ -159,6 +166,7 @@ class Statistics:
 
     count: int
     pixels: int
+    invalid: int
     mse: float
     seed_mse: float
     angle_mean_deg: float
@@ -220,7 +228,7 @@ class Meter:
             pixels: how many normals the set has, background included.
             tick: called when a chunk is done.
         """
-        sums, largest, histogram = np.zeros(4), 0.0, np.zeros(BINS + 1, np.int64)
+        sums, largest, histogram = np.zeros(len(Sums._fields)), 0.0, np.zeros(BINS + 1, np.int64)
         with ThreadPoolExecutor(cores()) as pool:
             for part, peak, counts in _bounded_map(pool, self._one, loads):
                 sums, largest, histogram = sums + part, max(largest, peak), histogram + counts
@@ -246,10 +254,11 @@ def _bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
 
 def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:
     count = int(histogram[:BINS].sum())
-    squared, seed_squared, angle, angle_squared = sums
+    squared, seed_squared, angle, angle_squared, invalid = sums
     return Statistics(
         count=count,
         pixels=pixels,
+        invalid=int(invalid),
         mse=squared / (3 * count),
         seed_mse=seed_squared / 255**2 / (3 * pixels),
         angle_mean_deg=angle / count,

@@ -17,10 +17,20 @@ from .errors import UsageError
 
 def check_writable(path: Path) -> None:
     """Raises UsageError where a file of this name cannot be written; asked before anything is measured."""
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder; name a file")
-    if not _is_special(path):
-        check_folder(path.resolve().parent)
+    try:
+        if path.is_dir():
+            raise UsageError(f"{path} is a folder; name a file")
+        # A name that is too long is noticed here.
+        if _is_special(path) or _partial(path).exists():
+            return
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+    check_folder(path.resolve().parent)
+
+
+def _partial(path: Path) -> Path:
+    """What a file or folder is called while it is being written; no two processes share it."""
+    return path.with_name(f".{path.name}.{os.getpid()}.partial")
 
 
 def check_folder(folder: Path) -> None:
@@ -50,7 +60,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         UsageError: it cannot be written.
     """
     path = path.resolve()
-    partial = path if _is_special(path) else path.with_name(f".{path.name}.{os.getpid()}.partial")
+    partial = path if _is_special(path) else _partial(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield partial
@@ -73,7 +83,7 @@ def whole_folder(folder: Path) -> Iterator[Path]:
     if folder.exists():
         raise UsageError(f"{folder} exists already; name a folder that does not")
     check_folder(folder)
-    partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
+    partial = _partial(folder)
     try:
         partial.mkdir(parents=True)
         yield partial
@@ -84,12 +94,25 @@ def whole_folder(folder: Path) -> Iterator[Path]:
         shutil.rmtree(partial, ignore_errors=True)
 
 
+def say(text: str) -> None:
+    """Text to standard output; a reader that has seen enough and gone is no error."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        abandon_output()
+
+
+def abandon_output() -> None:
+    """Whatever is still to come goes nowhere; Python flushes once more at exit, and would complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def write(rows: Sequence[dict[str, Any]], format: str, output: Path | None, expendable: Sequence[str] = ()) -> None:
     """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns."""
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns
-        sys.stdout.write(tables.written(rows, format, width, expendable))
-        sys.stdout.flush()
+        say(tables.written(rows, format, width, expendable))
         return
     check_writable(output)
     with whole_file(output) as partial:

@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..encodings.codec import Codec
+from ..encodings.encoding import Encoding
 from ..encodings.vec import Vec3
 from ..gbuffer.codec_passes import CodecPasses
 from ..gbuffer.device import Device, FormatError, NoDeviceError, device
@@ -29,6 +30,7 @@ COLUMNS = (
     "backend",
     "bits",
     "count",
+    "invalid",
     "mse",
     "psnr_db",
     "psnr_seed_db",
@@ -81,6 +83,24 @@ def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
     for channel, plane in enumerate(planes):
         pixels[:, channel] = np.asarray(plane).ravel()
     return pixels.reshape(height, width, 4)
+
+
+def check_twin(encoding: Encoding) -> None:
+    """Traces an encoding's Python half on one normal.
+
+    Raises:
+        UsageError: it raises, or its code has another size than it says; one line with its file.
+    """
+    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
+    where = encoding.glsl.with_suffix(".py")
+    try:
+        code = jax.eval_shape(encoding.encode, n, n)
+        size = encoding.components + encoding.sign_bits
+        if len(code) != size:
+            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
+        jax.eval_shape(encoding.decode, code, n)
+    except Exception as error:  # whatever a user's own code raises
+        raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error
 
 
 def _by_jax(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
@@ -163,6 +183,7 @@ def measure(case: Case, tick: Tick = idle) -> Row:
 def _figures(s: Statistics, area: float | None) -> Row:
     return {
         "count": s.count,
+        "invalid": s.invalid,
         "mse": s.mse,
         "psnr_db": psnr_db(s.mse),
         "psnr_seed_db": psnr_db(s.seed_mse),
@@ -179,6 +200,15 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
     """The table, a row at a time."""
     for case in chosen:
         yield measure(case, lambda case=case: tick(case))
+
+
+def require_jax() -> None:
+    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it."""
+    try:
+        jax.devices()
+    except Exception as error:
+        reason = str(error).strip().splitlines() or [type(error).__name__]
+        raise MissingError(f"JAX has no device to compute on: {reason[0]}; unset JAX_PLATFORMS") from error
 
 
 def require_device() -> Device:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 
 from .encoding import Encoding
+from .errors import CatalogueError
 
 NAMES = (
     "xyz",
@@ -21,4 +22,15 @@ NAMES = (
     "octahedral",
 )
 
-ENCODINGS: dict[str, Encoding] = {name: import_module(f".normals.{name}", __package__).ENCODING for name in NAMES}
+
+def _load(name: str) -> Encoding:
+    try:
+        encoding = import_module(f".normals.{name}", __package__).ENCODING
+    except Exception as error:  # whatever a user's own file raises
+        raise CatalogueError(f"encodings/normals/{name}.py: {type(error).__name__}: {error}") from error
+    if encoding.name != name:
+        raise CatalogueError(f"encodings/normals/{name}.py: its ENCODING is named {encoding.name!r}, not {name!r}")
+    return encoding
+
+
+ENCODINGS: dict[str, Encoding] = {name: _load(name) for name in NAMES}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
@@ -13,16 +14,26 @@ from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES, Storage
 from .device import Device, read_pixels
+from .shader import ShaderError, read_shader
 
 KINDS = ("unorm", "snorm", "float")
 DEPTH = Storage("r32f", "R32F", "float", (32,), 0x822E)
 
 
 def encoding_defines(encoding: Encoding) -> dict[str, object]:
-    """The macros that make `code.glsl` speak of an encoding."""
+    """The macros that make `code.glsl` speak of an encoding.
+
+    Raises:
+        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+    """
     size = encoding.components + encoding.sign_bits
+    code, text = f"vec{size}", re.sub(r"\s+", " ", read_shader(encoding.glsl))
+    for result, verb, given in ((code, "encode", "vec3 n"), ("vec3", "decode", f"{code} e")):
+        signature = f"{result} {encoding.name}_{verb}({given}, vec3 view)"
+        if not re.search(rf"\b{result} {encoding.name}_{verb} ?\( ?{given.split()[0]}\b", text):
+            raise ShaderError(f"{encoding.glsl}: no function {signature}")
     return {
-        "CODE": f"vec{size}",
+        "CODE": code,
         "ENCODE": f"{encoding.name}_encode",
         "DECODE": f"{encoding.name}_decode",
         "COMPONENTS": encoding.components,

@@ -1,4 +1,4 @@
-"""Loads shaders: includes once, with line numbers kept, and names the user's file and line in an error."""
+"""Loads shaders: includes once, and names the user's file and line in an error."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 
 SHADERS = Path(__file__).parent / "shaders"
 _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
-# "2:12(5): error" is Mesa's way to say source string 2, line 12; "2(12) : error" is NVIDIA's.
-_PLACE = re.compile(r"\b(\d+)(?::(\d+)\(\d+\)|\((\d+)\))")
+# "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's.
+_PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))")
+
+Line = tuple[str, Path, int]
 
 
 class ShaderError(Exception):
@@ -19,6 +21,9 @@ class ShaderError(Exception):
 class Source:
     """A shader's text with every include expanded once.
 
+    Where each line comes from is kept here and not told to the compiler by `#line`: Mesa forgets the source string
+    number in some of its messages, and then blames the wrong file.
+
     Args:
         path: the shader, in the project's shader folder if relative.
         defines: macros set at its head.
@@ -27,36 +32,37 @@ class Source:
 
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         self._names: Mapping[str, Path] = names or {}
-        self._files: list[Path] = []
-        version, *lines = self._expand((SHADERS / path).resolve())[1:]
-        head = [f"#define {name} {glsl_value(value)}" for name, value in (defines or {}).items()]
-        self.text = "\n".join([version, *head, "#line 2 0", *lines, ""])
+        self._seen: set[Path] = set()
+        main = (SHADERS / path).resolve()
+        version, *rest = self._expand(main)
+        head = [(f"#define {name} {glsl_value(value)}", main, 1) for name, value in (defines or {}).items()]
+        self._lines: list[Line] = [version, *head, *rest]
+        self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 
-    def _expand(self, path: Path) -> list[str]:
-        index = len(self._files)
-        self._files.append(path)
-        lines = [f"#line 1 {index}"]
+    def _expand(self, path: Path) -> list[Line]:
+        self._seen.add(path)
+        lines: list[Line] = []
         for number, line in enumerate(read_shader(path).splitlines(), 1):
-            lines += self._include(path, number, line) if _INCLUDE.match(line) else [line]
-            if _INCLUDE.match(line):
-                lines.append(f"#line {number + 1} {index}")
+            match = _INCLUDE.match(line)
+            lines += self._include(path, number, match) if match else [(line, path, number)]
         return lines
 
-    def _include(self, path: Path, number: int, line: str) -> list[str]:
-        match = _INCLUDE.match(line)
-        assert match
+    def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:
         if match["name"] and match["name"] not in self._names:
             raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
         target = self._names[match["name"]] if match["name"] else path.parent / match["file"]
         target = Path(target).resolve()
-        return [] if target in self._files else self._expand(target)
+        return [] if target in self._seen else self._expand(target)
 
     def explain(self, log: str) -> str:
-        """A compiler's message with file names in place of source string numbers."""
+        """A compiler's message with file names and their line numbers in place of its own."""
 
         def place(match: re.Match[str]) -> str:
-            index, line = int(match[1]), match[2] or match[3]
-            return f"{self._files[index]}:{line}" if index < len(self._files) else match[0]
+            index = int(match[1] or match[2]) - 1
+            if not 0 <= index < len(self._lines):
+                return match[0]
+            _, path, number = self._lines[index]
+            return f"{path}:{number}"
 
         return _PLACE.sub(place, log.strip())
 

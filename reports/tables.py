@@ -102,7 +102,9 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     widths = _widths(shown, columns)
     for column, needed in zip(columns, widths, strict=True):
         numeric = all(isinstance(row[column], int | float | None) for row in shown)
-        table.add_column(column.replace("_", " "), justify="right" if numeric else "left", width=needed)
+        table.add_column(
+            column.replace("_", " "), justify="right" if numeric else "left", width=needed, overflow="fold"
+        )
     for row in shown:
         table.add_row(*(escape(_text(row[column])) for column in columns))
     stream = StringIO()

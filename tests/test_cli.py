@@ -4,15 +4,20 @@ import csv
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
+from dataclasses import replace
+from pathlib import Path
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from PIL import Image
 
 from normalbench.bench import cli, quality, seeds
-from normalbench.encodings.catalogue import NAMES
+from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.reports import tables
 
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]
@@ -202,6 +207,113 @@ def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
     status, _, err = run(*QUICK, "--backend", "jax", "--format", "csv", "-o", str(path))
     assert status == 2 and "No space left" in err
     assert [p.name for p in tmp_path.iterdir()] == ["rows.csv"] and path.read_text() == "precious"
+
+
+def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
+    """What is not a plain file keeps its nature: the target of a link is replaced, a pipe is written to."""
+    target, link, pipe = tmp_path / "target.csv", tmp_path / "link.csv", tmp_path / "pipe"
+    target.write_text("old")
+    link.symlink_to(target)
+    assert run("list", "--format", "csv", "-o", str(link))[0] == 0
+    assert link.is_symlink() and "octahedral" in target.read_text()
+    os.mkfifo(pipe)
+    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
+    assert run("list", "--format", "csv", "-o", str(pipe))[0] == 0
+    assert "octahedral" in reader.communicate(timeout=30)[0]
+    assert pipe.is_fifo()
+
+
+@pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM])
+def test_an_ended_run_leaves_nothing(tmp_path, ended):
+    command = [
+        sys.executable,
+        "-m",
+        "normalbench.bench",
+        "run",
+        "--count",
+        "100000000",
+        "-o",
+        str(tmp_path / "results"),
+    ]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert list(tmp_path.iterdir()), "it never began to write"
+        process.send_signal(ended)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == (130 if ended == signal.SIGINT else 143)
+    assert not list(tmp_path.iterdir())
+    assert err == ("normalbench: interrupted\n" if ended == signal.SIGINT else "")
+
+
+def test_output_that_cannot_be_written_is_one_line():
+    if not Path("/dev/full").is_char_device():
+        pytest.skip("no /dev/full here")
+    with Path("/dev/full").open("w") as full:
+        command = [sys.executable, "-m", "normalbench.bench", "list"]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 2 and done.stderr == "normalbench: cannot write: No space left on device\n"
+
+
+def test_a_reader_that_has_seen_enough_is_no_error():
+    command = f"{sys.executable} -m normalbench.bench list | true; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stderr == ""
+
+
+def test_no_command_is_help_and_no_error(run):
+    status, out, err = run()
+    assert status == 0 and "quality" in out and err == ""
+
+
+def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
+    """A Python half that raises or has another size; a GLSL half that does not compile loses its own rows only."""
+
+    def raises(*_):
+        raise ValueError("what is this?")
+
+    original = ENCODINGS["xy"]
+    for changed, said in (
+        ({"encode": raises}, ["xy.py", "ValueError", "what is this?"]),
+        ({"components": 3}, ["xy.py", "encode gives 2 numbers"]),
+    ):
+        monkeypatch.setitem(ENCODINGS, "xy", replace(original, **changed))
+        status, _, err = run("quality", "--encoding", "xy", "--normals", "axes")
+        assert status == 2 and err.count("\n") == 1 and all(part in err for part in said), err
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone(run, monkeypatch, tmp_path):
+    broken = tmp_path / "xy.glsl"
+    broken.write_text(ENCODINGS["xy"].glsl.read_text().replace("n.xy", "n.xq"))
+    monkeypatch.setitem(ENCODINGS, "xy", replace(ENCODINGS["xy"], glsl=broken))
+    arguments = ["quality", "--encoding", "xy,octahedral", "--normals", "axes", "--format", "json"]
+    status, out, err = run(*arguments)
+    rows = {(row["encoding"], row["backend"]): row for row in json.loads(out)}
+    assert status == 0 and "xy.glsl:3" in err
+    assert rows["xy", "glsl"]["psnr_db"] is None and "xy.glsl:3" in rows["xy", "glsl"]["skipped"]
+    assert rows["xy", "jax"]["psnr_db"] and rows["octahedral", "glsl"]["psnr_db"]
+    status, out, err = run("quality", "--encoding", "xy", "--normals", "axes", "--backend", "glsl")
+    assert status == 2 and out == "" and err.count("\n") == 1 and "xy.glsl:3" in err
+
+
+def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
+    original = ENCODINGS["xy"]
+
+    def decode(e, view):
+        n = original.decode(e, view)
+        return n._replace(x=jnp.where(e.x > 0.9, jnp.nan, n.x))
+
+    monkeypatch.setitem(ENCODINGS, "xy", replace(original, decode=decode))
+    status, out, err = run("quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax", "--format", "json")
+    assert status == 0 and json.loads(out)[0]["invalid"] == 64, "one axis of six, 64 directions around it"
+    assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are no number\n"
+
+
+def test_a_platform_jax_does_not_know_is_one_line():
+    done = in_a_process(*QUICK, JAX_PLATFORMS="bogus")
+    assert done.returncode == 3 and done.stderr.count("\n") == 1 and "JAX_PLATFORMS" in done.stderr
 
 
 def test_what_does_not_fit_is_named_and_the_rest_measured(run):

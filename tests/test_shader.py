@@ -1,7 +1,13 @@
 """The shader loader: includes once, and errors that name the file and the line."""
 
+from dataclasses import replace
+
 import pytest
 
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer.codec_passes import CodecPasses
 from normalbench.gbuffer.shader import ShaderError, Source, glsl_value
 
 
@@ -12,6 +18,29 @@ def test_an_include_is_pasted_once(tmp_path):
     text = Source(tmp_path / "main.frag", {"X": 1.5}, {"NAMED": tmp_path / "b.glsl"}).text
     assert text.count("float a;") == text.count("float b;") == 1
     assert text.startswith("#version 430\n#define X 1.5\n")
+
+
+@pytest.mark.parametrize("broken", ["return nonsense;", "return no_such_function(n.xy);", "return n;", "retrun n.xy;"])
+def test_an_encodings_own_error_names_its_file_and_line(gl, tmp_path, broken):
+    """Whatever the mistake: Mesa forgets the source string in some messages, the loader does not."""
+    original = ENCODINGS["octahedral"]
+    mine = tmp_path / "octahedral.glsl"
+    decode = "vec3 octahedral_decode(vec2 e, vec3 view) { return vec3(e, 0.0); }"
+    mine.write_text(f"// Mine.\n\nvec2 octahedral_encode(vec3 n, vec3 view) {{\n    {broken}\n}}\n{decode}\n")
+    with (
+        pytest.raises(ShaderError, match=r"octahedral\.glsl:4"),
+        CodecPasses(gl, Codec(replace(original, glsl=mine), STORAGES["rg8"])),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("wrong", ["vec3 octahedral_encode(vec3 n, vec3 view)", "vec2 mine_encode(vec3 n, vec3 view)"])
+def test_a_missing_function_is_said_before_anything_is_compiled(gl, tmp_path, wrong):
+    original = ENCODINGS["octahedral"]
+    mine = tmp_path / "octahedral.glsl"
+    mine.write_text(original.glsl.read_text().replace("vec2 octahedral_encode(vec3 n, vec3 view)", wrong))
+    with pytest.raises(ShaderError, match=r"octahedral\.glsl: no function vec2 octahedral_encode\(vec3 n, vec3 view\)"):
+        CodecPasses(gl, Codec(replace(original, glsl=mine), STORAGES["rg8"]))
 
 
 def test_values_are_written_as_glsl_writes_them():
