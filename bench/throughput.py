@@ -35,7 +35,7 @@ from .normal_sets import NormalSet, from_arrays
 
 BLOCK = 2**14
 CORES = cores()
-REPEATS = 3
+LONG_ENOUGH = 1.0
 STATISTICS = ("moments", "row")
 MAX_COUNT = 2**28
 
@@ -66,11 +66,11 @@ def make_input(count: int, seed: int = 0) -> Input:
     return Input(n, view, parts)  # type: ignore[arg-type]
 
 
-def rate(work: Callable[[], object], count: int, repeats: int) -> float:
-    """Million normals a second, the best of several repeats after one to warm up."""
+def rate(work: Callable[[], object], count: int) -> float:
+    """Million normals a second: the best of three repeats or more, for LONG_ENOUGH seconds, after one to warm up."""
     work()
-    times = []
-    for _ in range(repeats):
+    times: list[float] = []
+    while len(times) < 3 or sum(times) < LONG_ENOUGH:
         begin = time.perf_counter()
         work()
         times.append(time.perf_counter() - begin)
@@ -111,12 +111,12 @@ def compare(name: str, statistics: str, data: Input, read: float) -> dict[str, o
     if statistics == "row":
         meter, normals = Meter(lambda b: codec.round_trip(b.n, b.view)), data.normal_set()
         loads = [partial(normals.chunk, start) for start in normals.starts]
-        project = rate(lambda: meter.measure(loads, count), count, REPEATS)
+        project = rate(lambda: meter.measure(loads, count), count)
     else:
         errors = squared_errors(codec)
-        project = rate(lambda: _on_all_cores(errors, data), count, REPEATS)
-    numpy = rate(lambda: summary(data.n, by_numpy(data.n, data.view, baseline.quantise_unorm)), count, REPEATS)
-    blocked = rate(lambda: _numpy_blocked(by_numpy, summary, data), count, REPEATS)
+        project = rate(lambda: _on_all_cores(errors, data), count)
+    numpy = rate(lambda: summary(data.n, by_numpy(data.n, data.view, baseline.quantise_unorm)), count)
+    blocked = rate(lambda: _numpy_blocked(by_numpy, summary, data), count)
     return {
         "encoding": name,
         "statistics": statistics,
@@ -146,7 +146,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"throughput: {error}", file=sys.stderr)
         return error.exit_code
     data = make_input(options.count // whole * whole)
-    read = rate(reading(data), len(data.n), REPEATS)
+    read = rate(reading(data), len(data.n))
     rows = []
     for statistics, name in itertools.product(STATISTICS, names):
         print(f"throughput: {name}, {statistics}", file=sys.stderr)

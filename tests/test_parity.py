@@ -11,10 +11,11 @@ import pytest
 from directions import NOT_DIRECTIONS, hard_directions, random_directions, view_positions
 
 from normalbench.bench import quality
-from normalbench.bench.normal_sets import playground, sphere
+from normalbench.bench.normal_sets import hemisphere, playground, sphere
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
+from normalbench.encodings.normals import stereographic
 from normalbench.encodings.storage import STORAGES
 from normalbench.gbuffer import shader
 from normalbench.gbuffer.codec_passes import CodecPasses, exact_values
@@ -147,6 +148,19 @@ def step_of(storage, values: np.ndarray):
     if storage.kind == "float":
         return np.maximum(np.spacing(np.abs(values).astype(np.float16)).astype(np.float64), 2 * ULP)
     return (2 if storage.kind == "unorm" else 1) / storage.scale(0)
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_stereographic_scale_is_one_field_for_both_languages():
+    """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
+    psnr = {}
+    for scale in (1.0, 1.7777):
+        codec = Codec(stereographic.scaled(scale), STORAGES["rgba8"])
+        for backend in ("jax", "glsl"):
+            row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
+            psnr[scale, backend] = row["psnr_db"]
+        assert abs(psnr[scale, "jax"] - psnr[scale, "glsl"]) <= 0.02, psnr
+    assert psnr[1.0, "jax"] > psnr[1.7777, "jax"] + 3, psnr
 
 
 NOT_FP32 = [name for name in STORAGES if name != "rgba32f"]

@@ -1,5 +1,7 @@
 """Stereographic projection from -z, scaled so that the normals one practically sees fill the unit disk."""
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from ..encoding import Encoding
@@ -9,16 +11,16 @@ from ..vec import Vec2, Vec3, dot, select
 SCALE = 1.7777
 
 
-def encode(n: Vec3, view: Vec3) -> Vec2:
+def encode(n: Vec3, view: Vec3, scale: float = SCALE) -> Vec2:
     """Unit normal to the plane, +z at the origin; -z, which is infinitely far out, gets (1, 0)."""
     # enc = n.xy / (n.z + 1) / scale
-    return select(n.z > -1.0, n.xy / ((n.z + 1.0) * SCALE), Vec2(1.0, 0.0))
+    return select(n.z > -1.0, n.xy / ((n.z + 1.0) * scale), Vec2(1.0, 0.0))
 
 
-def decode(e: Vec2, view: Vec3) -> Vec3:
+def decode(e: Vec2, view: Vec3, scale: float = SCALE) -> Vec3:
     """The unit normal of a point of the plane."""
     # nn = (scale e, 1), g = 2 / (nn . nn), n = (g nn.xy, g - 1)
-    nn = e * SCALE
+    nn = e * scale
     g = 2.0 / (dot(nn, nn) + 1.0)
     return Vec3(g * nn.x, g * nn.y, g - 1.0)
 
@@ -36,3 +38,14 @@ ENCODING = Encoding(
     ulps_reason="one division each way, the encoder's by a sum that is 1 or more on the hemisphere",
     constants={"STEREOGRAPHIC_SCALE": SCALE},
 )
+
+
+def scaled(scale: float) -> Encoding:
+    """The encoding with another scale, in both languages; the disk then reaches 2 atan(scale) from +z."""
+    return replace(
+        ENCODING,
+        title=f"stereographic, scale {scale:g}",
+        encode=partial(encode, scale=scale),
+        decode=partial(decode, scale=scale),
+        constants={"STEREOGRAPHIC_SCALE": scale},
+    )
