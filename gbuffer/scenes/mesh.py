@@ -14,31 +14,17 @@ class Mesh:
     Attributes:
         positions: (vertices, 3), float64.
         normals: (vertices, 3), unit, pointing out, float64.
-        uv: (vertices, 2), texture coordinates, float64.
         triangles: (triangles, 3) vertex indices; no order of corners is promised, the normals say which side is out.
     """
 
     positions: np.ndarray
     normals: np.ndarray
-    uv: np.ndarray
     triangles: np.ndarray
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
         """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""
         normals = self.normals @ np.linalg.inv(linear).T
-        return Mesh(self.positions @ linear + np.asarray(translation), _unit(normals), self.uv, self.triangles)
-
-    def tangents(self) -> np.ndarray:
-        """(vertices, 3), unit and across the normal, the way u grows; any direction across where u does not grow."""
-        corners, uv = self.positions[self.triangles], self.uv[self.triangles]
-        e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        (u1, v1), (u2, v2) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
-        along = (e1 * v2[:, None] - e2 * v1[:, None]) * np.sign(u1 * v2 - u2 * v1)[:, None]
-        summed = np.zeros_like(self.positions)
-        np.add.at(summed, self.triangles.ravel(), np.repeat(along, 3, axis=0))
-        across = summed - self.normals * np.sum(summed * self.normals, axis=1, keepdims=True)
-        other = np.cross(self.normals, np.eye(3)[np.argmin(abs(self.normals), axis=1)])
-        return _unit(np.where(np.linalg.norm(across, axis=1, keepdims=True) > 1e-9, across, other))
+        return Mesh(self.positions @ linear + np.asarray(translation), _unit(normals), self.triangles)
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
@@ -47,7 +33,6 @@ def joined(meshes: list[Mesh]) -> Mesh:
     return Mesh(
         np.concatenate([m.positions for m in meshes]),
         np.concatenate([m.normals for m in meshes]),
-        np.concatenate([m.uv for m in meshes]),
         np.concatenate([m.triangles + start for m, start in zip(meshes, starts, strict=True)]),
     )
 
@@ -71,12 +56,6 @@ def grid_triangles(rows: int, columns: int) -> np.ndarray:
     return np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
 
 
-def grid_uv(rows: int, columns: int) -> np.ndarray:
-    """Texture coordinates of the grid's vertices: v down the rows, u along them."""
-    v, u = np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
-    return np.stack([u.ravel(), v.ravel()], axis=1)
-
-
 def sphere(radius: float, slices: int, stacks: int) -> Mesh:
     """A sphere of slices around the z axis and stacks along it."""
     polar = np.linspace(0.0, np.pi, stacks + 1)[:, None]
@@ -84,7 +63,7 @@ def sphere(radius: float, slices: int, stacks: int) -> Mesh:
     normals = np.stack(
         [np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar) * np.ones_like(around)], axis=-1
     ).reshape(-1, 3)
-    return Mesh(radius * normals, normals, grid_uv(stacks, slices), grid_triangles(stacks, slices))
+    return Mesh(radius * normals, normals, grid_triangles(stacks, slices))
 
 
 def box(width: float, height: float, depth: float) -> Mesh:
@@ -99,7 +78,7 @@ def box(width: float, height: float, depth: float) -> Mesh:
             positions += [(n + a * u + b * v) * half for a in (-1, 1) for b in (-1, 1)]
             normals += [n] * 4
     triangles = np.concatenate([grid_triangles(1, 1) + 4 * face for face in range(6)])
-    return Mesh(np.array(positions), np.array(normals), np.tile(grid_uv(1, 1), (6, 1)), triangles)
+    return Mesh(np.array(positions), np.array(normals), triangles)
 
 
 def _unit(v: np.ndarray) -> np.ndarray:
