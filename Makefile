@@ -23,7 +23,7 @@ lint: .venv/ready
 
 # The stamp is younger than what it was made from, so that a second call installs nothing.
 .venv/ready: pyproject.toml .ci/constraints.txt
-	$(PYTHON) -m venv .venv || { echo "normalbench: no venv for $(PYTHON); install python3-venv (Debian: apt-get install python3-venv)" >&2; rm -rf .venv; exit 3; }
+	.ci/prepare-venv $(PYTHON)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --editable ".[dev]"
 	.ci/prepare-gl $(BIN)/python
 	touch $@
