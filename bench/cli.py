@@ -1,6 +1,7 @@
 """The command line: `normalbench COMMAND`.
 
-Heavy packages are imported inside the commands, so that `--help` and `list` answer at once.
+Heavy packages are imported inside the commands, so that `--help` and `list` answer at once; so is whatever imports the
+catalogue, so that an encoding that cannot be imported is said in one line.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ import typer
 from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
+from .counts import DEFAULT_COUNT
 from .errors import MissingError, UsageError
-from .listing import DEFAULT_COUNT
-from .output import abandon_output
+from .output import abandon_output, write
 
 app = typer.Typer(
     add_completion=False,
@@ -56,7 +57,6 @@ def list_command(
 ) -> None:
     """What there is: encodings, storages and normal sets."""
     from .listing import listing
-    from .output import write
 
     write(listing(what), format, output)
 
@@ -65,7 +65,6 @@ def list_command(
 def doctor(format: FormatOption = Format.table, output: OutputOption = None) -> None:
     """What this machine has: versions, cores, the GL device and how it rounds."""
     from .doctor import examine
-    from .output import write
 
     write(examine(), format, output)
 

@@ -18,9 +18,10 @@ from ..encodings.codec import Codec
 from ..encodings.storage import ROUNDINGS, STORAGES
 from ..reports import pictures, tables
 from . import quality, seeds
+from .counts import checked_count
 from .doctor import machine
 from .errors import UsageError, pick
-from .normal_sets import NORMAL_SETS, checked_count
+from .normal_sets import NORMAL_SETS
 from .output import check_folder, check_writable, say, whole_file, whole_folder, write
 
 # What a narrow terminal goes without, the first first.

@@ -6,8 +6,6 @@ from ..encodings.catalogue import ENCODINGS
 from ..encodings.storage import STORAGES
 from .errors import pick
 
-DEFAULT_COUNT = 2**22
-
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
 NORMAL_SETS = {
     "sphere": "directions spread evenly over the sphere, seeded",

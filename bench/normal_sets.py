@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from types import MappingProxyType
@@ -15,12 +15,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..encodings.vec import Vec3, from_array, sqrt
-from .errors import UsageError
-from .listing import DEFAULT_COUNT
+from .counts import DEFAULT_COUNT
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
-MAX_COUNT = 2**32
 
 # R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32; odd,
 # so that neither coordinate repeats before 2^32.
@@ -62,6 +60,10 @@ class NormalSet:
     def starts(self) -> range:
         """Where its chunks start."""
         return range(0, self.count, CHUNK)
+
+    def loads(self) -> Iterator[Callable[[], Chunk]]:
+        """For each chunk, in order, a function that gives it."""
+        return (partial(self.chunk, start) for start in self.starts)
 
 
 def _straight_ahead(like) -> Vec3:
@@ -160,10 +162,3 @@ def _playground() -> NormalSet:
 NORMAL_SETS: Mapping[str, Callable[[int, int], NormalSet]] = MappingProxyType(
     {"sphere": sphere, "hemisphere": hemisphere, "axes": axes, "playground": playground}
 )
-
-
-def checked_count(count: int) -> int:
-    """The count itself. Raises UsageError where no set has that many."""
-    if not 1 <= count <= MAX_COUNT:
-        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^32)")
-    return count

@@ -105,9 +105,8 @@ def check_twin(encoding: Encoding) -> None:
 
 def _by_jax(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
     normals = case.normal_set
-    loads = (partial(normals.chunk, start) for start in normals.starts)
     how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
-    return _meter(case.codec).measure(loads, normals.count, tick), how
+    return _meter(case.codec).measure(normals.loads(), normals.count, tick), how
 
 
 def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
@@ -119,7 +118,7 @@ def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
             n = passes.round_trip(*pixels).normals.reshape(-1, 3)
             return Decoded(chunk.n, Vec3(*np.ascontiguousarray(n.T)), chunk.covered)
 
-        loads = (partial(identity, decoded(normals.chunk(start))) for start in normals.starts)
+        loads = (partial(identity, decoded(load())) for load in normals.loads())
         statistics = _decoded_meter().measure(loads, normals.count, tick)
         return statistics, {"device": gl.renderer, "rounded_by": passes.rounded_by}
 
@@ -233,7 +232,7 @@ def image_round_trip(case: Case) -> RoundTrip:
     """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
     assert case.normal_set.shape
     height, width = case.normal_set.shape
-    chunks = [case.normal_set.chunk(start) for start in case.normal_set.starts]
+    chunks = [load() for load in case.normal_set.loads()]
     n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: height * width], *chunks)
 
     def image(planes) -> np.ndarray:

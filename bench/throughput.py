@@ -17,7 +17,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -110,8 +109,7 @@ def compare(name: str, statistics: str, data: Input, read: float) -> dict[str, o
     summary = baseline.whole_row if statistics == "row" else baseline.squared_error_and_maximum
     if statistics == "row":
         meter, normals = Meter(lambda b: codec.round_trip(b.n, b.view)), data.normal_set()
-        loads = [partial(normals.chunk, start) for start in normals.starts]
-        project = rate(lambda: meter.measure(loads, count), count)
+        project = rate(lambda: meter.measure(normals.loads(), count), count)
     else:
         errors = squared_errors(codec)
         project = rate(lambda: _on_all_cores(errors, data), count)

@@ -1,7 +1,5 @@
 """The statistics of a row, against NumPy in float64 and against the laws they obey."""
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -11,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
-from normalbench.bench import normal_sets, quality
+from normalbench.bench import counts, quality
 from normalbench.bench.metrics import Meter, _bounded_map, angle_between, psnr_db, squared_errors
 from normalbench.bench.normal_sets import CHUNK, from_arrays, hemisphere, sphere
 from normalbench.bench.numpy_baseline import angles, whole_row
@@ -32,7 +30,7 @@ def turned(n: np.ndarray, degrees: np.ndarray, seed: int = 3) -> np.ndarray:
 
 
 def measured(meter: Meter, normals):
-    return meter.measure([partial(normals.chunk, start) for start in normals.starts], normals.count)
+    return meter.measure(normals.loads(), normals.count)
 
 
 def measured_angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -159,7 +157,7 @@ def test_counting_stops_where_it_is_told_to():
 
 def test_the_largest_count_can_be_addressed():
     """The last chunk of 2^32 normals is as good as the first."""
-    last = sphere(normal_sets.MAX_COUNT).chunk(normal_sets.MAX_COUNT - CHUNK)
+    last = sphere(counts.MAX_COUNT).chunk(counts.MAX_COUNT - CHUNK)
     assert np.asarray(last.covered).all()
     assert np.all(np.isfinite(np.asarray(last.n.z)))
 

@@ -70,24 +70,52 @@ def test_the_picture_it_shows_is_there():
         assert (ROOT / picture).stat().st_size > 10_000
 
 
-def test_an_encoding_is_added_as_it_says(tmp_path):
-    """A copy of the tree, a pair of files, a line: the table has a new row in both languages."""
-    package = tmp_path / "normalbench"
+def a_copy_of_the_rooms(folder: Path) -> Path:
+    """The package as a plain folder that Python finds from `folder` before the installed one."""
+    package = folder / "normalbench"
     for room in ("encodings", "gbuffer", "bench", "reports"):
         for source in (ROOT / room).rglob("*"):
             if source.is_file() and "__pycache__" not in source.parts:
                 target = package / source.relative_to(ROOT)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(source.read_bytes())
+    return package
+
+
+def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "normalbench.bench", *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
+
+
+def test_an_encoding_is_added_as_it_says(tmp_path):
+    """A copy of the tree, a pair of files, a line: the table has a new row in both languages."""
+    package = a_copy_of_the_rooms(tmp_path)
     normals, catalogue = package / "encodings/normals", package / "encodings/catalogue.py"
     for suffix in (".py", ".glsl"):
         text = (normals / f"octahedral{suffix}").read_text()
         renamed = text.replace("octahedral_", "mine_").replace('name="octahedral"', 'name="mine"')
         (normals / f"mine{suffix}").write_text(renamed)
     catalogue.write_text(catalogue.read_text().replace('    "octahedral",\n', '    "octahedral",\n    "mine",\n'))
-    command = [sys.executable, "-m", "normalbench.bench", "quality", "--encoding", "mine", "--format", "csv"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = normalbench_in(tmp_path, "quality", "--encoding", "mine", "--format", "csv")
     assert done.returncode == 0, done.stderr
     header, *rows = done.stdout.splitlines()
     figures = [dict(zip(header.split(","), row.split(","), strict=False))["psnr_db"] for row in rows]
     assert [float(f) for f in figures] == pytest.approx([49.95, 49.95], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "file, old, new, said",
+    [
+        ("normals/xy.py", "def encode(", "def encode((", ["xy.py", "SyntaxError"]),
+        ("normals/xy.py", 'name="xy"', 'name="yx"', ["xy.py", "'yx'"]),
+        ("catalogue.py", '    "xy",\n', '    "xy",\n    "missing",\n', ["missing.py", "No module named"]),
+    ],
+)
+def test_an_encoding_that_cannot_be_imported_is_one_line_and_help_still_helps(tmp_path, file, old, new, said):
+    path = a_copy_of_the_rooms(tmp_path) / "encodings" / file
+    path.write_text(path.read_text().replace(old, new))
+    for arguments in (["list"], ["quality", "--encoding", "octahedral"]):
+        done = normalbench_in(tmp_path, *arguments)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+        assert all(part in done.stderr for part in said), done.stderr
+    assert normalbench_in(tmp_path, "--help").returncode == 0
