@@ -20,9 +20,10 @@ def check_writable(path: Path) -> None:
     try:
         if path.is_dir():
             raise UsageError(f"{path} is a folder; name a file")
-        # A name that is too long is noticed here.
-        if _is_special(path) or _partial(path).exists():
+        if _is_special(path):
             return
+        # Asked of what it will be called while it is written, so that a name that is too long is noticed.
+        _partial(path).exists()
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     check_folder(path.resolve().parent)

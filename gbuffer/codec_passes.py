@@ -13,7 +13,7 @@ from ..encodings import vec
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES, Storage
-from .device import Device, read_pixels
+from .device import Device, bind, read_pixels
 from .shader import ShaderError, read_shader
 
 KINDS = ("unorm", "snorm", "float")
@@ -134,11 +134,8 @@ def exact_values(device: Device, encoding: Encoding, normals, views, given) -> t
         outputs = [context.buffer(reserve=count * 16) for _ in range(2)]
         for binding, buffer in enumerate([*inputs, *outputs]):
             device.owned(stack, buffer).bind_to_storage_buffer(binding)
-        for unit, (name, table) in enumerate(encoding.tables().items()):
-            texture = device.owned(stack, device.upload(table))
-            if name in compute:
-                compute[name].value = unit
-                texture.use(unit)
+        tables = encoding.tables().items()
+        bind(compute, {name: device.owned(stack, device.upload(table)) for name, table in tables})
         compute.run(group_x=(count + 63) // 64)
         codes, decoded = (np.frombuffer(b.read(), np.float32).reshape(count, 4) for b in outputs)
     return codes, decoded

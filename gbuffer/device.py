@@ -107,10 +107,7 @@ class Device:
             raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
         try:
             framebuffer.use()
-            for unit, (name, texture) in enumerate(textures.items()):
-                if name in passed.program:
-                    passed.program[name].value = unit  # type: ignore[union-attr]
-                    texture.use(unit)
+            bind(passed.program, textures)
             passed.render(moderngl.TRIANGLES, vertices=3)
         finally:
             framebuffer.release()
@@ -156,6 +153,14 @@ class Device:
             if np.array_equal(decoded, expected):
                 return rounding
         return "other"
+
+
+def bind(program: Any, textures: Mapping[str, moderngl.Texture]) -> None:
+    """Textures to a program's samplers by name; those the compiler dropped are left out."""
+    for unit, (name, texture) in enumerate(textures.items()):
+        if name in program:
+            program[name].value = unit
+            texture.use(unit)
 
 
 @contextmanager

@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-FORMATS = ("table", "json", "csv", "markdown")
 GAP = 2
 # Longer cells are prose and may break between words.
 PROSE = 40
@@ -29,11 +28,17 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def _is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
+    return all(isinstance(row[column], int | float | None) for row in rows)
+
+
 def to_json(rows: Sequence[dict[str, Any]]) -> str:
+    """A list of flat rows."""
     return json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1) + "\n"
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> str:
+    """A header and a line for each row."""
     import pandas as pd
 
     return pd.DataFrame(list(rows), dtype=object).to_csv(index=False)
@@ -45,7 +50,7 @@ def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
     columns = list(rows[0])
     cells = [[_text(row[c]).replace("|", "\\|") for c in columns] for row in rows]
     widths = [max(len(c), *(len(line[i]) for line in cells)) for i, c in enumerate(columns)]
-    numeric = [all(isinstance(row[c], int | float | None) for row in rows) for c in columns]
+    numeric = [_is_numeric(rows, column) for column in columns]
 
     def line(values: Sequence[str]) -> str:
         padded = (v.rjust(w) if n else v.ljust(w) for v, w, n in zip(values, widths, numeric, strict=True))
@@ -101,10 +106,8 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
     widths = _widths(shown, columns)
     for column, needed in zip(columns, widths, strict=True):
-        numeric = all(isinstance(row[column], int | float | None) for row in shown)
-        table.add_column(
-            column.replace("_", " "), justify="right" if numeric else "left", width=needed, overflow="fold"
-        )
+        side = "right" if _is_numeric(shown, column) else "left"
+        table.add_column(column.replace("_", " "), justify=side, width=needed, overflow="fold")
     for row in shown:
         table.add_row(*(escape(_text(row[column])) for column in columns))
     stream = StringIO()
@@ -118,7 +121,7 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
 
 
 def written(rows: Sequence[dict[str, Any]], format: str, width: int = 200, expendable: Sequence[str] = ()) -> str:
-    """Rows in one of FORMATS. The JSON is a list of flat rows; an infinite figure is null there."""
+    """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON."""
     if format == "json":
         return to_json(rows)
     if format == "csv":
