@@ -20,6 +20,7 @@ NAMES = (
     "stereographic",
     "per_pixel_view",
     "octahedral",
+    "best_fit",
 )
 
 

@@ -26,6 +26,8 @@ FIGURES = [
     ("stereographic", "rg8", "nearest", hemisphere, 0.458578, 0.498289, 1.129611),
     ("xy", "rg8", "nearest", hemisphere, 0.467529, 0.778805, 5.959707),
     ("xyz_renormalised", "rgba8_snorm", "nearest", sphere, 0.170119, 0.184113, 0.390376),
+    # With the table of 1024 x 1024; the nearest of all codes has 0.027989 and 0.034788. The axes are the worst.
+    ("best_fit", "rgba8", "nearest", sphere, 0.031262, 0.038016, 0.317755),
     ("octahedral", "rg16_snorm", "nearest", sphere, 0.001306, 0.001439, 0.003709),
     ("octahedral", "rg16f", "nearest", sphere, 0.014993, 0.017636, 0.059345),
 ]
