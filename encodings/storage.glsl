@@ -1,47 +1,42 @@
-// Rounding in the shader, beside storage.py, for a device that does not round as the codec asks.
-// STORAGE_KIND is 0 for UNORM, 1 for SNORM, 2 for half, 3 for float; STORAGE_SCALE the integers that stand
-// for 1, by channel;
-// STORAGE_TRUNCATE is 1 for rounding toward zero; SHADER_ROUNDS is 1 where the shader must round before the write.
+// Rounding in the shader, beside storage.py, for a device that does not round as the codec asks. The kinds of format
+// are UNORM 0, SNORM 1, half 2, float 3.
 
-float round_half(float x) {
+float round_half(float x, bool truncates) {
     const float STEP = exp2(24.0);  // below 2^-14 half floats are multiples of 2^-24
     uint bits = floatBitsToUint(x), magnitude = bits & 0x7FFFFFFFu, sign = bits & 0x80000000u;
     if (magnitude >= 0x7F800000u) return x;
-#if STORAGE_TRUNCATE
-    float small = trunc(x * STEP) / STEP;
-    magnitude = min(magnitude & 0xFFFFE000u, 0x477FE000u);  // 65504
-#else
-    float small = roundEven(x * STEP) / STEP;
-    magnitude = (magnitude + 0xFFFu + (magnitude >> 13 & 1u)) & 0xFFFFE000u;
-    magnitude = magnitude > 0x477FE000u ? 0x7F800000u : magnitude;
-#endif
+    float small = (truncates ? trunc(x * STEP) : roundEven(x * STEP)) / STEP;
+    if (truncates) {
+        magnitude = min(magnitude & 0xFFFFE000u, 0x477FE000u);  // 65504
+    } else {
+        magnitude = (magnitude + 0xFFFu + (magnitude >> 13 & 1u)) & 0xFFFFE000u;
+        magnitude = magnitude > 0x477FE000u ? 0x7F800000u : magnitude;
+    }
     return abs(x) < exp2(-14.0) ? small : uintBitsToFloat(sign | magnitude);
 }
 
-float round_number(float x, int channel) {
+// A texel's number as a format of this kind keeps it; scale is the integer that stands for 1.
+float round_number(float x, int kind, float scale, bool truncates) {
+    if (kind >= 2) return kind == 2 ? round_half(x, truncates) : x;
+    float product = clamp(x, kind == 0 ? 0.0 : -1.0, 1.0) * scale;
+    return (truncates ? trunc(product) : roundEven(product)) / scale;
+}
+
+#ifdef STORAGE_KIND
+// Of one storage: STORAGE_KIND is its kind, STORAGE_SCALE the integers that stand for 1, by channel; STORAGE_TRUNCATE is
+// 1 for rounding toward zero, SHADER_ROUNDS is 1 where the shader must round before the write.
+
+vec4 round_texel(vec4 texel) {
     const float scales[] = STORAGE_SCALE;
-    float scale = scales[channel];
-#if STORAGE_KIND == 0
-    float product = clamp(x, 0.0, 1.0) * scale;
-#elif STORAGE_KIND == 1
-    float product = clamp(x, -1.0, 1.0) * scale;
-#endif
-#if STORAGE_KIND >= 2
-    return STORAGE_KIND == 2 ? round_half(x) : x;
-#elif STORAGE_TRUNCATE
-    return trunc(product) / scale;
-#else
-    return roundEven(product) / scale;
-#endif
+    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i], STORAGE_KIND, scales[i], STORAGE_TRUNCATE != 0);
+    return texel;
 }
 
 // Numbers in [-1, 1] to what is written to the target, and back from what is read.
 vec4 to_texel(vec4 code) {
     vec4 texel = STORAGE_KIND == 0 ? code * 0.5 + 0.5 : code;
-#if SHADER_ROUNDS
-    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i], i);
-#endif
-    return texel;
+    return SHADER_ROUNDS != 0 ? round_texel(texel) : texel;
 }
 
 vec4 from_texel(vec4 texel) { return STORAGE_KIND == 0 ? texel * 2.0 - 1.0 : texel; }
+#endif

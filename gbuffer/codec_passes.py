@@ -14,10 +14,10 @@ from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES, Storage
 from .device import Device, bind, read_pixels
+from .formats import R32F
 from .shader import ShaderError, read_shader
 
 KINDS = ("unorm", "snorm", "float")
-DEPTH = Storage("r32f", "R32F", "float", (32,), 0x822E)
 
 
 def encoding_defines(encoding: Encoding) -> dict[str, object]:
@@ -43,11 +43,15 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
     }
 
 
+def storage_kind(storage: Storage) -> int:
+    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, float 3."""
+    return KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] == 32)
+
+
 def storage_defines(storage: Storage, rounding: str, shader_rounds: bool) -> dict[str, object]:
     """The macros that make `storage.glsl` speak of a storage."""
-    kind = KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] == 32)
     return {
-        "STORAGE_KIND": kind,
+        "STORAGE_KIND": storage_kind(storage),
         "STORAGE_SCALE": tuple(float(storage.scale(i % storage.channels)) for i in range(4)),
         "STORAGE_TRUNCATE": int(rounding == "truncate"),
         "SHADER_ROUNDS": int(shader_rounds),
@@ -107,7 +111,7 @@ class CodecPasses:
             sources = {name: device.owned(stack, device.upload(pixels)) for name, pixels in given.items()}
             texels, depths, *results = (
                 device.owned(stack, device.target(size, kind))
-                for kind in (storage, DEPTH, STORAGES["rgba32f"], STORAGES["rgba32f"])
+                for kind in (storage, R32F, STORAGES["rgba32f"], STORAGES["rgba32f"])
             )
             kept = [texels, depths] if self._codec.encoding.sign_bits else [texels]
             device.render(self._encode, kept, **sources, **self._tables)

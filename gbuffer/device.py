@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import moderngl
 import numpy as np
@@ -20,7 +20,12 @@ SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 DITHER = 0x0BD0
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
 
-Owned = TypeVar("Owned", moderngl.Texture, moderngl.VertexArray, moderngl.Buffer, moderngl.ComputeShader)
+
+class _Releasable(Protocol):
+    def release(self) -> None: ...
+
+
+Owned = TypeVar("Owned", bound=_Releasable)
 
 
 class NoDeviceError(Exception):
@@ -54,7 +59,13 @@ class Device:
         self.version = str(self.context.info["GL_VERSION"])
         self.is_software = any(word in self.renderer.lower() for word in SOFTWARE)
         self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
+        info = self.context.info
+        self.max_targets = int(min(info["GL_MAX_DRAW_BUFFERS"], info["GL_MAX_COLOR_ATTACHMENTS"]))
+        samples = ("GL_MAX_SAMPLES", "GL_MAX_COLOR_TEXTURE_SAMPLES", "GL_MAX_DEPTH_TEXTURE_SAMPLES")
+        self.max_samples = int(min(info[name] for name in samples))
         self._native: dict[str, str] = {}
+        # In use while no pass is: a framebuffer that is released while in use leaves an error for the next one.
+        self.idle = self.context.simple_framebuffer((1, 1))
         # GL dithers by default, where it dithers at all: what is stored would not be what was written.
         self.context.disable_direct(DITHER)
 
@@ -64,10 +75,20 @@ class Device:
         Raises:
             ShaderError: it does not compile; the message names the file and the line.
         """
-        vertex, fragment = Source("fullscreen.vert"), Source(path, defines, names)
-        with explained(fragment):
-            program = self.context.program(vertex_shader=vertex.text, fragment_shader=fragment.text)
-        return self.context.vertex_array(program, [])
+        return self.context.vertex_array(self.program("fullscreen.vert", path, defines, names), [])
+
+    def program(
+        self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object] | None = None, names=None
+    ):
+        """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
+        first, second = Source(vertex, defines, names), Source(fragment, defines, names)
+        try:
+            return self.context.program(vertex_shader=first.text, fragment_shader=second.text)
+        except moderngl.Error as error:
+            # A complaint about a pair does not always say which of the two it is about: the vertex shader alone tells.
+            with explained(first):
+                self.context.program(vertex_shader=first.text).release()
+            raise ShaderError(second.explain(str(error))) from error
 
     def compute_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         """A compute shader. Raises ShaderError as `fragment_pass` does."""
@@ -75,16 +96,18 @@ class Device:
         with explained(source):
             return self.context.compute_shader(source.text)
 
-    def target(self, size: tuple[int, int], storage: Storage) -> moderngl.Texture:
+    def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
         """A texture of a storage format, to render to and to fetch from."""
-        dtype = {"float": {16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
+        dtype = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
         texture = self.context.texture(
             size,
             storage.channels,
+            samples=samples if samples > 1 else 0,
             dtype=dtype.get(storage.bits[0], "f1"),
             internal_format=storage.internal_format,
         )
-        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        if samples == 1:
+            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return texture
 
     def upload(self, pixels: np.ndarray) -> moderngl.Texture:
@@ -110,6 +133,7 @@ class Device:
             bind(passed.program, textures)
             passed.render(moderngl.TRIANGLES, vertices=3)
         finally:
+            self.idle.use()
             framebuffer.release()
 
     def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
@@ -128,8 +152,9 @@ class Device:
     def owned(stack: ExitStack, thing: Owned) -> Owned:
         """`thing`, released with the stack; a pass takes its program along, which a vertex array does not own."""
         stack.callback(thing.release)
-        if isinstance(thing, moderngl.VertexArray):
-            stack.callback(thing.program.release)
+        program = getattr(thing, "program", None)
+        if program:
+            stack.callback(program.release)
         return thing
 
     def native_rounding(self, storage: Storage) -> str:
@@ -155,12 +180,20 @@ class Device:
         return "other"
 
 
-def bind(program: Any, textures: Mapping[str, moderngl.Texture]) -> None:
-    """Textures to a program's samplers by name; those the compiler dropped are left out."""
-    for unit, (name, texture) in enumerate(textures.items()):
-        if name in program:
-            program[name].value = unit
-            texture.use(unit)
+def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[moderngl.Texture]]) -> None:
+    """Textures, and lists of them for arrays, to samplers by name; those the compiler dropped are left out."""
+    unit = 0
+    for name, given in textures.items():
+        if name not in program:
+            continue
+        several = [given] if isinstance(given, moderngl.Texture) else list(given)
+        # The compiler shortens an array whose last elements nobody reads.
+        several = several[: program[name].array_length]
+        units = list(range(unit, unit + len(several)))
+        program[name].value = units[0] if len(units) == 1 else units
+        for at, texture in zip(units, several, strict=True):
+            texture.use(at)
+        unit += len(units)
 
 
 @contextmanager

@@ -76,7 +76,9 @@ def read_shader(path: Path) -> str:
 
 
 def glsl_value(value) -> str:
-    """A Python number, tuple of numbers, or text as GLSL writes it."""
+    """A Python number, tuple of numbers (of ints if all are), or text as GLSL writes it."""
+    if isinstance(value, tuple) and all(isinstance(v, int) for v in value):
+        return f"int[{len(value)}]({', '.join(map(str, value))})"
     if isinstance(value, tuple):
         return f"float[{len(value)}]({', '.join(repr(float(v)) for v in value)})"
     return repr(value) if isinstance(value, float) else str(value)

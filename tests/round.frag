@@ -7,5 +7,5 @@ out vec4 texel;
 
 void main() {
     texel = texelFetch(source, ivec2(gl_FragCoord.xy), 0);
-    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i], i);
+    texel = round_texel(texel);
 }

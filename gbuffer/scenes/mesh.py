@@ -15,16 +15,18 @@ class Mesh:
         positions: (vertices, 3), float64.
         normals: (vertices, 3), unit, pointing out, float64.
         triangles: (triangles, 3) vertex indices; no order of corners is promised, the normals say which side is out.
+        uv: (vertices, 2), where a vertex lies on its surface; a normal map's tangents follow from it.
     """
 
     positions: np.ndarray
     normals: np.ndarray
     triangles: np.ndarray
+    uv: np.ndarray
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
         """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""
         normals = self.normals @ np.linalg.inv(linear).T
-        return Mesh(self.positions @ linear + np.asarray(translation), _unit(normals), self.triangles)
+        return Mesh(self.positions @ linear + np.asarray(translation), _unit(normals), self.triangles, self.uv)
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
@@ -34,6 +36,7 @@ def joined(meshes: list[Mesh]) -> Mesh:
         np.concatenate([m.positions for m in meshes]),
         np.concatenate([m.normals for m in meshes]),
         np.concatenate([m.triangles + start for m, start in zip(meshes, starts, strict=True)]),
+        np.concatenate([m.uv for m in meshes]),
     )
 
 
@@ -56,14 +59,62 @@ def grid_triangles(rows: int, columns: int) -> np.ndarray:
     return np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
 
 
+def wound(mesh: Mesh) -> np.ndarray:
+    """The mesh's triangles, corners counter-clockwise as seen from where the normals point; (triangles, 3)."""
+    corners = mesh.positions[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inwards = np.sum(across * mesh.normals[mesh.triangles].sum(axis=1), axis=1) < 0
+    triangles = mesh.triangles.copy()
+    triangles[inwards] = triangles[inwards][:, ::-1]
+    return triangles
+
+
+def grid_uv(rows: int, columns: int) -> np.ndarray:
+    """(u, v) of a (rows + 1) x (columns + 1) grid of vertices, u along the columns, each from 0 to 1."""
+    v, u = np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
+    return np.stack([u.ravel(), v.ravel()], axis=1)
+
+
+def tangents(mesh: Mesh) -> np.ndarray:
+    """The direction in which u grows, (vertices, 4): unit, at right angles to the normal, and the bitangent's sign.
+
+    The bitangent is sign x (normal x tangent). Where u grows nowhere, as at a pole, the tangent is any direction.
+    """
+    corners, uv = mesh.positions[mesh.triangles], mesh.uv[mesh.triangles]
+    (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
+    # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.
+    along_u = e1 * d2[:, 1:] - e2 * d1[:, 1:]
+    along_v = e2 * d1[:, :1] - e1 * d2[:, :1]
+    side = np.sign(d1[:, :1] * d2[:, 1:] - d2[:, :1] * d1[:, 1:])
+    t, b = np.zeros_like(mesh.positions), np.zeros_like(mesh.positions)
+    for corner in mesh.triangles.T:
+        np.add.at(t, corner, along_u * side)
+        np.add.at(b, corner, along_v * side)
+    n = mesh.normals
+    least = np.eye(3)[np.argmin(abs(n), axis=1)]
+    t = t - n * np.sum(n * t, axis=1, keepdims=True)
+    lost = np.linalg.norm(t, axis=1) < 1e-9
+    t[lost] = np.cross(n[lost], least[lost])
+    sign = np.where(np.sum(np.cross(n, t) * b, axis=1) < 0, -1.0, 1.0)
+    return np.concatenate([_unit(t), sign[:, None]], axis=1)
+
+
+def plane(width: float, depth: float, repeat: float = 1.0) -> Mesh:
+    """A level rectangle around the origin that faces up (+y); its uv run from 0 to `repeat`."""
+    corners = np.array([(x, 0.0, z) for z in (0.5, -0.5) for x in (-0.5, 0.5)])
+    up = np.tile([0.0, 1.0, 0.0], (4, 1))
+    return Mesh(corners * (width, 1.0, depth), up, grid_triangles(1, 1), grid_uv(1, 1) * repeat)
+
+
 def sphere(radius: float, slices: int, stacks: int) -> Mesh:
     """A sphere of slices around the z axis and stacks along it."""
     polar = np.linspace(0.0, np.pi, stacks + 1)[:, None]
-    around = np.linspace(0.0, 2 * np.pi, slices + 1)[None, :]
+    # The last meridian is the first one to the bit, so that the seam neither gapes nor overlaps.
+    around = (np.arange(slices + 1) % slices * (2 * np.pi / slices))[None, :]
     normals = np.stack(
         [np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar) * np.ones_like(around)], axis=-1
     ).reshape(-1, 3)
-    return Mesh(radius * normals, normals, grid_triangles(stacks, slices))
+    return Mesh(radius * normals, normals, grid_triangles(stacks, slices), grid_uv(stacks, slices))
 
 
 def box(width: float, height: float, depth: float) -> Mesh:
@@ -78,7 +129,7 @@ def box(width: float, height: float, depth: float) -> Mesh:
             positions += [(n + a * u + b * v) * half for a in (-1, 1) for b in (-1, 1)]
             normals += [n] * 4
     triangles = np.concatenate([grid_triangles(1, 1) + 4 * face for face in range(6)])
-    return Mesh(np.array(positions), np.array(normals), triangles)
+    return Mesh(np.array(positions), np.array(normals), triangles, np.tile(grid_uv(1, 1), (6, 1)))
 
 
 def _unit(v: np.ndarray) -> np.ndarray:

@@ -18,12 +18,16 @@ import numpy as np
 
 from .mesh import Mesh, box, joined, rotation, sphere
 from .rasterise import Camera, Rendered, rasterise
+from .scene import Light, Material, Part, Scene, View, placed
+from .setting import Setting, coloured
 from .teapot import HEIGHT, teapot
 
 TITLE = "the seeds' playground, without its four lamp arms"
 CAMERA = Camera(width=640, height=480, fov=60.0, near=0.1, far=100.0)
 EYE = (0.0, 0.0, -5.0)
 TEAPOT_CELLS = 16
+FRAMES = 1
+TO_VIEW = np.diag([1.0, 1.0, -1.0])
 
 TEAPOTS = ((3, 2, -1), (-3, -2, -1), (3, -2, -1), (-3, 2, -1))
 SPHERES = (((0, -2, -3), 1.0), ((2, -2, 1), 1.0), ((-2, 3, 3), 1.0), ((0, 0, 20), 15.0))
@@ -44,8 +48,46 @@ def meshes() -> list[Mesh]:
     ]
 
 
+def in_view_space() -> list[Mesh]:
+    """The scene's objects as the camera sees them."""
+    return [mesh.placed(TO_VIEW, -(np.array(EYE) @ TO_VIEW)) for mesh in meshes()]
+
+
 @cache
 def playground() -> Rendered:
-    """The scene as its camera sees it."""
-    to_view = np.diag([1.0, 1.0, -1.0])
-    return rasterise(joined(meshes()).placed(to_view, -(np.array(EYE) @ to_view)), CAMERA)
+    """The scene's normals as its camera sees them."""
+    return rasterise(joined(in_view_space()), CAMERA)
+
+
+def lit_playground(setting: Setting) -> Scene:
+    """The scene with materials, `setting.lights` point lights around its middle and a sun; the eye is the origin."""
+    rng = np.random.default_rng(setting.seed)
+    pot, ball, slab = 0, 1, 2
+    kinds = [pot] * len(TEAPOTS) + [ball] * len(SPHERES) + [slab] * len(BOXES)
+    here = placed((0, 0, 0))
+    parts = tuple(
+        Part(m, here, np.array([kind]), two_sided=True) for m, kind in zip(in_view_space(), kinds, strict=True)
+    )
+    materials = (
+        Material(albedo=(0.5, 0.42, 0.3), specular=(0.3, 0.28, 0.25), power=96.0),
+        Material(albedo=(0.3, 0.35, 0.45), specular=(0.2, 0.2, 0.2), power=32.0),
+        Material(albedo=(0.4, 0.4, 0.38), specular=(0.08, 0.08, 0.08), power=16.0),
+    )
+    view = View((0, 0, 0), (0, 0, -1.0), CAMERA.fov, CAMERA.near, CAMERA.far)
+    return Scene(
+        parts=parts,
+        materials=materials,
+        lights=(Light("sun", (0.5, 0.48, 0.45), direction=(-0.36, -0.48, -0.8)), *_lights(setting, rng)),
+        ambient=(0.05, 0.05, 0.06),
+        view=view,
+        previous=View((0.05, 0, 0), (0.05, 0, -1.0), CAMERA.fov, CAMERA.near, CAMERA.far),
+    )
+
+
+def _lights(setting: Setting, rng: np.random.Generator) -> list[Light]:
+    turn = 2 * np.pi * (setting.time + rng.uniform(0, 1, setting.lights))
+    out, depth = rng.uniform(0.5, 6.0, setting.lights), rng.uniform(-10.0, -2.5, setting.lights)
+    return [
+        Light("point", tuple(colour), (float(r * np.cos(a)), float(r * np.sin(a)), float(z)), 4.0)
+        for colour, a, r, z in zip(coloured(rng, setting.lights, 1.2), turn, out, depth, strict=True)
+    ]

@@ -8,9 +8,11 @@ on one side of the plane y = 0 and mirrored.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from .mesh import Mesh, grid_triangles, joined
+from .mesh import Mesh, grid_triangles, grid_uv, joined
 
 # A quarter circle's inner control points lie at this share of the radius, unless a circle names another.
 QUARTER = 0.56
@@ -98,7 +100,7 @@ def _patch_mesh(patch: np.ndarray, steps: int) -> Mesh:
     flat = np.linalg.norm(normals, axis=1) < 1e-9
     normals[flat] = _evaluate(patch, np.clip(u[flat], 1e-4, 1 - 1e-4), np.clip(v[flat], 1e-4, 1 - 1e-4))[1]
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Mesh(positions, normals, grid_triangles(steps, steps))
+    return Mesh(positions, normals, grid_triangles(steps, steps), grid_uv(steps, steps))
 
 
 def teapot(steps: int) -> Mesh:
@@ -113,4 +115,4 @@ def _outward(mesh: Mesh, index: int) -> Mesh:
     turned = index < 4 * len(PROFILES)
     inside = np.array([0.0, 0.0, HEIGHT / 2]) if turned else middle * (1.0, 0.0, 1.0)
     out = np.sum(mesh.normals * (mesh.positions - inside))
-    return mesh if out > 0 else Mesh(mesh.positions, -mesh.normals, mesh.triangles)
+    return mesh if out > 0 else replace(mesh, normals=-mesh.normals)

@@ -1,7 +1,7 @@
 #version 430
-// One triangle that covers the target; no vertex buffer.
+// One triangle that covers the target, at the far plane; no vertex buffer.
 
 void main() {
     vec2 corner = vec2(gl_VertexID << 1 & 2, gl_VertexID & 2);
-    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
+    gl_Position = vec4(corner * 2.0 - 1.0, 1.0, 1.0);
 }

@@ -1,0 +1,360 @@
+"""The passes that pipelines are made of. Each is built once for a frame and then run as often as wanted.
+
+A stage is a name and a builder: given a frame, it compiles, and returns what to run. No stage knows which pipeline it
+is in; what differs between two uses of one stage is an argument.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from . import raw
+from .formats import FORMATS
+from .frame import SHADOW_SIZE, Frame
+from .scenes.mesh import Mesh, wound
+from .scenes.scene import Light
+from .volumes import ball, cone
+
+Run = Callable[[], None]
+
+# In the shadow map surfaces lie this many of their own slopes, and this many of the smallest steps, farther away:
+# the three by three texels that are compared reach two texels from the centre.
+SHADOW_OFFSET = (3.0, 8.0)
+# What light.frag's ACCUMULATES counts.
+ACCUMULATES = ("light", "colour", "by_id")
+# Of surfaces that meet in one depth the last wins, in the first geometry pass as in the second.
+NEAREST = "<="
+ADD = (moderngl.ONE, moderngl.ONE)
+OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A pass of a pipeline: its name in tables, and what makes it for a frame."""
+
+    name: str
+    build: Callable[[Frame], Run]
+
+
+def _state(frame: Frame, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
+    """Depth test, blending and culling of the draws that follow; everything else off."""
+    context = frame.context
+    flags = moderngl.NOTHING
+    if depth:
+        context.depth_func = depth
+        flags |= moderngl.DEPTH_TEST
+    if blend:
+        context.blend_func = blend
+        flags |= moderngl.BLEND
+    if cull:
+        context.cull_face = cull
+        flags |= moderngl.CULL_FACE
+    context.enable_only(flags)
+
+
+def shadow_map() -> Stage:
+    """Depth as the sun sees it; nothing where the frame has no shadows."""
+
+    def build(frame: Frame) -> Run:
+        if not frame.shadows:
+            return lambda: None
+        target = frame.device.owned(frame.stack, frame.context.framebuffer(depth_attachment=frame.shadow_map))
+        casters = frame.geometry(frame.program("shadow.vert", "nothing.frag"))
+
+        def run() -> None:
+            target.use()
+            target.viewport = (0, 0, SHADOW_SIZE, SHADOW_SIZE)
+            target.clear(depth=1.0)
+            _state(frame, "<")
+            frame.context.polygon_offset = SHADOW_OFFSET
+            frame.prepare(casters.program, frame.plan.size)
+            casters.draw("casters")
+            frame.context.polygon_offset = (0.0, 0.0)
+
+        return run
+
+    return Stage("shadow_map", build)
+
+
+def geometry(stipple: bool = False, emissive: str | None = None) -> Stage:
+    """The first geometry pass: surfaces to the G-buffer.
+
+    Args:
+        stipple: whether transparent surfaces follow, each layer in one pixel of four; else they are left out.
+        emissive: whose own light starts the light buffer: "all", "general" or nobody's (None).
+    """
+
+    def build(frame: Frame) -> Run:
+        targets = [*frame.gbuffer, *frame.light[:1]] if emissive else frame.gbuffer
+        target = frame.framebuffer(targets, frame.depth, writes_depth=True)
+        shared = {"WRITES_EMISSIVE": int(bool(emissive)), "SPECIAL_APART": str(emissive == "general").lower()}
+        opaque = frame.geometry(frame.program("geometry.vert", "gbuffer.frag", STIPPLE=0, **shared))
+        glass = frame.geometry(frame.program("geometry.vert", "gbuffer.frag", STIPPLE=1, **shared)) if stipple else None
+
+        def run() -> None:
+            target.use()
+            target.clear()
+            raw.clear_depth_stencil()
+            _state(frame, NEAREST)
+            frame.prepare(opaque.program, frame.buffer_size)
+            opaque.draw("opaque")
+            if glass:
+                frame.prepare(glass.program, frame.buffer_size)
+                glass.draw("transparent")
+
+        return run
+
+    return Stage("geometry", build)
+
+
+def linear_depth() -> Stage:
+    """The native depth buffer resolved to linear view depth; nothing where the layout keeps a depth of its own."""
+
+    def build(frame: Frame) -> Run:
+        if "depth" in frame.plan.layout.components:
+            return lambda: None
+        target = frame.framebuffer([frame.linear_depth])
+        resolve = frame.fullscreen(frame.program("fullscreen.vert", "linear_depth.frag"))
+
+        def run() -> None:
+            target.use()
+            _state(frame, None)
+            frame.prepare(resolve.program, frame.buffer_size, native_depth=frame.depth.texture)
+            resolve.render(moderngl.TRIANGLES, vertices=3)
+
+        return run
+
+    return Stage("linear_depth", build)
+
+
+def gbuffer_textures(frame: Frame) -> dict[str, Any]:
+    """What a pass that reads the G-buffer binds."""
+    given: dict[str, Any] = {"gbuffer": frame.gbuffer}
+    if "depth" not in frame.plan.layout.components:
+        given["linear_depth"] = frame.linear_depth
+    return given
+
+
+def unpacked(frame: Frame) -> list[moderngl.Texture]:
+    """The G-buffer at one sample as passes understand it, on what is covered; 0 elsewhere.
+
+    Returns:
+        float textures: position and instance, direction and kind, albedo and specular power, specular colour.
+    """
+    textures = [frame.texture(frame.buffer_size, FORMATS["rgba32f"], 1) for _ in range(4)]
+    target = frame.framebuffer(textures, frame.depth)
+    unpack = frame.fullscreen(frame.program("fullscreen.vert", "unpack.frag"))
+    target.use()
+    target.clear()
+    _state(frame, ">")
+    frame.prepare(unpack.program, frame.buffer_size, **gbuffer_textures(frame))
+    unpack.render(moderngl.TRIANGLES, vertices=3)
+    return textures
+
+
+class LightVolumes:
+    """Every light on what its bounds enclose: by the stencil for point and spot lights, the whole screen for a sun.
+
+    Attributes:
+        queries: where set, a query around the shading of each local light and not of its marking.
+    """
+
+    def __init__(self, frame: Frame, accumulates: str, clears: int):
+        self._frame, self._clears = frame, clears
+        self._target = frame.framebuffer(frame.light, frame.depth)
+        self._cleared = [frame.framebuffer([texture]) for texture in frame.light[clears:]]
+        kind = ACCUMULATES.index(accumulates)
+        self._mark = frame.program("volume.vert", "nothing.frag")
+        self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind)
+        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind))
+        self._shapes = {kind: self._upload(shape()) for kind, shape in (("point", ball), ("spot", cone))}
+        self.queries: list[moderngl.Query] | None = None
+
+    def _upload(self, bounds: Mesh) -> tuple[moderngl.VertexArray, moderngl.VertexArray]:
+        corners = bounds.positions[wound(bounds)].astype(np.float32)
+        vertices = self._frame.context.buffer(corners.tobytes())
+        self._frame.device.owned(self._frame.stack, vertices)
+        mark, shade = (self._frame.array(p, [(vertices, "3f", "in_position")]) for p in (self._mark, self._shade))
+        return mark, shade
+
+    def __call__(self) -> None:
+        frame = self._frame
+        for target in self._cleared:
+            target.clear()
+        self._target.use()
+        textures = gbuffer_textures(frame)
+        for index, light in enumerate(frame.scene_buffers.lights):
+            if light.kind == "sun":
+                self._sunlight(index, textures)
+        frame.context.enable_direct(raw.STENCIL_TEST)
+        frame.context.enable_direct(raw.DEPTH_CLAMP)
+        for program in (self._mark, self._shade):
+            frame.prepare(program, frame.buffer_size, **textures)
+        for index, light in enumerate(frame.scene_buffers.lights):
+            if light.kind != "sun":
+                self._local(index, light)
+        frame.context.disable_direct(raw.STENCIL_TEST)
+        frame.context.disable_direct(raw.DEPTH_CLAMP)
+
+    def _sunlight(self, index: int, textures: dict[str, Any]) -> None:
+        # The triangle lies at the far plane: it is in front of nothing but the background.
+        _state(self._frame, ">", ADD)
+        program = self._sun.program
+        self._frame.prepare(program, self._frame.buffer_size, **textures)
+        program["light"] = index
+        self._sun.render(moderngl.TRIANGLES, vertices=3)
+
+    def _local(self, index: int, light: Light) -> None:
+        mark, shade = self._shapes[light.kind]
+        _state(self._frame, "<=")
+        raw.mark_volume()
+        self._mark["light"] = index
+        mark.render()
+        # Back faces only: they cover the volume once, and the eye may be inside.
+        _state(self._frame, None, ADD, "front")
+        raw.shade_marked()
+        self._shade["light"] = index
+        if self.queries is None:
+            shade.render()
+            return
+        query = self._frame.context.query(samples=True)
+        with query:
+            shade.render()
+        self.queries.append(query)
+
+
+def lights(accumulates: str) -> Stage:
+    """All lights, added up in the light buffer.
+
+    Args:
+        accumulates: "light" for a second geometry pass, "colour" that is finished, or "by_id": colour for general
+            materials and light for special ones. Colour is added to what the geometry pass began with.
+    """
+    return Stage("lights", lambda frame: LightVolumes(frame, accumulates, clears=int(accumulates != "light")))
+
+
+def screen(special_apart: bool) -> Stage:
+    """The screen-space pass: ambient light, and finished colour from the light buffer.
+
+    Args:
+        special_apart: whether special materials get ambient light only.
+    """
+
+    def build(frame: Frame) -> Run:
+        target = frame.framebuffer([frame.final], frame.final_depth)
+        program = frame.program("fullscreen.vert", "screen.frag", SPECIAL_APART=str(special_apart).lower())
+        covered = frame.fullscreen(program)
+
+        def run() -> None:
+            target.use()
+            target.clear()
+            _state(frame, ">")
+            frame.prepare(program, frame.buffer_size, light_texels=frame.light, **gbuffer_textures(frame))
+            covered.render(moderngl.TRIANGLES, vertices=3)
+
+        return run
+
+    return Stage("screen", build)
+
+
+def material(draws: str, adds: bool = False, filters: bool = False, blends: bool = False) -> Stage:
+    """The second geometry pass: materials under the light that was accumulated.
+
+    Args:
+        draws: which of the scene's lists.
+        adds: to what is there already, its ambient light included; else the image begins here.
+        filters: whether the light buffer has a size of its own, and is read by the discontinuity-sensitive filter.
+        blends: whether the surfaces are transparent.
+    """
+
+    def build(frame: Frame) -> Run:
+        begins = not (adds or blends)
+        # Behind a filter the G-buffer's depth is another size: depth is drawn anew.
+        target = frame.framebuffer([frame.final], frame.final_depth, writes_depth=filters and begins)
+        program = frame.program("geometry.vert", "material.frag", ADDS=int(adds), FILTERS=int(filters))
+        surfaces = frame.geometry(program)
+
+        def run() -> None:
+            target.use()
+            if begins:
+                target.clear()
+            if begins and filters:
+                raw.clear_depth_stencil()
+            _state(frame, NEAREST, ADD if adds else OVER if blends else None)
+            read = gbuffer_textures(frame) if filters else {}
+            frame.prepare(program, frame.buffer_size, light_texels=frame.light, **read)
+            if "full_size" in program:
+                program["full_size"] = frame.plan.size
+            surfaces.draw(draws)
+
+        return run
+
+    return Stage("transparent" if blends else "material", build)
+
+
+def forward(lights: bool = True) -> Stage:
+    """All opaque surfaces, each under all lights at once, or under none of them."""
+
+    def build(frame: Frame) -> Run:
+        target = frame.framebuffer([frame.final], frame.final_depth, writes_depth=True)
+        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+
+        def run() -> None:
+            target.use()
+            target.clear()
+            raw.clear_depth_stencil()
+            _state(frame, NEAREST)
+            frame.prepare(surfaces.program, frame.plan.size)
+            surfaces.program["base"] = 1.0
+            surfaces.program["lit_by"] = (0, len(frame.scene.lights) if lights else 0)
+            surfaces.draw("opaque")
+
+        return run
+
+    return Stage("forward" if lights else "ambient", build)
+
+
+def forward_lights() -> Stage:
+    """For each light the opaque surfaces within its reach, added to what is there."""
+
+    def build(frame: Frame) -> Run:
+        target = frame.framebuffer([frame.final], frame.final_depth)
+        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+
+        def run() -> None:
+            target.use()
+            _state(frame, NEAREST, ADD)
+            frame.prepare(surfaces.program, frame.plan.size)
+            surfaces.program["base"] = 0.0
+            for index in range(len(frame.scene.lights)):
+                surfaces.program["lit_by"] = (index, index + 1)
+                surfaces.draw(index)
+
+        return run
+
+    return Stage("lights", build)
+
+
+def transparent() -> Stage:
+    """Transparent surfaces, farthest first, each under all lights: no deferred pass holds more than one surface."""
+
+    def build(frame: Frame) -> Run:
+        target = frame.framebuffer([frame.final], frame.final_depth)
+        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+
+        def run() -> None:
+            target.use()
+            _state(frame, "<", OVER)
+            frame.prepare(surfaces.program, frame.plan.size)
+            surfaces.program["base"] = 1.0
+            surfaces.program["lit_by"] = (0, len(frame.scene.lights))
+            surfaces.draw("transparent")
+
+        return run
+
+    return Stage("transparent", build)

@@ -1,0 +1,113 @@
+"""The few calls of OpenGL that moderngl does not have: depth with stencil, two-sided stencil, masks of the moment."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import moderngl
+
+TEXTURE_2D, TEXTURE_2D_MULTISAMPLE = 0x0DE1, 0x9100
+DEPTH32F_STENCIL8 = 0x8CAD
+DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x821A, 0x8D40, 0x8CD5
+FRAMEBUFFER_DEPTH_STENCIL = 0x84F9
+STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
+FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
+ALWAYS, NOTEQUAL = 0x0207, 0x0205
+KEEP, ZERO, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x8507, 0x8508
+
+_SIGNATURES = {
+    "glGenTextures": "ip",
+    "glDeleteTextures": "ip",
+    "glBindTexture": "ui",
+    "glTexStorage2D": "uiuii",
+    "glTexStorage2DMultisample": "uiuiib",
+    "glFramebufferTexture2D": "uuuui",
+    "glCheckFramebufferStatus": "u",
+    "glClearBufferfi": "uifi",
+    "glColorMask": "bbbb",
+    "glStencilFunc": "uiu",
+    "glStencilOpSeparate": "uuuu",
+}
+_TYPES = {"i": ctypes.c_int, "u": ctypes.c_uint, "f": ctypes.c_float, "b": ctypes.c_ubyte, "p": ctypes.c_void_p}
+
+
+@cache
+def _lookup() -> Callable[[bytes], int | None]:
+    """The function that finds GL's functions for the current context."""
+    for library, name in (("libEGL.so.1", "eglGetProcAddress"), ("libGL.so.1", "glXGetProcAddress")):
+        try:
+            find = getattr(ctypes.CDLL(library), name)
+        except (OSError, AttributeError):
+            continue
+        find.restype, find.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
+        return find
+    raise OSError("neither libEGL.so.1 nor libGL.so.1 can be loaded")
+
+
+@cache
+def function(name: str) -> Callable[..., Any]:
+    """A GL function by name, with its C types."""
+    address = _lookup()(name.encode())
+    arguments = [_TYPES[letter] for letter in _SIGNATURES[name]]
+    return ctypes.CFUNCTYPE(ctypes.c_uint, *arguments)(address or 0)
+
+
+class DepthStencil:
+    """A depth and stencil texture, D32F S8, that passes draw against and shaders read the depth of.
+
+    Args:
+        context: a GL context, current.
+        size: width and height in pixels.
+        samples: 1, or as many as the device has.
+    """
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int], samples: int):
+        self._target = TEXTURE_2D_MULTISAMPLE if samples > 1 else TEXTURE_2D
+        number = ctypes.c_uint()
+        function("glGenTextures")(1, ctypes.byref(number))
+        self._number = number.value
+        function("glBindTexture")(self._target, self._number)
+        if samples > 1:
+            function("glTexStorage2DMultisample")(self._target, samples, DEPTH32F_STENCIL8, *size, 1)
+        else:
+            function("glTexStorage2D")(self._target, 1, DEPTH32F_STENCIL8, *size)
+        function("glBindTexture")(self._target, 0)
+        self.texture = context.external_texture(self._number, size, 1, samples if samples > 1 else 0, "f4")
+        if samples == 1:
+            self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+
+    def attach(self, framebuffer: moderngl.Framebuffer) -> None:
+        """Make it a framebuffer's depth and stencil."""
+        framebuffer.use()
+        function("glFramebufferTexture2D")(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, self._target, self._number, 0)
+        status = function("glCheckFramebufferStatus")(FRAMEBUFFER)
+        if status != COMPLETE:
+            raise moderngl.Error(f"the framebuffer is not complete ({status:#x})")
+
+    def release(self) -> None:
+        """Free it on the device."""
+        function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(self._number)))
+
+
+def clear_depth_stencil() -> None:
+    """Depth to 1 and stencil to 0 in the framebuffer in use."""
+    function("glClearBufferfi")(FRAMEBUFFER_DEPTH_STENCIL, 0, 1.0, 0)
+
+
+def mark_volume() -> None:
+    """Draws count in the stencil, and change nothing else: up where a back face lies behind what is drawn, down where
+    a front face does. What lies inside a closed volume is left at 1, wherever the eye is (depth fail)."""
+    function("glColorMask")(0, 0, 0, 0)
+    function("glStencilFunc")(ALWAYS, 0, 0xFF)
+    function("glStencilOpSeparate")(BACK, KEEP, INCR_WRAP, KEEP)
+    function("glStencilOpSeparate")(FRONT, KEEP, DECR_WRAP, KEEP)
+
+
+def shade_marked() -> None:
+    """Draws change colour where the stencil is not 0, and set it to 0."""
+    function("glColorMask")(1, 1, 1, 1)
+    function("glStencilFunc")(NOTEQUAL, 0, 0xFF)
+    function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, ZERO, ZERO)

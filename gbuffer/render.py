@@ -1,0 +1,156 @@
+"""Frames rendered, timed and counted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from .device import Device, read_pixels
+from .formats import FORMATS
+from .frame import Frame, Plan
+from .layouts import DEPTH_STENCIL_BYTES, LayoutError
+from .passes import Run, unpacked
+from .pipelines import Pipeline
+from .scenes.scene import Scene
+
+WALL, QUERY = "wall clock after each pass", "GL timer query"
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Milliseconds of repeated frames: the median, and how far apart the quartiles lie."""
+
+    median: float
+    spread: float
+
+
+class Rendering:
+    """A pipeline over a scene, its passes compiled; make it with `rendering`."""
+
+    def __init__(self, frame: Frame, passes: dict[str, Run]):
+        self.frame, self.passes = frame, passes
+        self._device = frame.device
+
+    def draw(self) -> None:
+        """One frame, all passes in order."""
+        for run in self.passes.values():
+            run()
+
+    def image(self) -> np.ndarray:
+        """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""
+        final = self.frame.final if self.frame.plan.samples == 1 else self._resolved()
+        return read_pixels(final)[::-1, :, :3]
+
+    def _resolved(self) -> moderngl.Texture:
+        """The final image, each pixel the mean of its samples."""
+        frame = self.frame
+        texture = frame.texture(frame.plan.size, FORMATS["rgba32f"], 1)
+        target = frame.framebuffer([texture])
+        resolve = frame.fullscreen(frame.program("fullscreen.vert", "resolve.frag", SAMPLES=frame.plan.samples))
+        target.use()
+        frame.context.enable_only(moderngl.NOTHING)
+        frame.prepare(resolve.program, frame.plan.size, samples=frame.final)
+        resolve.render(moderngl.TRIANGLES, vertices=3)
+        return texture
+
+    def gbuffer(self) -> list[np.ndarray]:
+        """What the G-buffer of the frame last drawn says, as `passes.unpacked` lists it; row 0 on top, 0 where nothing
+        is covered. At one sample a pixel only."""
+        return [read_pixels(texture)[::-1] for texture in unpacked(self.frame)]
+
+    def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
+        """Each pass, and the whole as "frame", over repeated frames after one to warm up; and which clock it was.
+
+        Timer queries of a software rasteriser are not to be trusted; there a wall clock waits for each pass.
+        """
+        clock = WALL if self._device.is_software else QUERY
+        measure = self._by_wall_clock if self._device.is_software else self._by_query
+        self.draw()
+        self._device.context.finish()
+        taken: dict[str, list[float]] = {name: [] for name in (*self.passes, "frame")}
+        for _ in range(repeats):
+            for name, run in self.passes.items():
+                taken[name].append(measure(run))
+            taken["frame"].append(measure(self.draw))
+        quartiles = {name: np.percentile(times, [25, 50, 75]) for name, times in taken.items()}
+        return {name: Timing(float(q[1]), float(q[2] - q[0])) for name, q in quartiles.items()}, clock
+
+    def _by_wall_clock(self, run: Run) -> float:
+        start = time.perf_counter()
+        run()
+        self._device.context.finish()
+        return (time.perf_counter() - start) * 1e3
+
+    def _by_query(self, run: Run) -> float:
+        query = self._device.context.query(time=True)
+        with query:
+            run()
+        return query.elapsed * 1e-6
+
+    def triangles(self) -> dict[str, int]:
+        """Triangles that each pass sends to the rasteriser, counted by the device."""
+        counted = {}
+        for name, run in self.passes.items():
+            query = self._device.context.query(primitives=True)
+            with query:
+                run()
+            counted[name] = query.primitives
+        return counted
+
+
+@contextmanager
+def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> Iterator[Rendering]:
+    """A pipeline made ready; what it holds on the device is released in the end.
+
+    Raises:
+        LayoutError: the layout does not keep what the pipeline needs, or has more targets than the device.
+        FormatError: the device cannot render to a format.
+        ShaderError: an encoding does not compile.
+    """
+    check(device, pipeline, plan)
+    with Frame(device, scene, plan, pipeline.scaled) as frame:
+        passes: dict[str, Run] = {stage.name: stage.build(frame) for stage in pipeline.stages}
+        yield Rendering(frame, passes)
+
+
+def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
+    """Raises LayoutError where a plan does not suit a pipeline or the device; one line."""
+    layout, light = plan.layout, plan.light_buffer
+    missing = sorted(pipeline.needs - layout.components)
+    if missing:
+        raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep")
+    if not pipeline.has_gbuffer:
+        return
+    if plan.light_targets not in pipeline.light_targets:
+        known = " or ".join(map(str, pipeline.light_targets))
+        raise LayoutError(f"{pipeline.name} has {known} light target{'s' * (known != '1')}, not {plan.light_targets}")
+    if max(pipeline.light_targets) > 1 and plan.light_targets == 1 and not light.has_alpha:
+        raise LayoutError(f"one light target needs an alpha channel, which {light.name} does not have")
+    # The geometry pass may write a light target beside the G-buffer.
+    targets, most = len(layout.targets) + 1, device.max_targets
+    if targets > most:
+        raise LayoutError(
+            f"layout {layout.name} has {targets - 1} targets, {targets} with the light buffer; {device.renderer} has {most}"
+        )
+
+
+def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
+    """What a pipeline keeps for each pixel of the image: G-buffer, depth and stencil, light buffer; not the image."""
+    if not pipeline.has_gbuffer:
+        return float(DEPTH_STENCIL_BYTES * plan.samples)
+    light = sum(plan.light_buffer.storage.bits) // 8 * plan.light_targets
+    kept = plan.layout.bytes_per_pixel + light
+    if pipeline.scaled:
+        return kept * plan.scale**2 + DEPTH_STENCIL_BYTES * plan.samples
+    return float(kept * plan.samples)
+
+
+def displayed(linear: np.ndarray) -> np.ndarray:
+    """Linear light as a display is sent it: clipped to [0, 1], by the sRGB curve (IEC 61966-2-1), not yet in 8 bits."""
+    x = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055)

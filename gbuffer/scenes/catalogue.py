@@ -1,0 +1,31 @@
+"""The scenes there are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from . import gloss, objects, playground, room
+from .scene import Scene
+from .setting import Setting
+
+
+@dataclass(frozen=True)
+class SceneMaker:
+    """A procedural scene: what it is, how it is made, and over how many moments a figure is averaged."""
+
+    name: str
+    title: str
+    make: Callable[[Setting], Scene]
+    frames: int
+
+
+SCENES: Mapping[str, SceneMaker] = MappingProxyType(
+    {
+        "playground": SceneMaker("playground", playground.TITLE, playground.lit_playground, playground.FRAMES),
+        "objects": SceneMaker("objects", objects.TITLE, objects.objects, objects.FRAMES),
+        "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
+        "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
+    }
+)

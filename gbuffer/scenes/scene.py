@@ -1,0 +1,156 @@
+"""What a scene is: meshes in many places, materials, lights, a camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .mesh import Mesh
+
+Colour = tuple[float, float, float]
+# The order is the Deferred ID's: 0 is the material that the light pass shades in full.
+KINDS = ("general", "skin", "hair", "glossy")
+LIGHT_KINDS = ("point", "spot", "sun")
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a surface answers light.
+
+    Attributes:
+        kind: "general", or one of the special materials of the second geometry pass: "skin", "hair", "glossy".
+        albedo, specular: linear colours, each channel in [0, 1].
+        power: Blinn-Phong's, 1 to 2048.
+        emissive: linear colour added as it is.
+        bump: strength of the normal map, 0 for none; 1 tilts by up to about 35 degrees.
+        bump_repeat: how often the map repeats over a mesh's uv.
+        alpha: below 1 the surface is transparent and drawn after all others.
+    """
+
+    kind: Literal["general", "skin", "hair", "glossy"] = "general"
+    albedo: Colour = (0.5, 0.5, 0.5)
+    specular: Colour = (0.04, 0.04, 0.04)
+    power: float = 32.0
+    emissive: Colour = (0.0, 0.0, 0.0)
+    bump: float = 0.0
+    bump_repeat: float = 1.0
+    alpha: float = 1.0
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light in world space.
+
+    Attributes:
+        kind: "point", "spot" or "sun".
+        colour: linear, at a distance of 0.
+        position, radius: of point and spot lights; nothing is lit at `radius` and beyond.
+        direction: the way the light goes, unit; of spot lights and the sun.
+        inner, outer: half angles of a spot's cone in degrees, full light inside the one, none outside the other.
+    """
+
+    kind: Literal["point", "spot", "sun"]
+    colour: Colour
+    position: Colour = (0.0, 0.0, 0.0)
+    radius: float = 0.0
+    direction: Colour = (0.0, -1.0, 0.0)
+    inner: float = 20.0
+    outer: float = 30.0
+
+
+@dataclass(frozen=True)
+class Part:
+    """One mesh in many places.
+
+    Attributes:
+        mesh: in its own space.
+        models: (instances, 4, 4), column vectors' matrices to world space: rotation, uniform scale, translation.
+        materials: (instances,), indices into the scene's materials.
+        casts: whether it throws shadows; the shadow map is fitted around what does.
+        two_sided: whether its back, where the normals point away, is drawn as well.
+    """
+
+    mesh: Mesh
+    models: np.ndarray
+    materials: np.ndarray
+    casts: bool = True
+    two_sided: bool = False
+
+
+@dataclass(frozen=True)
+class View:
+    """A camera in world space, right-handed, y up.
+
+    Attributes:
+        eye, target: where it is and what it looks at.
+        fov: vertical field of view in degrees.
+        near, far: distances along the line of sight.
+    """
+
+    eye: Colour
+    target: Colour
+    fov: float
+    near: float
+    far: float
+
+    def matrix(self) -> np.ndarray:
+        """World to view space, (4, 4), for column vectors: x right, y up, looking down -z."""
+        back = np.subtract(self.eye, self.target)
+        back = back / np.linalg.norm(back)
+        right = np.cross([0.0, 1.0, 0.0], back)
+        right = right / np.linalg.norm(right)
+        axes = np.stack([right, np.cross(back, right), back])
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = axes, -axes @ np.array(self.eye)
+        return matrix
+
+    def projection(self, aspect: float) -> np.ndarray:
+        """View to clip space, (4, 4), for column vectors: GL's, depth from -w to w."""
+        f = 1 / np.tan(np.radians(self.fov) / 2)
+        near, far = self.near, self.far
+        matrix = np.zeros((4, 4))
+        matrix[0, 0], matrix[1, 1], matrix[3, 2] = f / aspect, f, -1.0
+        matrix[2, 2], matrix[2, 3] = (near + far) / (near - far), 2 * near * far / (near - far)
+        return matrix
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a frame is drawn from.
+
+    Attributes:
+        parts, materials, lights: what there is; at most one light is a sun.
+        ambient: linear colour, times the albedo.
+        view: the camera.
+        previous: where the camera stood a frame ago; the motion that a G-buffer may keep is between the two.
+    """
+
+    parts: tuple[Part, ...]
+    materials: tuple[Material, ...]
+    lights: tuple[Light, ...]
+    ambient: Colour
+    view: View
+    previous: View
+
+    @property
+    def sun(self) -> Light | None:
+        return next((light for light in self.lights if light.kind == "sun"), None)
+
+    @property
+    def local_lights(self) -> tuple[Light, ...]:
+        return tuple(light for light in self.lights if light.kind != "sun")
+
+
+def placed(positions: ArrayLike, scales: ArrayLike = 1.0, turns: ArrayLike = 0.0) -> np.ndarray:
+    """Model matrices, (instances, 4, 4): uniform scales, turned about y by `turns` radians, moved to `positions`."""
+    positions = np.atleast_2d(np.asarray(positions, float))
+    scales, turns = (np.broadcast_to(np.asarray(a, float), len(positions)) for a in (scales, turns))
+    models = np.tile(np.eye(4), (len(positions), 1, 1))
+    c, s = scales * np.cos(turns), scales * np.sin(turns)
+    models[:, 0, 0], models[:, 0, 2], models[:, 2, 0], models[:, 2, 2] = c, s, -s, c
+    models[:, 1, 1] = scales
+    models[:, :3, 3] = positions
+    return models

@@ -1,0 +1,30 @@
+"""What a scene may be asked for, and what several of them share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a procedural scene is made with.
+
+    Attributes:
+        objects, lights: how many, where the scene has a choice.
+        seed: what its random numbers start from.
+        time: 0 to 1, where moving lights are on their way around.
+    """
+
+    objects: int = 200
+    lights: int = 64
+    seed: int = 0
+    time: float = 0.0
+
+
+def coloured(rng: np.random.Generator, count: int, brightness: float) -> np.ndarray:
+    """Light colours, (count, 3): every hue, a third of the way to white, of one brightness."""
+    hue = rng.uniform(0, 1, count)[:, None]
+    wheel = np.clip(np.abs((hue + np.array([0, 2 / 3, 1 / 3])) % 1 * 6 - 3) - 1, 0, 1)
+    return brightness * (0.35 + 0.65 * wheel)

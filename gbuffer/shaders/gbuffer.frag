@@ -1,0 +1,25 @@
+#version 430
+// Geometry and material to the G-buffer. Light that surfaces give off themselves starts the light buffer.
+#define WRITES_GBUFFER
+#include "fragment.glsl"
+#include "gbuffer.glsl"
+
+#if WRITES_EMISSIVE
+layout(location = TARGETS) out vec4 emissive;
+#endif
+
+void main() {
+    Surface s = shaded_surface();
+#if STIPPLE
+    // One pixel of four for each transparent layer, the first for what is opaque.
+    ivec2 cell = ivec2(gl_FragCoord.xy) & 1;
+    if (s.layer != 0 && s.layer != cell.x + 2 * cell.y) discard;
+#endif
+#if !HAS_KIND
+    s.direction = s.kind == HAIR ? unit(normal) : s.direction;
+#endif
+    write_gbuffer(s);
+#if WRITES_EMISSIVE
+    emissive = vec4(s.kind == GENERAL || !SPECIAL_APART ? s.emissive / LIGHT_RANGE : vec3(0.0), 0.0);
+#endif
+}

@@ -1,0 +1,21 @@
+#version 430
+// One light on what the G-buffer holds. ACCUMULATES says what for: 0 light for a second geometry pass, 1 finished
+// colour, 2 the one for special materials and the other for general ones.
+#define WRITES_LIGHT
+#include "gbuffer.glsl"
+#include "material.glsl"
+#include "light.glsl"
+#include "accumulation.glsl"
+
+uniform int light;
+
+void main() {
+    Surface s = read_gbuffer(ivec2(gl_FragCoord.xy));
+    vec3 l, colour = arriving(lights[light], s.position, l);
+    Terms t = light_terms(s.kind, s.direction, l, unit(-s.position), s.power);
+    if (ACCUMULATES == 1 || (ACCUMULATES == 2 && s.kind == GENERAL)) {
+        add_colour(compose(s, colour * t.diffuse, colour * t.specular));
+    } else {
+        add_light(colour * t.diffuse, colour * t.specular);
+    }
+}

@@ -1,0 +1,11 @@
+#version 430
+// The native depth buffer, resolved to linear view depth.
+#include "sample.glsl"
+
+uniform SAMPLER native_depth;
+out float linear;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    linear = -position_from_window_depth(screen_place(pixel), texelFetch(native_depth, pixel, SAMPLE).x).z;
+}

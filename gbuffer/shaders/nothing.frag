@@ -1,0 +1,4 @@
+#version 430
+// Depth and stencil only.
+
+void main() {}
