@@ -16,6 +16,7 @@ import typer
 from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
+from ..reports.plots import PlotError
 from .counts import DEFAULT_COUNT
 from .errors import MissingError, UsageError
 from .output import abandon_output, write
@@ -23,7 +24,7 @@ from .output import abandon_output, write
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Measures what compact normals cost in quality: encodings in JAX and GLSL, stored as hardware stores them.",
+    help="Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does.",
 )
 
 
@@ -49,13 +50,26 @@ CountOption = Annotated[int, typer.Option("--count", help="Normals in a uniform 
 SeedOption = Annotated[int, typer.Option("--seed", help="What uniform sets are made with.")]
 
 
+PipelineOption = Annotated[str, typer.Option("--pipeline", help=f"Pipelines, {Names}.")]
+LightBufferOption = Annotated[str, typer.Option("--light-buffer", help=f"Light buffers, {Names}.")]
+LightTargetsOption = Annotated[str, typer.Option("--light-targets", help="1, 2; comma-separated, or all.")]
+ShadowOption = Annotated[str, typer.Option("--shadow", help="on, off; comma-separated, or all.")]
+SizeOption = Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT of the image.")]
+SamplesOption = Annotated[int, typer.Option("--samples", help="Samples a pixel; as many as the device has.")]
+LightsOption = Annotated[int, typer.Option("--lights", help="Point lights.")]
+RepeatsOption = Annotated[int, typer.Option("--repeats", help="Frames that times are taken over.")]
+SWEEP_OBJECTS = "100,200,500,1000,2000"
+
+
 @app.command("list")
 def list_command(
-    what: Annotated[str, typer.Argument(help="encodings, storages, normals, or all.")] = "all",
+    what: Annotated[
+        str, typer.Argument(help="encodings, storages, normals, layouts, pipelines, scenes, lights, or all.")
+    ] = "all",
     format: FormatOption = Format.table,
     output: OutputOption = None,
 ) -> None:
-    """What there is: encodings, storages and normal sets."""
+    """What there is: encodings, storages, normal sets, layouts, pipelines, scenes and light buffers."""
     from .listing import listing
 
     write(listing(what), format, output)
@@ -91,6 +105,83 @@ def quality(
 
 
 @app.command()
+def render(
+    pipeline: PipelineOption = "hybrid",
+    layout: Annotated[
+        str | None, typer.Option("--layout", help="Layouts, names or TOML files, comma-separated. Default: fp32.")
+    ] = None,
+    encoding: Annotated[
+        str | None, typer.Option("--encoding", help="Encodings to put into each layout, comma-separated, or all.")
+    ] = None,
+    storage: Annotated[str | None, typer.Option("--storage", help="And their storages. Default: rgba8.")] = None,
+    rounding: RoundingOption = "nearest",
+    light_buffer: LightBufferOption = "rgba32f",
+    light_targets: LightTargetsOption = "2",
+    scene: Annotated[str, typer.Option("--scene", help=f"Scenes, {Names}.")] = "gloss",
+    shadow: ShadowOption = "on",
+    size: SizeOption = "640x480",
+    samples: SamplesOption = 1,
+    scale: Annotated[float, typer.Option("--scale", help="Size of inferred's G-buffer to the image's, to 1.")] = 1.0,
+    objects: Annotated[int, typer.Option("--objects", help="Objects in the scene `objects`.")] = 200,
+    lights: LightsOption = 64,
+    frames: Annotated[int, typer.Option("--frames", help="Moments to average over. 0: as the scene has it.")] = 0,
+    repeats: RepeatsOption = 3,
+    seed: Annotated[int, typer.Option("--seed", help="What scenes are made with.")] = 0,
+    flip: Annotated[
+        bool, typer.Option("--flip", help="FLIP as well, a perceptual difference; a second a row.")
+    ] = False,
+    images: Annotated[
+        Path | None, typer.Option("--images", help="Write final, reference and difference pictures here.")
+    ] = None,
+    format: FormatOption = Format.table,
+    output: OutputOption = None,
+) -> None:
+    """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
+
+    Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and neither --encoding
+    nor --storage the layouts are measured as they are.
+    """
+    from .render_commands import RenderRequest, render_command
+
+    request = RenderRequest(
+        *(pipeline, layout, encoding, storage, rounding, light_buffer, light_targets, scene, shadow, size),
+        *(samples, scale, objects, lights, frames, repeats, seed),
+    )
+    render_command(request, flip, images, format, output)
+
+
+@app.command()
+def sweep(
+    pipeline: PipelineOption = "prepass,hybrid,deferred,inferred,forward",
+    objects: Annotated[str, typer.Option("--objects", help="Numbers of objects, comma-separated.")] = SWEEP_OBJECTS,
+    shadow: ShadowOption = "on,off",
+    layout: Annotated[
+        str | None, typer.Option("--layout", help="Layouts. Default: the one that each pipeline is published with.")
+    ] = None,
+    light_buffer: LightBufferOption = "rgba16f",
+    light_targets: LightTargetsOption = "2",
+    size: SizeOption = "1024x768",
+    samples: SamplesOption = 1,
+    lights: LightsOption = 64,
+    repeats: RepeatsOption = 5,
+    seed: Annotated[int, typer.Option("--seed", help="What the scene is made with.")] = 0,
+    plot: Annotated[Path | None, typer.Option("--plot", help="Draw it into this PNG, SVG or PDF file.")] = None,
+    format: FormatOption = Format.table,
+    output: OutputOption = None,
+) -> None:
+    """How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.
+
+    With -o a sweep that was stopped goes on where it was when the same command is run again.
+    """
+    from .sweep_command import SweepRequest, sweep_command
+
+    request = SweepRequest(
+        *(pipeline, objects, shadow, layout, light_buffer, light_targets, size, samples, lights, repeats, seed)
+    )
+    sweep_command(request, plot, format, output)
+
+
+@app.command()
 def run(
     count: CountOption = DEFAULT_COUNT,
     seed: SeedOption = 0,
@@ -123,7 +214,7 @@ def main() -> int:
     except (UsageError, MissingError) as error:
         _say(str(error))
         return error.exit_code
-    except CatalogueError as error:
+    except (CatalogueError, PlotError) as error:
         _say(str(error))
         return UsageError.exit_code
     except TyperException as error:

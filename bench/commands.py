@@ -7,7 +7,6 @@ import json
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from .doctor import machine
 from .errors import UsageError, pick
 from .normal_sets import NORMAL_SETS
 from .output import check_folder, check_writable, say, whole_file, whole_folder, write
+from .progress import progress
 
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = ("device", "rounded_by", "mse", "angle_rms_deg", "count", "angle_p99_deg")
@@ -69,22 +69,9 @@ class Request:
         return quality.cases(codecs, [make(count, self.seed) for make in makers], backends)
 
 
-@contextmanager
-def _progress(cases: Sequence[quality.Case]) -> Iterator:
-    """A bar on standard error that says which row is under way; none where that is no terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    console = Console(stderr=True)
-    columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("", total=sum(len(case.normal_set.starts) for case in cases))
-        yield lambda case: progress.update(task, advance=1, description=case.name)
-
-
 def _measured(cases: Sequence[quality.Case]) -> list[quality.Row]:
-    with _progress(cases) as tick:
-        rows = list(quality.rows(cases, tick))
+    with progress(sum(len(case.normal_set.starts) for case in cases)) as tick:
+        rows = list(quality.rows(cases, lambda case: tick(case.name)))
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
         if all(row["skipped"] for row in rows):
             raise UsageError(reason)

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from ..encodings.catalogue import ENCODINGS
 from ..encodings.storage import STORAGES
+from ..gbuffer.layouts import LAYOUTS
+from ..gbuffer.light_buffers import LIGHT_BUFFERS
+from ..gbuffer.pipelines import PIPELINES
+from ..gbuffer.scenes.catalogue import SCENES
 from .errors import pick
 
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
@@ -15,44 +19,71 @@ NORMAL_SETS = {
 }
 
 
-def _encodings() -> list[dict[str, object]]:
+COLUMNS = ("kind", "name", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
+Row = dict[str, object]
+
+
+def _row(kind: str, name: str, title: str, **more: object) -> Row:
+    return dict.fromkeys(COLUMNS) | {"kind": kind, "name": name, "title": title} | more
+
+
+def _encodings() -> list[Row]:
     return [
-        {
-            "kind": "encoding",
-            "name": e.name,
-            "title": e.title,
-            "components": f"{e.components}" + (" + sign" if e.sign_bits else ""),
-            "domain": e.domain,
-            "from": e.citation,
-        }
+        _row("encoding", e.name, e.title, domain=e.domain)
+        | {"components": f"{e.components}" + (" + sign" if e.sign_bits else ""), "from": e.citation}
         for e in ENCODINGS.values()
     ]
 
 
-def _storages() -> list[dict[str, object]]:
+def _storages() -> list[Row]:
     return [
-        {
-            "kind": "storage",
-            "name": s.name,
-            "title": f"{s.title}, {s.kind}",
-            "components": str(s.channels),
-            "domain": None,
-            "from": f"{':'.join(map(str, s.bits))} bits",
-        }
+        _row("storage", s.name, f"{s.title}, {s.kind}", components=str(s.channels))
+        | {"holds": f"{':'.join(map(str, s.bits))} bits"}
         for s in STORAGES.values()
     ]
 
 
-def _normal_sets() -> list[dict[str, object]]:
+def _normal_sets() -> list[Row]:
+    return [_row("normals", name, title) for name, title in NORMAL_SETS.items()]
+
+
+def _layouts() -> list[Row]:
     return [
-        {"kind": "normals", "name": name, "title": title, "components": None, "domain": None, "from": None}
-        for name, title in NORMAL_SETS.items()
+        _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
+        | {"holds": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets), "from": layout.source}
+        for layout in LAYOUTS.values()
     ]
 
 
-KINDS = {"encodings": _encodings, "storages": _storages, "normals": _normal_sets}
+def _pipelines() -> list[Row]:
+    return [
+        _row("pipeline", p.name, p.title, holds=", ".join(stage.name for stage in p.stages)) | {"from": p.source}
+        for p in PIPELINES.values()
+    ]
 
 
-def listing(what: str) -> list[dict[str, object]]:
-    """Rows for "encodings", "storages", "normals" (comma-separated) or "all". Raises UsageError."""
+def _scenes() -> list[Row]:
+    return [_row("scene", scene.name, scene.title) for scene in SCENES.values()]
+
+
+def _light_buffers() -> list[Row]:
+    return [
+        _row("light buffer", light.name, light.title, bytes_per_pixel=sum(light.storage.bits) // 8)
+        for light in LIGHT_BUFFERS.values()
+    ]
+
+
+KINDS = {
+    "encodings": _encodings,
+    "storages": _storages,
+    "normals": _normal_sets,
+    "layouts": _layouts,
+    "pipelines": _pipelines,
+    "scenes": _scenes,
+    "lights": _light_buffers,
+}
+
+
+def listing(what: str) -> list[Row]:
+    """Rows for some of KINDS (comma-separated) or "all". Raises UsageError."""
     return [row for rows in pick("list", what, KINDS) for row in rows()]

@@ -11,13 +11,15 @@ from typing import Any, Protocol, TypeVar
 
 import moderngl
 import numpy as np
-from jax import numpy as jnp
 
 from ..encodings.storage import ROUNDINGS, STORAGES, Storage, store_number
+from ..encodings.vec import jnp
 from .shader import ShaderError, Source
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 DITHER = 0x0BD0
+# More than any one frame uses: the one that was asked for longest ago is released.
+KEPT_PROGRAMS = 64
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
 
 
@@ -63,6 +65,7 @@ class Device:
         self.max_targets = int(min(info["GL_MAX_DRAW_BUFFERS"], info["GL_MAX_COLOR_ATTACHMENTS"]))
         samples = ("GL_MAX_SAMPLES", "GL_MAX_COLOR_TEXTURE_SAMPLES", "GL_MAX_DEPTH_TEXTURE_SAMPLES")
         self.max_samples = int(min(info[name] for name in samples))
+        self._programs: dict[tuple[str, str], moderngl.Program] = {}
         self._native: dict[str, str] = {}
         # In use while no pass is: a framebuffer that is released while in use leaves an error for the next one.
         self.idle = self.context.simple_framebuffer((1, 1))
@@ -81,7 +84,20 @@ class Device:
         self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object] | None = None, names=None
     ):
         """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
-        first, second = Source(vertex, defines, names), Source(fragment, defines, names)
+        return self._compiled(Source(vertex, defines, names), Source(fragment, defines, names))
+
+    def shared_program(self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object], names=None):
+        """A program that the device keeps for the next who asks for the same; not to be released."""
+        sources = Source(vertex, defines, names), Source(fragment, defines, names)
+        key = (sources[0].text, sources[1].text)
+        if key not in self._programs:
+            if len(self._programs) >= KEPT_PROGRAMS:
+                self._programs.pop(next(iter(self._programs))).release()
+            self._programs[key] = self._compiled(*sources)
+        self._programs[key] = self._programs.pop(key)
+        return self._programs[key]
+
+    def _compiled(self, first: Source, second: Source) -> moderngl.Program:
         try:
             return self.context.program(vertex_shader=first.text, fragment_shader=second.text)
         except moderngl.Error as error:

@@ -174,7 +174,7 @@ class Frame:
     def program(self, vertex: str, fragment: str, **defines: object) -> moderngl.Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
         names: Mapping[str, Path] = {"ENCODING": self.plan.layout.codec.encoding.glsl}
-        return self.device.owned(self.stack, self.device.program(vertex, fragment, {**self._defines, **defines}, names))
+        return self.device.shared_program(vertex, fragment, {**self._defines, **defines}, names)
 
     def fullscreen(self, program: moderngl.Program) -> moderngl.VertexArray:
         """A program to run over a whole target: `render(vertices=3)`."""

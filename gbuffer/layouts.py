@@ -154,6 +154,12 @@ class Layout:
         return Codec(ENCODINGS[self.encoding], self.targets[home].storage, self.rounding)
 
     @property
+    def normal_storage(self) -> str:
+        """The format that the normal lies in, and its bits where they are packed into channels of another size."""
+        packed = [str(word.bits) for word in self.words if "normal" in word.component and word.bits]
+        return " ".join(filter(None, (self.codec.storage.name, ":".join(packed))))
+
+    @property
     def normal_bits(self) -> int:
         """The bits its normal takes, with one for each sign bit."""
         taken = (w.bits or self.targets[w.target].storage.bits[w.first] for w in self.words if "normal" in w.component)
@@ -196,8 +202,8 @@ MATERIAL = (
     Target("rgba8", "albedo.r albedo.g albedo.b kind"),
     Target("rgba8", "specular.r specular.g specular.b power"),
 )
-# What the engines' rows are: an engine keeps other things beside its normal than this renderer's materials need.
-ENGINE = "; the normal is the engine's, beside it what this renderer's materials need"
+# An engine keeps other things beside its normal than this renderer's materials need.
+ENGINE = " (its normal; what lies beside it is this renderer's)"
 
 _PRESETS = (
     Layout(
@@ -335,7 +341,7 @@ _PRESETS = (
         "world-space octahedral, 12:12 in RGB8",
         (*MATERIAL, Target("rgba8", "normal.x:12 normal.y:12")),
         "octahedral",
-        "Unity, High Definition Render Pipeline; its step that keeps z off 0 is left out" + ENGINE,
+        "Unity, High Definition Render Pipeline, less its step that keeps z off 0" + ENGINE,
         space="world",
         packing="truncate_half",
     ),

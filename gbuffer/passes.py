@@ -170,8 +170,8 @@ class LightVolumes:
         self._cleared = [frame.framebuffer([texture]) for texture in frame.light[clears:]]
         kind = ACCUMULATES.index(accumulates)
         self._mark = frame.program("volume.vert", "nothing.frag")
-        self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind)
-        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind))
+        self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=0)
+        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=1))
         self._shapes = {kind: self._upload(shape()) for kind, shape in (("point", ball), ("spot", cone))}
         self.queries: list[moderngl.Query] | None = None
 
@@ -188,25 +188,22 @@ class LightVolumes:
             target.clear()
         self._target.use()
         textures = gbuffer_textures(frame)
-        for index, light in enumerate(frame.scene_buffers.lights):
-            if light.kind == "sun":
-                self._sunlight(index, textures)
+        lights, first = frame.scene_buffers.lights, frame.scene_buffers.first_lamp
+        if first:
+            self._sunlight(textures)
         frame.context.enable_direct(raw.STENCIL_TEST)
         frame.context.enable_direct(raw.DEPTH_CLAMP)
         for program in (self._mark, self._shade):
             frame.prepare(program, frame.buffer_size, **textures)
-        for index, light in enumerate(frame.scene_buffers.lights):
-            if light.kind != "sun":
-                self._local(index, light)
+        for index in range(first, len(lights)):
+            self._local(index, lights[index])
         frame.context.disable_direct(raw.STENCIL_TEST)
         frame.context.disable_direct(raw.DEPTH_CLAMP)
 
-    def _sunlight(self, index: int, textures: dict[str, Any]) -> None:
+    def _sunlight(self, textures: dict[str, Any]) -> None:
         # The triangle lies at the far plane: it is in front of nothing but the background.
         _state(self._frame, ">", ADD)
-        program = self._sun.program
-        self._frame.prepare(program, self._frame.buffer_size, **textures)
-        program["light"] = index
+        self._frame.prepare(self._sun.program, self._frame.buffer_size, **textures)
         self._sun.render(moderngl.TRIANGLES, vertices=3)
 
     def _local(self, index: int, light: Light) -> None:
@@ -302,17 +299,15 @@ def forward(lights: bool = True) -> Stage:
 
     def build(frame: Frame) -> Run:
         target = frame.framebuffer([frame.final], frame.final_depth, writes_depth=True)
-        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+        surfaces = ForwardSurfaces(frame, lights and bool(frame.scene_buffers.first_lamp))
 
         def run() -> None:
             target.use()
             target.clear()
             raw.clear_depth_stencil()
             _state(frame, NEAREST)
-            frame.prepare(surfaces.program, frame.plan.size)
-            surfaces.program["base"] = 1.0
-            surfaces.program["lit_by"] = (0, len(frame.scene.lights) if lights else 0)
-            surfaces.draw("opaque")
+            surfaces.prepare(base=1.0)
+            surfaces.draw("opaque", *(surfaces.lamps if lights else (0, 0)))
 
         return run
 
@@ -324,16 +319,17 @@ def forward_lights() -> Stage:
 
     def build(frame: Frame) -> Run:
         target = frame.framebuffer([frame.final], frame.final_depth)
-        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+        sunlit, lamplit = ForwardSurfaces(frame, True), ForwardSurfaces(frame, False)
 
         def run() -> None:
             target.use()
             _state(frame, NEAREST, ADD)
-            frame.prepare(surfaces.program, frame.plan.size)
-            surfaces.program["base"] = 0.0
-            for index in range(len(frame.scene.lights)):
-                surfaces.program["lit_by"] = (index, index + 1)
-                surfaces.draw(index)
+            if frame.scene_buffers.first_lamp:
+                sunlit.prepare(base=0.0)
+                sunlit.draw("opaque", 0, 0)
+            lamplit.prepare(base=0.0)
+            for lamp in range(*lamplit.lamps):
+                lamplit.draw(lamp, lamp, lamp + 1)
 
         return run
 
@@ -345,16 +341,34 @@ def transparent() -> Stage:
 
     def build(frame: Frame) -> Run:
         target = frame.framebuffer([frame.final], frame.final_depth)
-        surfaces = frame.geometry(frame.program("geometry.vert", "forward.frag"))
+        surfaces = ForwardSurfaces(frame, bool(frame.scene_buffers.first_lamp))
 
         def run() -> None:
             target.use()
             _state(frame, "<", OVER)
-            frame.prepare(surfaces.program, frame.plan.size)
-            surfaces.program["base"] = 1.0
-            surfaces.program["lit_by"] = (0, len(frame.scene.lights))
-            surfaces.draw("transparent")
+            surfaces.prepare(base=1.0)
+            surfaces.draw("transparent", *surfaces.lamps)
 
         return run
 
     return Stage("transparent", build)
+
+
+class ForwardSurfaces:
+    """The scene's meshes, lit as they are drawn: by the sun or not, and by a range of lamps."""
+
+    def __init__(self, frame: Frame, by_sun: bool):
+        self._frame = frame
+        self._program = frame.program("geometry.vert", "forward.frag", LIT_BY_SUN=int(by_sun))
+        self._surfaces = frame.geometry(self._program)
+        self.lamps = (frame.scene_buffers.first_lamp, len(frame.scene_buffers.lights))
+
+    def prepare(self, base: float) -> None:
+        """Bind; `base` is the share of ambient light and the surface's own."""
+        self._frame.prepare(self._program, self._frame.plan.size)
+        self._program["base"] = base
+
+    def draw(self, name: str | int, first: int, last: int) -> None:
+        """Draw one of the scene's lists under lamps `first` to `last` - 1."""
+        self._program["lit_by"] = (first, last)
+        self._surfaces.draw(name)

@@ -32,6 +32,7 @@ class Pipeline:
         needs: what of the G-buffer it cannot do without, beside the normal.
         light_targets: how many targets its light buffer may have; empty where it has none.
         scaled: whether G-buffer and light buffer may be smaller than the image.
+        usual_layout: the layout it is published with.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Pipeline:
     needs: frozenset[str] = frozenset()
     light_targets: tuple[int, ...] = ()
     scaled: bool = False
+    usual_layout: str = "hybrid"
 
     @property
     def has_gbuffer(self) -> bool:
@@ -82,6 +84,7 @@ _ALL = (
         "Engel 2008; seeds 002 and 004, Light Pre-pass",
         (shadow_map(), geometry(), linear_depth(), lights("light"), material("opaque"), transparent()),
         light_targets=(1, 2),
+        usual_layout="normal_depth_material",
     ),
     Pipeline(
         "inferred",
@@ -97,6 +100,7 @@ _ALL = (
         ),
         light_targets=(1, 2),
         scaled=True,
+        usual_layout="normal_depth_material",
     ),
     Pipeline(
         "hybrid",

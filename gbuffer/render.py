@@ -135,7 +135,8 @@ def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
     targets, most = len(layout.targets) + 1, device.max_targets
     if targets > most:
         raise LayoutError(
-            f"layout {layout.name} has {targets - 1} targets, {targets} with the light buffer; {device.renderer} has {most}"
+            f"layout {layout.name} has {targets - 1} targets, and a light buffer comes on top; "
+            f"{device.renderer} has {most}"
         )
 
 

@@ -33,6 +33,7 @@ class SceneBuffers:
     Attributes:
         draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters",
             and for each light's index the opaque instances within its reach.
+        lights, first_lamp: the lights as shaders number them, and the first that is no sun.
         meshes: vertex and index buffers.
         two_sided: whether the back of each mesh is drawn as well.
         bumps: the normal map.
@@ -44,7 +45,9 @@ class SceneBuffers:
         self.two_sided = [part.two_sided for part in scene.parts]
         self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
         self.draws: dict[str | int, list[Draw]] = {}
-        self.lights = scene.lights
+        # The shaders find the sun in the first place.
+        self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
+        self.first_lamp = int(scene.sun is not None)
         order = self._order()
         tables = {INSTANCES: self._instances(), ORDER: order, LIGHTS: self._lights(), MATERIALS: self._materials()}
         self._tables = {binding: self._buffer(data) for binding, data in tables.items()}

@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 GAIN = 30.0
+RENDER_GAIN = 16.0
 POWER = 1024.0
 CAPTIONS = {
     "encoded": "encoded",
@@ -39,6 +40,16 @@ def codec_pictures(
         "error": _bytes(np.abs(normals - decoded) * GAIN * mask),
         "power": _bytes((1 - along**POWER) * mask * np.ones(3)),
     }
+
+
+def render_pictures(image: np.ndarray, reference: np.ndarray) -> dict[str, np.ndarray]:
+    """A rendered image, its reference, and how far they are apart, uint8 of shape (height, width, 3).
+
+    Args:
+        image, reference: as displayed, float arrays of shape (height, width, 3), in [0, 1].
+    """
+    difference = np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN
+    return {"final": _bytes(image), "reference": _bytes(reference), "difference": _bytes(difference)}
 
 
 def write_png(path: Path, pixels: np.ndarray) -> None:

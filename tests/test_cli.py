@@ -41,12 +41,14 @@ def in_a_process(*arguments: str, **environment: str) -> subprocess.CompletedPro
 NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""}
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["list"], ["quality", "--help"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["list"], ["quality", "--help"], ["render", "--help"], ["sweep", "--help"]]
+)
 def test_help_and_list_import_nothing_heavy(arguments):
-    """JAX, pandas, matplotlib and moderngl take a second each; `--help` and `list` answer without them."""
+    """JAX, pandas and matplotlib take a second each; `--help` and `list` answer without them."""
     program = (
         "import sys; from normalbench.bench import cli; sys.argv = ['normalbench', *sys.argv[1:]]; cli.main();"
-        "heavy = {'jax', 'pandas', 'matplotlib', 'moderngl', 'scipy'} & set(sys.modules); print(heavy or 'light')"
+        "heavy = {'jax', 'pandas', 'matplotlib', 'scipy', 'PIL'} & set(sys.modules); print(heavy or 'light')"
     )
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("light"), done.stdout[-200:]

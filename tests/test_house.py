@@ -13,6 +13,10 @@ import pytest
 from normalbench.bench import listing, normal_sets, quality
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer.layouts import LAYOUTS
+from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.scenes.catalogue import SCENES
 
 ROOT = Path(__file__).parents[1]
 ROOMS = {
@@ -110,9 +114,10 @@ def test_no_number_is_typed_in_both_languages():
             assert value == int(value) and value <= 96, f"{path.name}: {number}"
 
 
-def test_the_list_command_knows_every_normal_set():
+def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
-    assert {row["name"] for row in listing.listing("all")} == {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS}
+    listed = {row["name"] for row in listing.listing("all")}
+    assert listed == {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
 
 
 def test_rows_have_the_columns_of_the_table():
@@ -126,5 +131,5 @@ def test_no_runner_asks_for_a_variants_name():
     """A variant's special need is a field on it."""
     for path in SOURCES:
         if path.parts[-2] != "normals":
-            for name in (*NAMES, *STORAGES):
+            for name in (*NAMES, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_BUFFERS, *SCENES):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"

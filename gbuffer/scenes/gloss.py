@@ -37,8 +37,8 @@ def gloss(setting: Setting) -> Scene:
 def _lights(setting: Setting, rng: np.random.Generator) -> list[Light]:
     turn = 2 * np.pi * (setting.time + np.arange(setting.lights) / setting.lights)
     out, height = rng.uniform(1.5, 5.5, setting.lights), rng.uniform(1.5, 4.0, setting.lights)
-    colours = coloured(rng, setting.lights, 7.0 / np.sqrt(max(setting.lights, 1)))
+    colours = coloured(rng, setting.lights, 8.0 / np.sqrt(max(setting.lights, 1)))
     return [
-        Light("point", tuple(colour), (float(r * np.cos(a)), float(r * np.sin(a)), float(h)), 6.0)
+        Light("point", tuple(colour), (float(r * np.cos(a)), float(r * np.sin(a)), float(h)), 4.5)
         for colour, a, r, h in zip(colours, turn, out, height, strict=True)
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .mesh import box, plane, sphere
+from .mesh import plane, sphere
 from .scene import Light, Material, Part, Scene, View, placed
 from .setting import Setting, coloured
 
@@ -13,8 +13,8 @@ FRAMES = 1
 FIELD = (30.0, 30.0)
 
 GENERAL = (
-    Material(albedo=(0.55, 0.3, 0.2), specular=(0.25, 0.2, 0.15), power=48.0, bump=0.5, bump_repeat=2.0),
-    Material(albedo=(0.25, 0.4, 0.3), specular=(0.1, 0.1, 0.1), power=16.0, bump=0.8, bump_repeat=2.0),
+    Material(albedo=(0.55, 0.3, 0.2), specular=(0.25, 0.2, 0.15), power=48.0, bump=0.5, bump_repeat=4.0),
+    Material(albedo=(0.25, 0.4, 0.3), specular=(0.1, 0.1, 0.1), power=16.0, bump=0.8, bump_repeat=4.0),
     Material(albedo=(0.3, 0.32, 0.45), specular=(0.5, 0.5, 0.55), power=128.0),
 )
 SPECIAL = (
@@ -43,16 +43,17 @@ def objects(setting: Setting) -> Scene:
     sizes, turns = size * rng.uniform(0.7, 1.0, setting.objects), rng.uniform(0, 2 * np.pi, setting.objects)
     up = np.stack([0 * sizes, sizes, 0 * sizes], axis=1)
     upright = sphere(1.0, 20, 12).placed(np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)]), (0, 0, 0))
-    bodies = Part(box(1.0, 1.6, 1.0), placed(places + 0.8 * up, sizes, turns), rng.integers(0, 3, setting.objects))
-    special = Part(upright, placed(places + 2.2 * up, 0.75 * sizes, turns), 3 + rng.integers(0, 3, setting.objects))
-    ground = Part(plane(60.0, 60.0, 40.0), placed((0, 0, 0)), np.array([6]), casts=False)
+    body = upright.placed(np.diag([0.7, 0.9, 0.7]), (0, 0, 0))
+    bodies = Part(body, placed(places + 0.85 * up, sizes, turns), rng.integers(0, 3, setting.objects))
+    special = Part(upright, placed(places + 2.2 * up, 0.65 * sizes, turns), 3 + rng.integers(0, 3, setting.objects))
+    ground = Part(plane(160.0, 160.0, 105.0), placed((0, 0, 0)), np.array([6]), casts=False)
     return Scene(
         parts=(ground, bodies, special),
         materials=(*GENERAL, *SPECIAL, GROUND),
         lights=(_sun(), *_lights(setting, rng)),
         ambient=(0.03, 0.035, 0.05),
-        view=View((0.0, 7.5, 17.0), (0.0, 0.0, 0.0), 50.0, 2.0, 100.0),
-        previous=View((0.1, 7.5, 17.0), (0.0, 0.0, 0.0), 50.0, 2.0, 100.0),
+        view=View((0.0, 9.5, 15.5), (0.0, 0.0, 0.0), 50.0, 2.0, 120.0),
+        previous=View((0.1, 9.5, 15.5), (0.0, 0.0, 0.0), 50.0, 2.0, 120.0),
     )
 
 

@@ -139,10 +139,6 @@ class Scene:
     def sun(self) -> Light | None:
         return next((light for light in self.lights if light.kind == "sun"), None)
 
-    @property
-    def local_lights(self) -> tuple[Light, ...]:
-        return tuple(light for light in self.lights if light.kind != "sun")
-
 
 def placed(positions: ArrayLike, scales: ArrayLike = 1.0, turns: ArrayLike = 0.0) -> np.ndarray:
     """Model matrices, (instances, 4, 4): uniform scales, turned about y by `turns` radians, moved to `positions`."""

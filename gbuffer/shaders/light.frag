@@ -1,5 +1,5 @@
 #version 430
-// One light on what the G-buffer holds. ACCUMULATES says what for: 0 light for a second geometry pass, 1 finished
+// One light on what the G-buffer holds: the sun if LIT_BY_SUN is 1, else the lamp of number `light`. ACCUMULATES says what for: 0 light for a second geometry pass, 1 finished
 // colour, 2 the one for special materials and the other for general ones.
 #define WRITES_LIGHT
 #include "gbuffer.glsl"
@@ -11,7 +11,11 @@ uniform int light;
 
 void main() {
     Surface s = read_gbuffer(ivec2(gl_FragCoord.xy));
-    vec3 l, colour = arriving(lights[light], s.position, l);
+#if LIT_BY_SUN
+    vec3 l, colour = from_sun(s.position, l);
+#else
+    vec3 l, colour = from_lamp(lights[light], s.position, l);
+#endif
     Terms t = light_terms(s.kind, s.direction, l, unit(-s.position), s.power);
     if (ACCUMULATES == 1 || (ACCUMULATES == 2 && s.kind == GENERAL)) {
         add_colour(compose(s, colour * t.diffuse, colour * t.specular));

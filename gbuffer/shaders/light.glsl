@@ -35,16 +35,16 @@ float falloff(float distance2, float radius) {
     return window * window / (distance2 + 1.0);
 }
 
-// What arrives at `position`, and from where: l points to the light.
-vec3 arriving(Light light, vec3 position, out vec3 l) {
-    int kind = int(light.colour_kind.w);
-    if (kind == SUN) {
-        l = -light.direction_outer.xyz;
-        return light.colour_kind.rgb * sunlight(position);
-    }
+// What arrives at `position`, and from where: l points to the light. A sun is the first of the lights.
+vec3 from_sun(vec3 position, out vec3 l) {
+    l = -lights[0].direction_outer.xyz;
+    return lights[0].colour_kind.rgb * sunlight(position);
+}
+
+vec3 from_lamp(Light light, vec3 position, out vec3 l) {
     vec3 way = light.position_radius.xyz - position;
     l = unit(way);
     float share = falloff(dot(way, way), light.position_radius.w);
-    if (kind == SPOT) share *= smoothstep(light.direction_outer.w, light.inner.x, -dot(l, light.direction_outer.xyz));
-    return light.colour_kind.rgb * share;
+    float cone = smoothstep(light.direction_outer.w, light.inner.x, -dot(l, light.direction_outer.xyz));
+    return light.colour_kind.rgb * (int(light.colour_kind.w) == SPOT ? share * cone : share);
 }

@@ -1,0 +1,261 @@
+"""What `render` does."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+from ..encodings.catalogue import ENCODINGS
+from ..encodings.codec import Codec
+from ..encodings.storage import ROUNDINGS, STORAGES
+from ..gbuffer.device import Device
+from ..gbuffer.frame import Plan
+from ..gbuffer.layouts import LAYOUTS, Layout, LayoutError, read_layout
+from ..gbuffer.light_buffers import LIGHT_BUFFERS
+from ..gbuffer.pipelines import PIPELINES, Pipeline
+from ..gbuffer.render import check
+from ..gbuffer.scenes.catalogue import SCENES
+from ..gbuffer.scenes.setting import Setting
+from ..reports import pictures
+from .errors import UsageError, pick
+from .output import check_folder, check_writable, whole_file, write
+from .progress import progress
+from .quality import check_twin, require_device
+from .rendering import Bench, Case, Drawn, Row, ranked
+
+# Every pixel of a frame takes up to a few hundred bytes: 8K at one sample is the most.
+MAX_SAMPLES_A_FRAME = 2**25
+MAX_OBJECTS, MAX_LIGHTS, MAX_FRAMES, MAX_REPEATS = 100_000, 10_000, 1000, 1000
+TARGETS = {"1": 1, "2": 2}
+SHADOWS = {"on": True, "off": False}
+# What a narrow terminal goes without, the first first.
+EXPENDABLE = (
+    *("device", "clock", "exact", "rounding", "ms_transparent", "ms_linear_depth", "ms_screen", "mse", "normal_bits"),
+    *("ms_shadow_map", "ms_material", "ms_geometry", "ms_lights", "ms_ambient", "ms_forward", "ms_frame_spread"),
+)
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class RenderRequest:
+    """What to render, as typed: names are comma-separated."""
+
+    pipeline: str
+    layout: str | None
+    encoding: str | None
+    storage: str | None
+    rounding: str
+    light_buffer: str
+    light_targets: str
+    scene: str
+    shadow: str
+    size: str
+    samples: int
+    scale: float
+    objects: int
+    lights: int
+    frames: int
+    repeats: int
+    seed: int
+
+    def layouts(self) -> list[Layout]:
+        """The layouts asked for, each with every codec asked for in it; without codecs as they are.
+
+        Raises:
+            UsageError: an unknown name, a layout that cannot be, or nothing left.
+        """
+        chosen = layouts_named(self.layout or "fp32")
+        if self.layout and not self.encoding and not self.storage:
+            return chosen
+        codecs = [
+            Codec(encoding, storage, rounding)
+            for storage in pick("storage", self.storage or "rgba8", STORAGES)
+            for rounding in pick("rounding", self.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+            for encoding in pick("encoding", self.encoding or "all", ENCODINGS)
+        ]
+        for encoding in {codec.encoding for codec in codecs}:
+            check_twin(encoding)
+        made: list[Layout] = []
+        complaints: list[str] = []
+        for layout in chosen:
+            for codec in codecs:
+                if not codec.fits:
+                    complaints.append(f"{codec.name}: more components than {codec.storage.title} has channels")
+                    continue
+                _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
+        return what_is_left(made, complaints)
+
+    def setting(self) -> Setting:
+        """The scenes' setting. Raises UsageError for counts that no scene has."""
+        in_range("--objects", self.objects, 1, MAX_OBJECTS)
+        in_range("--lights", self.lights, 0, MAX_LIGHTS)
+        in_range("--seed", self.seed, 0, 2**63 - 1)
+        return Setting(self.objects, self.lights, self.seed)
+
+    def cases(self, device: Device) -> list[Case]:
+        """One case for each row; combinations that cannot be are named on standard error.
+
+        Raises:
+            UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+        """
+        size, setting = checked_size(self.size, device), self.setting()
+        in_range("--samples", self.samples, 1, 64)
+        in_range("--frames", self.frames, 0, MAX_FRAMES)
+        in_range("--repeats", self.repeats, 1, MAX_REPEATS)
+        if not 0.05 <= self.scale <= 1:
+            raise UsageError(f"--scale {self.scale}: a scale is 0.05 to 1")
+        samples = given_samples(self.samples, device)
+        check_budget(size, samples)
+        plans = [
+            Plan(size, samples, layout, light, targets, shadows, self.scale)
+            for layout in self.layouts()
+            for light in pick("light buffer", self.light_buffer, LIGHT_BUFFERS)
+            for targets in pick("number of light targets", self.light_targets, TARGETS)
+            for shadows in pick("shadow", self.shadow, SHADOWS)
+        ]
+        cases: list[Case] = []
+        complaints: list[str] = []
+        for maker in pick("scene", self.scene, SCENES):
+            for pipeline in pick("pipeline", self.pipeline, PIPELINES):
+                for plan in suited(device, pipeline, plans, complaints):
+                    cases.append(Case(pipeline, plan, maker, setting, self.frames or maker.frames, self.samples))
+        return what_is_left(cases, complaints)
+
+
+def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
+    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`."""
+    made: dict[Plan, None] = {}
+    for plan in plans:
+        own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
+        if not pipeline.has_gbuffer:
+            # Neither layouts nor light buffers reach it: one row for all of them.
+            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
+        elif len(pipeline.light_targets) == 1:
+            own = replace(own, light_targets=pipeline.light_targets[0])
+        try:
+            check(device, pipeline, own)
+        except LayoutError as error:
+            complaints.append(str(error))
+        else:
+            made[own] = None
+    return list(made)
+
+
+def layouts_named(names: str) -> list[Layout]:
+    """The layouts that comma-separated names stand for: presets, or TOML files.
+
+    Raises:
+        UsageError: an unknown name, or a file that is no layout.
+    """
+    words = [name.strip() for name in names.split(",")]
+    known = {**LAYOUTS, **{name: _read(Path(name)) for name in words if name.endswith(".toml")}}
+    return pick("layout", names, known) if "all" not in words else list(known.values())
+
+
+def _read(path: Path) -> Layout:
+    try:
+        return read_layout(path)
+    except LayoutError as error:
+        raise UsageError(str(error)) from error
+
+
+def _attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
+    try:
+        made.append(make())
+    except LayoutError as error:
+        complaints.append(str(error))
+
+
+def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
+    """What could be made, the rest named on standard error. Raises UsageError where nothing is left."""
+    reasons = list(dict.fromkeys(complaints))
+    if not made:
+        raise UsageError(reasons[0] if reasons else "nothing to render")
+    for reason in reasons:
+        print(f"normalbench: left out: {reason}", file=sys.stderr)
+    return made
+
+
+def in_range(option: str, value: int, low: int, high: int) -> None:
+    """Raises UsageError where an option's value is out of range."""
+    if not low <= value <= high:
+        raise UsageError(f"{option} {value}: from {low} to {high}")
+
+
+def checked_size(text: str, device: Device) -> tuple[int, int]:
+    """Width and height of "WxH". Raises UsageError for what is no size, or beyond the device."""
+    match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
+    most = device.max_size
+    if not match or not all(1 <= int(side) <= most for side in match.groups()):
+        raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} on {device.renderer}")
+    return int(match[1]), int(match[2])
+
+
+def check_budget(size: tuple[int, int], samples: int) -> None:
+    """Raises UsageError where a frame of this size is too large to be held."""
+    if math.prod(size) * samples > MAX_SAMPLES_A_FRAME:
+        raise UsageError(
+            f"--size {size[0]}x{size[1]} at {samples} samples: a frame has up to {MAX_SAMPLES_A_FRAME} (2^25) samples"
+        )
+
+
+def given_samples(asked: int, device: Device) -> int:
+    """The most samples a pixel that the device has and were asked for: a power of two."""
+    return 1 << (min(asked, device.max_samples).bit_length() - 1)
+
+
+def render_command(
+    request: RenderRequest, with_flip: bool, images: Path | None, format: str, output: Path | None
+) -> None:
+    """Render, measure, write the pictures if asked for, then the rows."""
+    device = require_device()
+    cases = request.cases(device)
+    if images:
+        check_folder(images)
+    if output:
+        check_writable(output)
+    bench, rows = Bench(device, request.repeats, with_flip), []
+    with progress(len(cases)) as tick:
+        for case in cases:
+            row, drawn = bench.measure(case)
+            rows.append(row)
+            if images and drawn:
+                _write_pictures(images, case, drawn, bench.reference(case)[0])
+            tick(case.name)
+    _say_what_went_wrong(rows)
+    rows = ranked(rows)
+    if format == "table":
+        hidden = ("exact", "skipped", "invalid", "samples_asked" if request.samples == cases[0].plan.samples else "")
+        rows = [{column: value for column, value in row.items() if column not in hidden} for row in rows]
+    write(rows, format, output, EXPENDABLE)
+
+
+def _say_what_went_wrong(rows: list[Row]) -> None:
+    reasons = dict.fromkeys(row["skipped"] for row in rows if row["skipped"])
+    if reasons and all(row["skipped"] for row in rows):
+        raise UsageError(next(iter(reasons)))
+    for reason in reasons:
+        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+    for row in rows:
+        if row["invalid"]:
+            what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
+            print(f"normalbench: {what} on {row['scene']}: {row['invalid']} pixels are no number", file=sys.stderr)
+
+
+def _write_pictures(folder: Path, case: Case, drawn: Drawn, reference: Drawn) -> None:
+    """The first frame, its reference and 16 times their difference."""
+    plan = case.plan
+    words = [case.maker.name, case.pipeline.name]
+    if case.pipeline.has_gbuffer:
+        words += [plan.layout.name, plan.layout.codec.name.replace("/", "-")]
+        words += [f"{plan.light_buffer.name}x{plan.light_targets}"]
+    words += [] if plan.shadows else ["unshadowed"]
+    for kind, pixels in pictures.render_pictures(drawn.shown, reference.shown).items():
+        with whole_file(folder / f"{'-'.join([*words, kind])}.png") as partial:
+            pictures.write_png(partial, pixels)

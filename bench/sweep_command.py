@@ -1,0 +1,139 @@
+"""What `sweep` does."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..gbuffer.device import Device
+from ..gbuffer.frame import Plan
+from ..gbuffer.light_buffers import LIGHT_BUFFERS
+from ..gbuffer.pipelines import PIPELINES
+from ..gbuffer.scenes.setting import Setting
+from ..reports import plots
+from . import sweep
+from .errors import UsageError, pick
+from .output import check_writable, whole_file, write
+from .progress import progress
+from .quality import require_device
+from .render_commands import (
+    MAX_LIGHTS,
+    MAX_OBJECTS,
+    MAX_REPEATS,
+    SHADOWS,
+    TARGETS,
+    check_budget,
+    checked_size,
+    given_samples,
+    in_range,
+    layouts_named,
+    suited,
+    what_is_left,
+)
+from .rendering import Row
+
+# What a narrow terminal goes without, the first first.
+EXPENDABLE = (
+    *("device", "clock", "light_targets", "light_buffer", "layout", "seed", "repeats", "ms_transparent"),
+    *("ms_linear_depth", "ms_screen", "triangles_shadow_map", "triangles_lights", "ms_shadow_map", "ms_ambient"),
+)
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """What to sweep over, as typed: names and counts are comma-separated."""
+
+    pipeline: str
+    objects: str
+    shadow: str
+    layout: str | None
+    light_buffer: str
+    light_targets: str
+    size: str
+    samples: int
+    lights: int
+    repeats: int
+    seed: int
+
+    def points(self, device: Device) -> list[sweep.Point]:
+        """One point for each row; what does not suit a pipeline is named on standard error.
+
+        Raises:
+            UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+        """
+        size, samples = checked_size(self.size, device), given_samples(self.samples, device)
+        check_budget(size, samples)
+        in_range("--lights", self.lights, 0, MAX_LIGHTS)
+        in_range("--repeats", self.repeats, 1, MAX_REPEATS)
+        in_range("--seed", self.seed, 0, 2**63 - 1)
+        in_range("--samples", self.samples, 1, 64)
+        points: list[sweep.Point] = []
+        complaints: list[str] = []
+        for shadows in pick("shadow", self.shadow, SHADOWS):
+            for count in _counts(self.objects):
+                setting = Setting(count, self.lights, self.seed)
+                for pipeline in pick("pipeline", self.pipeline, PIPELINES):
+                    plans = [
+                        Plan(size, samples, layout, light, targets, shadows, 1.0)
+                        for layout in layouts_named(self.layout or pipeline.usual_layout)
+                        for light in pick("light buffer", self.light_buffer, LIGHT_BUFFERS)
+                        for targets in pick("number of light targets", self.light_targets, TARGETS)
+                    ]
+                    for plan in suited(device, pipeline, plans, complaints):
+                        points.append(sweep.Point(pipeline, plan, setting, self.repeats))
+        return what_is_left(points, complaints)
+
+
+def _counts(text: str) -> list[int]:
+    """Comma-separated numbers of objects. Raises UsageError."""
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    if not words or not all(word.isdecimal() and 1 <= int(word) <= MAX_OBJECTS for word in words):
+        raise UsageError(f"--objects {text}: numbers from 1 to {MAX_OBJECTS}, comma-separated, such as 100,200,500")
+    return list(dict.fromkeys(map(int, words)))
+
+
+def sweep_command(request: SweepRequest, plot: Path | None, format: str, output: Path | None) -> None:
+    """Measure each point that has not been measured before, then write the rows, and the plot if asked for."""
+    device = require_device()
+    points = request.points(device)
+    for path in filter(None, (plot, output)):
+        check_writable(path)
+    if plot:
+        plots.check_format(plot)
+    with sweep.journal(output) as kept:
+        try:
+            rows = _measured(device, points, kept)
+        except KeyboardInterrupt:
+            _say_how_to_go_on(kept, len(points))
+            raise
+        if plot:
+            with whole_file(plot) as partial:
+                plots.sweep_plot(rows, partial, plot.suffix[1:])
+        write(_shown(rows) if format == "table" else rows, format, output, EXPENDABLE)
+
+
+def _measured(device: Device, points: list[sweep.Point], kept: sweep.Journal | None) -> list[Row]:
+    done = sweep.resumed(kept, points, device)
+    with progress(len(points)) as tick:
+        for point in points:
+            tick(point.name)
+            if point not in done:
+                done[point] = sweep.measure(device, point)
+                if kept:
+                    kept.add(done[point])
+    return [done[point] for point in points]
+
+
+def _say_how_to_go_on(kept: sweep.Journal | None, total: int) -> None:
+    if kept:
+        print(f"normalbench: {len(kept.rows)} of {total} rows are kept; the same command goes on", file=sys.stderr)
+    else:
+        print("normalbench: nothing is kept; with -o FILE a stopped sweep goes on", file=sys.stderr)
+
+
+def _shown(rows: list[Row]) -> list[Row]:
+    """The rows for a terminal: of the spreads only the whole frame's, no triangles of passes that draw the screen."""
+    hidden = {c for c in rows[0] if c.endswith("_spread") and c != "ms_frame_spread"}
+    hidden |= {"triangles_linear_depth", "triangles_screen"}
+    return [{column: value for column, value in row.items() if column not in hidden} for row in rows]
