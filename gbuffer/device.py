@@ -146,6 +146,8 @@ class Device:
             raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
         try:
             framebuffer.use()
+            # Whatever else has drawn before: no depth test, no blending.
+            self.context.enable_only(moderngl.NOTHING)
             bind(passed.program, textures)
             passed.render(moderngl.TRIANGLES, vertices=3)
         finally:

@@ -1,5 +1,6 @@
 """What the README says is so: its commands run, its table is measured, its example passes."""
 
+import json
 import re
 import shlex
 import subprocess
@@ -13,9 +14,11 @@ from normalbench.bench.normal_sets import playground
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer.pipelines import PIPELINES
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text()
+(LAYOUT,) = re.findall(r"```toml\n(.*?)```", TEXT, re.S)
 COMMANDS = re.findall(r"^    ((?:normalbench|python -m) [^#\n]+?) *(?:#.*)?$", TEXT, re.M)
 
 
@@ -26,6 +29,7 @@ def test_there_are_commands_to_run():
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text(LAYOUT)
     words = shlex.split(command)
     if words[0] == "python":
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
@@ -33,7 +37,7 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
         return
     monkeypatch.setattr(sys, "argv", words)
     assert cli.main() == 0, capsys.readouterr().err
-    for option in ("-o", "--images"):
+    for option in ("-o", "--images", "--plot"):
         if option in words:
             assert (tmp_path / words[words.index(option) + 1]).exists()
 
@@ -56,6 +60,29 @@ def test_the_table_is_what_is_measured():
         for backend, figure in (("jax", by_jax), ("glsl", by_glsl)):
             row = quality.measure(quality.Case(codec, playground(), backend))
             assert float(figure) == pytest.approx(row["psnr_seed_db"], abs=0.02), f"{name} by {backend}"
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
+    table = TEXT[TEXT.index("<!-- normalbench render -->") :]
+    lines = re.findall(r"^\| `(\w+)` +\| +([\d.]+) \| +(\d) \| +([\d.]+) \| +(\d) \|$", table, re.M)
+    assert len(lines) == 8
+    names = ",".join(line[0] for line in lines)
+    command = ["normalbench", "render", "--encoding", names, "--repeats", "1", "--format", "json"]
+    monkeypatch.setattr(sys, "argv", command)
+    assert cli.main() == 0
+    rows = {row["encoding"]: row for row in json.loads(capsys.readouterr().out)}
+    for name, image, rank, normals, normal_rank in lines:
+        row = rows[name]
+        assert float(image) == pytest.approx(row["psnr_db"], abs=0.1), name
+        assert float(normals) == pytest.approx(row["normal_psnr_db"], abs=0.1), name
+        assert (int(rank), int(normal_rank)) == (row["rank"], row["normal_rank"]), name
+
+
+def test_the_pipelines_it_shows_are_those_there_are():
+    table = TEXT[TEXT.index("<!-- normalbench list pipelines -->") :]
+    shown = dict(re.findall(r"^\| `(\w+)` +\| ([\w, ]+) \|$", table, re.M))
+    assert shown == {p.name: ", ".join(stage.name for stage in p.stages) for p in PIPELINES.values()}
 
 
 def test_the_gate_it_shows_passes():

@@ -307,3 +307,13 @@ def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypat
     status, out, err = run("sweep", *arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
+    """Values through a float target come back as they were, after a frame that blends and tests depth."""
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+    with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
+        made.draw()
+    values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)
+    assert np.array_equal(gl.through(values, STORAGES["rgba32f"]), values)
+    assert gl.context.error == "GL_NO_ERROR"
