@@ -15,7 +15,8 @@ from ..encodings.codec import Codec
 from ..encodings.storage import ROUNDINGS, STORAGES
 from ..gbuffer.device import Device
 from ..gbuffer.frame import Plan
-from ..gbuffer.layouts import LAYOUTS, Layout, LayoutError, read_layout
+from ..gbuffer.layout import Layout, LayoutError, read_layout
+from ..gbuffer.layouts import LAYOUTS
 from ..gbuffer.light_buffers import LIGHT_BUFFERS
 from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import check

@@ -18,7 +18,7 @@ from . import materials
 from .codec_passes import encoding_defines, storage_kind
 from .device import Device, FormatError, bind
 from .formats import FORMATS, R32F
-from .layouts import COMPONENTS, PACKINGS, Layout
+from .layout import COMPONENTS, PACKINGS, Layout
 from .light_buffers import LightBuffer
 from .raw import DepthStencil
 from .scene_buffers import SceneBuffers, sun_matrix

@@ -13,7 +13,7 @@ import numpy as np
 from .device import Device, read_pixels
 from .formats import FORMATS
 from .frame import Frame, Plan
-from .layouts import DEPTH_STENCIL_BYTES, LayoutError
+from .layout import DEPTH_STENCIL_BYTES, LayoutError
 from .passes import Run, unpacked
 from .pipelines import Pipeline
 from .scenes.scene import Scene

@@ -13,7 +13,8 @@ from normalbench.encodings.storage import STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
 from normalbench.gbuffer.device import device
 from normalbench.gbuffer.frame import Plan
-from normalbench.gbuffer.layouts import LAYOUTS, PACKINGS, Layout, LayoutError, Target, read_layout
+from normalbench.gbuffer.layout import PACKINGS, Layout, LayoutError, Target, read_layout
+from normalbench.gbuffer.layouts import LAYOUTS
 from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
