@@ -143,6 +143,8 @@ class Bench:
         times: Row = {}
         try:
             frames = self._frames(case, lambda made: times.update(_times(made, self._repeats)))
+            if case == case.reference:
+                self._references.setdefault(case, frames)
             reference = self.reference(case)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None

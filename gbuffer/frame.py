@@ -215,10 +215,10 @@ class Geometry:
             for vertices, triangles in frame.scene_buffers.meshes
         ]
 
-    def draw(self, name: str | int) -> None:
-        """Draw one of the scene's lists, without the backs of what is closed."""
+    def draw(self, name: str | int, cull: str = "back") -> None:
+        """Draw one of the scene's lists, without the "back" or "front" sides of what is closed."""
         buffers, context = self._frame.scene_buffers, self._frame.context
-        context.cull_face = "back"
+        context.cull_face = cull
         for draw in buffers.draws[name]:
             (context.disable if buffers.two_sided[draw.mesh] else context.enable)(moderngl.CULL_FACE)
             self.program["first"] = draw.first

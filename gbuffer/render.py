@@ -35,11 +35,13 @@ class Rendering:
     def __init__(self, frame: Frame, passes: dict[str, Run]):
         self.frame, self.passes = frame, passes
         self._device = frame.device
+        self._is_warm = False
 
     def draw(self) -> None:
         """One frame, all passes in order."""
         for run in self.passes.values():
             run()
+        self._is_warm = True
 
     def image(self) -> np.ndarray:
         """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""
@@ -64,13 +66,14 @@ class Rendering:
         return [read_pixels(texture)[::-1] for texture in unpacked(self.frame)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
-        """Each pass, and the whole as "frame", over repeated frames after one to warm up; and which clock it was.
+        """Each pass, and the whole as "frame", over repeated frames after at least one; and which clock it was.
 
         Timer queries of a software rasteriser are not to be trusted; there a wall clock waits for each pass.
         """
         clock = WALL if self._device.is_software else QUERY
         measure = self._by_wall_clock if self._device.is_software else self._by_query
-        self.draw()
+        if not self._is_warm:
+            self.draw()
         self._device.context.finish()
         taken: dict[str, list[float]] = {name: [] for name in (*self.passes, "frame")}
         for _ in range(repeats):

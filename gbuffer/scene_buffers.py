@@ -163,7 +163,7 @@ def sun_matrix(scene: Scene) -> np.ndarray:
     z = np.array(scene.sun.direction)
     x = np.cross(z, np.eye(3)[np.argmin(abs(z))])
     x = x / np.linalg.norm(x)
-    axes = np.stack([x, np.cross(z, x), z])
+    axes = np.stack([x, np.cross(x, z), z])
     centres, radii = bounds(scene, casters_only=True)
     along = centres @ axes.T
     low, high = (along - radii[:, None]).min(axis=0), (along + radii[:, None]).max(axis=0)

@@ -9,7 +9,7 @@ from .scene import Light, Material, Part, Scene, View, placed
 from .setting import Setting, coloured
 
 TITLE = "spheres of specular power 4 to 1024 under moving lights"
-FRAMES = 4
+FRAMES = 3
 POWERS = tuple(2.0**n for n in range(2, 11))
 
 
@@ -37,8 +37,8 @@ def gloss(setting: Setting) -> Scene:
 def _lights(setting: Setting, rng: np.random.Generator) -> list[Light]:
     turn = 2 * np.pi * (setting.time + np.arange(setting.lights) / setting.lights)
     out, height = rng.uniform(1.5, 5.5, setting.lights), rng.uniform(1.5, 4.0, setting.lights)
-    colours = coloured(rng, setting.lights, 8.0 / np.sqrt(max(setting.lights, 1)))
+    colours = coloured(rng, setting.lights, 8.5 / np.sqrt(max(setting.lights, 1)))
     return [
-        Light("point", tuple(colour), (float(r * np.cos(a)), float(r * np.sin(a)), float(h)), 4.5)
+        Light("point", tuple(colour), (float(r * np.cos(a)), float(r * np.sin(a)), float(h)), 4.2)
         for colour, a, r, h in zip(colours, turn, out, height, strict=True)
     ]
