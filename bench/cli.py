@@ -56,6 +56,7 @@ LightTargetsOption = Annotated[str, typer.Option("--light-targets", help="1, 2; 
 ShadowOption = Annotated[str, typer.Option("--shadow", help="on, off; comma-separated, or all.")]
 SizeOption = Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT of the image.")]
 SamplesOption = Annotated[int, typer.Option("--samples", help="Samples a pixel; as many as the device has.")]
+ScaleOption = Annotated[float, typer.Option("--scale", help="Size of inferred's buffers to the image's, up to 1.")]
 LightsOption = Annotated[int, typer.Option("--lights", help="Point lights.")]
 RepeatsOption = Annotated[int, typer.Option("--repeats", help="Frames that times are taken over.")]
 SWEEP_OBJECTS = "100,200,500,1000,2000"
@@ -114,14 +115,14 @@ def render(
         str | None, typer.Option("--encoding", help="Encodings to put into each layout, comma-separated, or all.")
     ] = None,
     storage: Annotated[str | None, typer.Option("--storage", help="And their storages. Default: rgba8.")] = None,
-    rounding: RoundingOption = "nearest",
+    rounding: Annotated[str | None, typer.Option("--rounding", help="And how those round. Default: nearest.")] = None,
     light_buffer: LightBufferOption = "rgba32f",
     light_targets: LightTargetsOption = "2",
     scene: Annotated[str, typer.Option("--scene", help=f"Scenes, {Names}.")] = "gloss",
     shadow: ShadowOption = "on",
     size: SizeOption = "640x480",
     samples: SamplesOption = 1,
-    scale: Annotated[float, typer.Option("--scale", help="Size of inferred's G-buffer to the image's, to 1.")] = 1.0,
+    scale: ScaleOption = 1.0,
     objects: Annotated[int, typer.Option("--objects", help="Objects in the scene `objects`.")] = 200,
     lights: LightsOption = 64,
     frames: Annotated[int, typer.Option("--frames", help="Moments to average over. 0: as the scene has it.")] = 0,
@@ -138,8 +139,8 @@ def render(
 ) -> None:
     """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
 
-    Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and neither --encoding
-    nor --storage the layouts are measured as they are.
+    Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of --encoding,
+    --storage and --rounding the layouts are measured as they are.
     """
     from .render_commands import RenderRequest, render_command
 
@@ -162,6 +163,7 @@ def sweep(
     light_targets: LightTargetsOption = "2",
     size: SizeOption = "1024x768",
     samples: SamplesOption = 1,
+    scale: ScaleOption = 0.5,
     lights: LightsOption = 64,
     repeats: RepeatsOption = 5,
     seed: Annotated[int, typer.Option("--seed", help="What the scene is made with.")] = 0,
@@ -176,7 +178,8 @@ def sweep(
     from .sweep_command import SweepRequest, sweep_command
 
     request = SweepRequest(
-        *(pipeline, objects, shadow, layout, light_buffer, light_targets, size, samples, lights, repeats, seed)
+        *(pipeline, objects, shadow, layout, light_buffer, light_targets, size, samples, scale),
+        *(lights, repeats, seed),
     )
     sweep_command(request, plot, format, output)
 

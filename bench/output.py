@@ -20,7 +20,7 @@ def check_writable(path: Path) -> None:
     try:
         if path.is_dir():
             raise UsageError(f"{path} is a folder; name a file")
-        if _is_special(path):
+        if is_special(path):
             return
         # Asked of what it will be called while it is written, so that a name that is too long is noticed.
         _partial(path).exists()
@@ -46,7 +46,7 @@ def check_folder(folder: Path) -> None:
         raise UsageError(f"cannot write to {folder}: {error.strerror or error}") from error
 
 
-def _is_special(path: Path) -> bool:
+def is_special(path: Path) -> bool:
     """A pipe or a device: what is written there goes through, and the name must stay what it is."""
     return path.exists() and not path.is_file()
 
@@ -61,7 +61,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         UsageError: it cannot be written.
     """
     path = path.resolve()
-    partial = path if _is_special(path) else _partial(path)
+    partial = path if is_special(path) else _partial(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield partial

@@ -29,8 +29,8 @@ from .progress import progress
 from .quality import check_twin, require_device
 from .rendering import Bench, Case, Drawn, Row, ranked
 
-# Every pixel of a frame takes up to a few hundred bytes: 8K at one sample is the most.
-MAX_SAMPLES_A_FRAME = 2**25
+# Every pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
+MAX_SAMPLES = 2**25
 MAX_OBJECTS, MAX_LIGHTS, MAX_FRAMES, MAX_REPEATS = 100_000, 10_000, 1000, 1000
 TARGETS = {"1": 1, "2": 2}
 SHADOWS = {"on": True, "off": False}
@@ -51,7 +51,7 @@ class RenderRequest:
     layout: str | None
     encoding: str | None
     storage: str | None
-    rounding: str
+    rounding: str | None
     light_buffer: str
     light_targets: str
     scene: str
@@ -71,14 +71,18 @@ class RenderRequest:
         Raises:
             UsageError: an unknown name, a layout that cannot be, or nothing left.
         """
-        chosen = layouts_named(self.layout or "fp32")
-        if self.layout and not self.encoding and not self.storage:
+        chosen = layouts_named("fp32" if self.layout is None else self.layout)
+        if self.layout is not None and self.encoding is self.storage is self.rounding is None:
             return chosen
+        # Half a codec is completed by what is usual.
+        storages = "rgba8" if self.storage is None else self.storage
+        encodings = "all" if self.encoding is None else self.encoding
+        roundings = "nearest" if self.rounding is None else self.rounding
         codecs = [
             Codec(encoding, storage, rounding)
-            for storage in pick("storage", self.storage or "rgba8", STORAGES)
-            for rounding in pick("rounding", self.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
-            for encoding in pick("encoding", self.encoding or "all", ENCODINGS)
+            for storage in pick("storage", storages, STORAGES)
+            for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+            for encoding in pick("encoding", encodings, ENCODINGS)
         ]
         for encoding in {codec.encoding for codec in codecs}:
             check_twin(encoding)
@@ -109,10 +113,9 @@ class RenderRequest:
         in_range("--samples", self.samples, 1, 64)
         in_range("--frames", self.frames, 0, MAX_FRAMES)
         in_range("--repeats", self.repeats, 1, MAX_REPEATS)
-        if not 0.05 <= self.scale <= 1:
-            raise UsageError(f"--scale {self.scale}: a scale is 0.05 to 1")
+        check_scale(self.scale)
         samples = given_samples(self.samples, device)
-        check_budget(size, samples)
+        check_budget(size, samples * max(self.frames, 1))
         plans = [
             Plan(size, samples, layout, light, targets, shadows, self.scale)
             for layout in self.layouts()
@@ -154,9 +157,14 @@ def layouts_named(names: str) -> list[Layout]:
     Raises:
         UsageError: an unknown name, or a file that is no layout.
     """
-    words = [name.strip() for name in names.split(",")]
+    words = dict.fromkeys(name.strip() for name in names.split(","))
     known = {**LAYOUTS, **{name: _read(Path(name)) for name in words if name.endswith(".toml")}}
-    return pick("layout", names, known) if "all" not in words else list(known.values())
+    chosen = pick("layout", names, known) if "all" not in words else list(known.values())
+    called = [layout.name for layout in chosen]
+    for name in called:
+        if called.count(name) > 1:
+            raise UsageError(f"two layouts are called {name}, which is a file's name without .toml; rename one")
+    return chosen
 
 
 def _read(path: Path) -> Layout:
@@ -189,6 +197,12 @@ def in_range(option: str, value: int, low: int, high: int) -> None:
         raise UsageError(f"{option} {value}: from {low} to {high}")
 
 
+def check_scale(scale: float) -> None:
+    """Raises UsageError for what is no share of a size."""
+    if not 0.05 <= scale <= 1:
+        raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
+
+
 def checked_size(text: str, device: Device) -> tuple[int, int]:
     """Width and height of "WxH". Raises UsageError for what is no size, or beyond the device."""
     match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
@@ -199,10 +213,11 @@ def checked_size(text: str, device: Device) -> tuple[int, int]:
 
 
 def check_budget(size: tuple[int, int], samples: int) -> None:
-    """Raises UsageError where a frame of this size is too large to be held."""
-    if math.prod(size) * samples > MAX_SAMPLES_A_FRAME:
+    """Raises UsageError where frames of this size, with all their samples, are too large to be held."""
+    if math.prod(size) * samples > MAX_SAMPLES:
         raise UsageError(
-            f"--size {size[0]}x{size[1]} at {samples} samples: a frame has up to {MAX_SAMPLES_A_FRAME} (2^25) samples"
+            f"--size {size[0]}x{size[1]}: with samples and frames {math.prod(size) * samples} in all; "
+            f"the most is {MAX_SAMPLES} (2^25)"
         )
 
 

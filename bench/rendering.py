@@ -208,9 +208,7 @@ def ranked(rows: list[Row]) -> list[Row]:
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         if row["normal_psnr_db"] is not None:
-            groups.setdefault(tuple(row[c] for c in ("scene", "pipeline", "light_buffer", "light_targets")), []).append(
-                row
-            )
+            groups.setdefault(tuple(row[c] for c in SAME), []).append(row)
     for group in groups.values():
         if len(group) > 1:
             for place, figure in (("rank", "psnr_db"), ("normal_rank", "normal_psnr_db")):

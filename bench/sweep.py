@@ -19,11 +19,12 @@ from ..gbuffer.render import rendering
 from ..gbuffer.scenes.catalogue import SCENES
 from ..gbuffer.scenes.setting import Setting
 from .errors import UsageError
+from .output import is_special
 from .rendering import STAGES, Row
 
 KEY = (
-    *("pipeline", "layout", "light_buffer", "light_targets", "scene", "objects", "lights", "shadow", "size", "samples"),
-    *("repeats", "seed", "device"),
+    *("pipeline", "layout", "holds", "light_buffer", "light_targets", "scale", "scene", "objects", "lights", "shadow"),
+    *("size", "samples", "samples_asked", "repeats", "seed", "device"),
 )
 COLUMNS = (
     *KEY,
@@ -43,6 +44,7 @@ class Point:
     plan: Plan
     setting: Setting
     repeats: int
+    asked: int
 
     @property
     def name(self) -> str:
@@ -51,19 +53,21 @@ class Point:
 
     def key(self, device: Device) -> Row:
         """Everything that determines the row."""
-        plan = self.plan
-        layout = plan.layout.name if self.pipeline.has_gbuffer else None
+        plan, kept = self.plan, self.pipeline.has_gbuffer
         return {
             "pipeline": self.pipeline.name,
-            "layout": layout,
-            "light_buffer": plan.light_buffer.name if self.pipeline.has_gbuffer else None,
-            "light_targets": plan.light_targets if self.pipeline.has_gbuffer else None,
+            "layout": plan.layout.name if kept else None,
+            "holds": plan.layout.summary if kept else None,
+            "light_buffer": plan.light_buffer.name if kept else None,
+            "light_targets": plan.light_targets if kept else None,
+            "scale": plan.scale if self.pipeline.scaled else None,
             "scene": "objects",
             "objects": self.setting.objects,
             "lights": self.setting.lights,
             "shadow": plan.shadows,
             "size": f"{plan.size[0]}x{plan.size[1]}",
             "samples": plan.samples,
+            "samples_asked": self.asked,
             "repeats": self.repeats,
             "seed": self.setting.seed,
             "device": device.renderer,
@@ -86,24 +90,19 @@ def measure(device: Device, point: Point) -> Row:
 class Journal:
     """Finished rows, kept line by line beside the output until all are there, so that a stopped sweep goes on."""
 
-    def __init__(self, file: IO[str]):
-        self._file = file
+    def __init__(self, path: Path, file: IO[bytes]):
+        self.path, self._file = path, file
         file.seek(0)
-        self.rows = list(_readable(file))
+        lines = file.read()
         # A line that was cut off in the middle would swallow the next one.
-        file.seek(0)
-        file.truncate()
-        for row in self.rows:
-            self._append(row)
-
-    def _append(self, row: Row) -> None:
-        self._file.write(json.dumps(row) + "\n")
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        file.truncate(lines.rfind(b"\n") + 1)
+        self.rows = list(_readable(lines.splitlines()))
 
     def add(self, row: Row) -> None:
         """Keep a row for good."""
-        self._append(row)
+        self._file.write(json.dumps(row).encode() + b"\n")
+        self._file.flush()
+        os.fsync(self._file.fileno())
         self.rows.append(row)
 
     def find(self, key: Row) -> Row | None:
@@ -111,8 +110,8 @@ class Journal:
         return next((row for row in self.rows if all(row[name] == value for name, value in key.items())), None)
 
 
-def _readable(file: IO[str]) -> Iterator[Row]:
-    for line in file:
+def _readable(lines: list[bytes]) -> Iterator[Row]:
+    for line in lines:
         try:
             row: Any = json.loads(line)
         except ValueError:
@@ -123,17 +122,19 @@ def _readable(file: IO[str]) -> Iterator[Row]:
 
 @contextmanager
 def journal(output: Path | None) -> Iterator[Journal | None]:
-    """The journal beside an output file, gone once the block ends well; None where nothing is to be kept.
+    """The journal beside an output file, gone once the block ends well; None where there is no file to keep it beside.
 
     Raises:
         UsageError: another sweep writes the same output, or it cannot be written.
     """
-    if output is None:
+    if output is None or is_special(output):
         yield None
         return
+    output = output.resolve()
     path = output.with_name(f".{output.name}.rows")
     try:
-        file = path.open("a+", encoding="utf-8")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.open("a+b")
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     with file:
@@ -141,14 +142,22 @@ def journal(output: Path | None) -> Iterator[Journal | None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise UsageError(f"another sweep is writing {output}; wait for it, or name another file") from error
-        yield Journal(file)
+        yield Journal(path, file)
         path.unlink(missing_ok=True)
 
 
 def resumed(kept: Journal | None, points: list[Point], device: Device) -> dict[Point, Row]:
-    """The rows that need not be measured again."""
+    """The rows that need not be measured again.
+
+    Raises:
+        UsageError: rows of another sweep are kept for this output.
+    """
     found = {point: kept.find(point.key(device)) for point in points} if kept else {}
     done = {point: row for point, row in found.items() if row}
+    if kept and len(done) < len(kept.rows):
+        raise UsageError(
+            f"{kept.path} keeps {len(kept.rows)} rows of another sweep; run that one, delete it, or name another file"
+        )
     if done:
         print(f"normalbench: {len(done)} of {len(points)} rows were measured before", file=sys.stderr)
     return done

@@ -24,6 +24,7 @@ from .render_commands import (
     SHADOWS,
     TARGETS,
     check_budget,
+    check_scale,
     checked_size,
     given_samples,
     in_range,
@@ -35,7 +36,7 @@ from .rendering import Row
 
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = (
-    *("device", "clock", "light_targets", "light_buffer", "layout", "seed", "repeats", "ms_transparent"),
+    *("device", "clock", "holds", "light_targets", "light_buffer", "layout", "seed", "repeats", "ms_transparent"),
     *("ms_linear_depth", "ms_screen", "triangles_shadow_map", "triangles_lights", "ms_shadow_map", "ms_ambient"),
 )
 
@@ -52,6 +53,7 @@ class SweepRequest:
     light_targets: str
     size: str
     samples: int
+    scale: float
     lights: int
     repeats: int
     seed: int
@@ -62,12 +64,13 @@ class SweepRequest:
         Raises:
             UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
         """
+        in_range("--samples", self.samples, 1, 64)
         size, samples = checked_size(self.size, device), given_samples(self.samples, device)
         check_budget(size, samples)
+        check_scale(self.scale)
         in_range("--lights", self.lights, 0, MAX_LIGHTS)
         in_range("--repeats", self.repeats, 1, MAX_REPEATS)
         in_range("--seed", self.seed, 0, 2**63 - 1)
-        in_range("--samples", self.samples, 1, 64)
         points: list[sweep.Point] = []
         complaints: list[str] = []
         for shadows in pick("shadow", self.shadow, SHADOWS):
@@ -75,20 +78,20 @@ class SweepRequest:
                 setting = Setting(count, self.lights, self.seed)
                 for pipeline in pick("pipeline", self.pipeline, PIPELINES):
                     plans = [
-                        Plan(size, samples, layout, light, targets, shadows, 1.0)
-                        for layout in layouts_named(self.layout or pipeline.usual_layout)
+                        Plan(size, samples, layout, light, targets, shadows, self.scale)
+                        for layout in layouts_named(pipeline.usual_layout if self.layout is None else self.layout)
                         for light in pick("light buffer", self.light_buffer, LIGHT_BUFFERS)
                         for targets in pick("number of light targets", self.light_targets, TARGETS)
                     ]
                     for plan in suited(device, pipeline, plans, complaints):
-                        points.append(sweep.Point(pipeline, plan, setting, self.repeats))
+                        points.append(sweep.Point(pipeline, plan, setting, self.repeats, self.samples))
         return what_is_left(points, complaints)
 
 
 def _counts(text: str) -> list[int]:
     """Comma-separated numbers of objects. Raises UsageError."""
     words = [word.strip() for word in text.split(",") if word.strip()]
-    if not words or not all(word.isdecimal() and 1 <= int(word) <= MAX_OBJECTS for word in words):
+    if not words or not all(word.isdecimal() and len(word) < 10 and 1 <= int(word) <= MAX_OBJECTS for word in words):
         raise UsageError(f"--objects {text}: numbers from 1 to {MAX_OBJECTS}, comma-separated, such as 100,200,500")
     return list(dict.fromkeys(map(int, words)))
 
@@ -104,7 +107,7 @@ def sweep_command(request: SweepRequest, plot: Path | None, format: str, output:
     with sweep.journal(output) as kept:
         try:
             rows = _measured(device, points, kept)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemExit):
             _say_how_to_go_on(kept, len(points))
             raise
         if plot:

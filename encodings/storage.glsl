@@ -1,5 +1,5 @@
 // Rounding in the shader, beside storage.py, for a device that does not round as the codec asks. The kinds of format
-// are UNORM 0, SNORM 1, half 2, float 3.
+// are UNORM 0, SNORM 1, half 2, and other floats 3, which the shader leaves to the device.
 
 float round_half(float x, bool truncates) {
     const float STEP = exp2(24.0);  // below 2^-14 half floats are multiples of 2^-24

@@ -44,8 +44,8 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
 
 
 def storage_kind(storage: Storage) -> int:
-    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, float 3."""
-    return KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] == 32)
+    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, other floats 3."""
+    return KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] != 16)
 
 
 def storage_defines(storage: Storage, rounding: str, shader_rounds: bool) -> dict[str, object]:

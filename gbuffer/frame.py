@@ -12,7 +12,6 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ..encodings import vec
 from ..encodings.storage import Storage
 from . import materials
 from .codec_passes import encoding_defines, storage_kind
@@ -161,7 +160,6 @@ class Frame:
     def _defines(self) -> dict[str, object]:
         plan = self.plan
         return {
-            **vec.CONSTANTS,
             **materials.CONSTANTS,
             **encoding_defines(plan.layout.codec.encoding),
             **layout_defines(self.device, plan.layout),

@@ -32,6 +32,8 @@ SPACES = ("view", "world")
 # How a number x in [0, 1] becomes one of 2^n codes: floor(x (2^n - 1 + widen) + bias).
 PACKINGS = {"nearest": (0.0, 0.5), "truncate": (0.0, 0.0), "truncate_half": (0.5, 0.0)}
 MAX_PACKED_BITS = 24
+# A Deferred ID tells four kinds apart, an instance is 1 to 255.
+LEAST_BITS = {"kind": 2, "instance": 8}
 DEPTH_STENCIL_BYTES = 5
 
 
@@ -121,10 +123,12 @@ class Layout:
         place = f"layout {self.name}, target {index} ({target.format})"
         storage, bit, words = target.storage, 0, []
         for text in target.holds.split():
-            match = re.fullmatch(r"([a-z.]+|-)(?::(\d+))?", text)
+            match = re.fullmatch(r"([a-z.]+|-)(?::(\d{1,2}))?", text)
             if not match or match[1] not in (*COMPONENTS, FREE):
                 raise LayoutError(f"{place}: unknown component {text!r}; known: {', '.join(COMPONENTS)}, {FREE}")
             bits = int(match[2] or 0)
+            if match[2] and not bits:
+                raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")
             if bits and (storage.kind != "unorm" or set(storage.bits) != {8} or bits > MAX_PACKED_BITS):
                 raise LayoutError(
                     f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into channels of 8-bit UNORM"
@@ -136,9 +140,25 @@ class Layout:
             if bit + taken > sum(storage.bits):
                 raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
             if match[1] != FREE:
+                self._check_word(place, match[1], storage, taken)
                 words.append(Word(match[1], index, bit if bits else channel, bits))
             bit += taken
         return words
+
+    def _check_word(self, place: str, component: str, storage: Storage, bits: int) -> None:
+        """Raises LayoutError where a word cannot say what it must."""
+        signed_depth = component == "depth" and ENCODINGS[self.encoding].sign_bits > 0
+        least = LEAST_BITS.get(component, 2 if signed_depth else 1)
+        if bits < least:
+            raise LayoutError(f"{place}: {component} needs {least} bits, not {bits}")
+        if storage.kind == "float" and bits < 16 and (component.startswith(("normal", "motion")) or signed_depth):
+            raise LayoutError(f"{place}: {storage.title} has no sign, which {component} needs")
+
+    @property
+    def summary(self) -> str:
+        """All that makes it what it is, in one line."""
+        targets = "; ".join(f"{target.format}: {target.holds}" for target in self.targets)
+        return f"{targets}; {self.encoding}, {self.space} space, {self.rounding}, packed {self.packing}"
 
     @property
     def components(self) -> frozenset[str]:
@@ -175,7 +195,7 @@ class Layout:
             LayoutError: the codec keeps a sign in a depth that the layout does not keep.
         """
         kept = [replace(t, holds=" ".join(_without_normal(t.holds))) for t in self.targets]
-        kept = [target for target in kept if set(target.holds.split()) - {FREE}]
+        kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
         home = Target(codec.storage.name, " ".join(f"normal.{a}" for a in "xyz"[: codec.encoding.components]))
         return replace(self, targets=(*kept, home), encoding=codec.encoding.name, rounding=codec.rounding)
 
@@ -205,7 +225,8 @@ def read_layout(path: Path) -> Layout:
     """
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
+        # ValueError is bad text, bad TOML, and a number of thousands of digits.
         raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
     return _from_data(path, data)
 

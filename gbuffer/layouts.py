@@ -56,6 +56,13 @@ _PRESETS = (
         "seed 002, Light Pre Pass buffer layout",
     ),
     Layout(
+        "inferred",
+        "two RGBA8: normal 16:16; linear depth 16, instance, specular power",
+        (Target("rgba8", "normal.x:16 normal.y:16"), Target("rgba8", "depth:16 instance power")),
+        "spheremap",
+        "Kircher and Lawrance 2009: normal, depth and an ID for the discontinuity-sensitive filter",
+    ),
+    Layout(
         "xy_depth_sign",
         "normal xy in RG16F, linear depth in R32F with the sign of the normal's z",
         (Target("rg16f", "normal.x normal.y"), Target("r32f", "depth"), *MATERIAL),

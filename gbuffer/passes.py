@@ -22,9 +22,9 @@ from .volumes import ball, cone
 
 Run = Callable[[], None]
 
-# In the shadow map surfaces lie this many of their own slopes, and this many of the smallest steps, farther away:
-# the three by three texels that are compared reach two texels from the centre.
-SHADOW_OFFSET = (3.0, 8.0)
+# The shadow map keeps far sides, which shadow no lit side of their own: they are moved away by their slope over one
+# texel and a few of the smallest steps, just so that wrapped light on them is not torn by rounding.
+SHADOW_OFFSET = (1.0, 4.0)
 # What light.frag's ACCUMULATES counts.
 ACCUMULATES = ("light", "colour", "by_id")
 # Of surfaces that meet in one depth the last wins, in the first geometry pass as in the second.

@@ -32,6 +32,7 @@ class Pipeline:
         needs: what of the G-buffer it cannot do without, beside the normal.
         light_targets: how many targets its light buffer may have; empty where it has none.
         scaled: whether G-buffer and light buffer may be smaller than the image.
+        starts_light: whether its geometry pass writes the light buffer beside the G-buffer.
         usual_layout: the layout it is published with.
     """
 
@@ -42,6 +43,7 @@ class Pipeline:
     needs: frozenset[str] = frozenset()
     light_targets: tuple[int, ...] = ()
     scaled: bool = False
+    starts_light: bool = False
     usual_layout: str = "hybrid"
 
     @property
@@ -77,6 +79,7 @@ _ALL = (
         ),
         needs=SURFACE,
         light_targets=(1,),
+        starts_light=True,
     ),
     Pipeline(
         "prepass",
@@ -100,7 +103,7 @@ _ALL = (
         ),
         light_targets=(1, 2),
         scaled=True,
-        usual_layout="normal_depth_material",
+        usual_layout="inferred",
     ),
     Pipeline(
         "hybrid",
@@ -117,6 +120,7 @@ _ALL = (
         ),
         needs=SURFACE | {"kind"},
         light_targets=(1, 2),
+        starts_light=True,
     ),
 )
 

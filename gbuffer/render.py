@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from .device import Device, read_pixels
-from .formats import FORMATS
+from .formats import FORMATS, R32F
 from .frame import Frame, Plan
 from .layout import DEPTH_STENCIL_BYTES, LayoutError
 from .passes import Run, unpacked
@@ -134,22 +134,23 @@ def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
         raise LayoutError(f"{pipeline.name} has {known} light target{'s' * (known != '1')}, not {plan.light_targets}")
     if max(pipeline.light_targets) > 1 and plan.light_targets == 1 and not light.has_alpha:
         raise LayoutError(f"one light target needs an alpha channel, which {light.name} does not have")
-    # The geometry pass may write a light target beside the G-buffer.
-    targets, most = len(layout.targets) + 1, device.max_targets
-    if targets > most:
+    beside = int(pipeline.starts_light)
+    if len(layout.targets) + beside > device.max_targets:
+        more = ", and a light buffer comes on top" if beside else ""
         raise LayoutError(
-            f"layout {layout.name} has {targets - 1} targets, and a light buffer comes on top; "
-            f"{device.renderer} has {most}"
+            f"layout {layout.name} has {len(layout.targets)} targets{more}; {device.renderer} has {device.max_targets}"
         )
 
 
 def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
-    """What a pipeline keeps for each pixel of the image: G-buffer, depth and stencil, light buffer; not the image."""
+    """What a pipeline keeps for each pixel of the image, at all its samples: G-buffer, depth and stencil, light buffer,
+    and the resolved linear depth where the layout keeps no depth of its own; not the image and the shadow map."""
     if not pipeline.has_gbuffer:
         return float(DEPTH_STENCIL_BYTES * plan.samples)
     light = sum(plan.light_buffer.storage.bits) // 8 * plan.light_targets
-    kept = plan.layout.bytes_per_pixel + light
-    if pipeline.scaled:
+    resolved = 0 if "depth" in plan.layout.components else sum(R32F.bits) // 8
+    kept = plan.layout.bytes_per_pixel + light + resolved
+    if pipeline.scaled and (plan.scale < 1 or plan.samples > 1):
         return kept * plan.scale**2 + DEPTH_STENCIL_BYTES * plan.samples
     return float(kept * plan.samples)
 

@@ -32,6 +32,7 @@ def sweep_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
 
     matplotlib.use("agg")
     from matplotlib import pyplot
+    from matplotlib.ticker import LogLocator, ScalarFormatter
 
     shadows = sorted({row["shadow"] for row in rows}, reverse=True)
     # A layout or light buffer tells lines of one pipeline apart where there are several.
@@ -58,6 +59,8 @@ def sweep_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
         panel.set_xlabel("objects")
         panel.set_xscale("log")
         panel.set_yscale("log")
+        panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        panel.yaxis.set_major_formatter(ScalarFormatter())
         counts = sorted({row["objects"] for row in rows})
         panel.set_xticks(counts, [str(count) for count in counts])
         panel.minorticks_off()

@@ -68,6 +68,13 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
         ([("rgba8", "normal.x:12 normal.y power:8")], {}, "starts within a channel"),
         ([("rgba16f", "normal.x:12 normal.y:12")], {}, "8-bit UNORM"),
         ([("rgba8", "normal.x:30")], {}, "up to 24 bits"),
+        ([("rgba8", "normal.x:0 normal.y:12")], {}, "at least 1 bit"),
+        ([("rgba8", "normal.x:99999 normal.y:12")], {}, "unknown component"),
+        ([("rgba8", "normal.x:12 normal.y:12 kind:1")], {}, "kind needs 2 bits, not 1"),
+        ([("rgba8", "normal.x:12 normal.y:12 instance:4")], {}, "instance needs 8 bits, not 4"),
+        ([("rgba8", "normal.x:12 normal.y:12 depth:1")], {"encoding": "xy_sign"}, "depth needs 2 bits, not 1"),
+        ([("r11g11b10f", "normal.x normal.y")], {}, "has no sign, which normal.x needs"),
+        ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
         ([("rgb565", "normal.x normal.y")], {}, "unknown format 'rgb565'; known: rgba8"),
         ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "keeps no depth"),
         ([("rg16f", "normal.x normal.y")], {"encoding": "cubemap"}, "unknown encoding 'cubemap'"),
@@ -86,6 +93,8 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
     "text, said",
     [
         ("title = 'x", "cannot be read as a layout"),
+        ("title = " + "9" * 5000, "cannot be read as a layout"),
+        ("targets = " + "[" * 100_000, "cannot be read as a layout"),
         ("encoding = 'octahedral'", "targets is a list of tables"),
         ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'", "targets is a list of tables"),
         ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 3", "targets is a list of tables"),
@@ -116,6 +125,8 @@ def test_a_codec_takes_the_place_of_a_layouts_normal():
     changed = LAYOUTS["normal_depth"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16_snorm"]))
     assert [t.holds for t in changed.targets] == ["- - depth:16", "normal.x normal.y"]
     assert changed.codec.name == "octahedral/rg16_snorm" and changed.components == LAYOUTS["normal_depth"].components
+    moved = LAYOUTS["unreal5_substrate_32"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16"]))
+    assert len(moved.targets) == 3 and moved.bytes_per_pixel == LAYOUTS["unreal5_substrate_32"].bytes_per_pixel
     with pytest.raises(LayoutError, match="keeps no depth"):
         LAYOUTS["hybrid"].with_codec(Codec(ENCODINGS["xy_sign"], STORAGES["rg8"]))
 
@@ -125,6 +136,8 @@ def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
     with pytest.raises(LayoutError, match=r"fp32 has 4 targets, and a light buffer comes on top; .* has 3"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["fp32"], light_targets=1))
     check(gl, PIPELINES["forward"], plan(LAYOUTS["fp32"]))
+    monkeypatch.setattr(gl, "max_targets", 4)
+    check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"]))
 
 
 def test_a_pipeline_says_what_a_layout_lacks(gl):

@@ -71,6 +71,20 @@ def test_layouts_are_measured_as_they_are(run):
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
 
+def test_bytes_per_pixel_count_what_a_frame_keeps(run):
+    """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; at two samples twice that."""
+    arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
+    figures = [json.loads(run(*QUICK[:-4], *arguments, "--format", "json", "--samples", n)[1]) for n in ("1", "2")]
+    assert [row["bytes_per_pixel"] for row in figures[0]] == [17 + 4 + 16, 21 + 16]
+    assert [row["bytes_per_pixel"] for row in figures[1]] == [2 * 37, 2 * 37]
+
+
+def test_codecs_are_ranked_among_their_like(run):
+    """With and without shadows are two contests."""
+    _, out, _ = run(*QUICK[:-2], "--format", "json", "--pipeline", "deferred,hybrid", "--shadow", "on,off")
+    assert [row["rank"] for row in json.loads(out)].count(1) == 4
+
+
 def test_what_does_not_suit_is_left_out_and_named(run):
     status, out, err = run(
         *QUICK[:-4], "--format", "json", "--pipeline", "deferred,prepass", "--layout", "normal_depth"
@@ -112,7 +126,8 @@ def test_lower_resolutions_of_inferred_are_reported(run):
         _, out, _ = run("render", *SMALL, "--scene", "room", *arguments)
         figures += json.loads(out)
     assert figures[0]["exact"] and figures[1]["psnr_db"] > figures[2]["psnr_db"] > 15
-    assert [row["bytes_per_pixel"] for row in figures] == [101 + 5, 101 / 4 + 5, 101 / 16 + 5]
+    # At full size the image shares the G-buffer's depth and stencil.
+    assert [row["bytes_per_pixel"] for row in figures] == [101, 101 / 4 + 5, 101 / 16 + 5]
 
 
 def test_samples_beyond_the_device_are_asked_and_given(run, gl):
@@ -176,6 +191,11 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--size", "640"], "WIDTHxHEIGHT"),
         (["--size", "99999999x10"], "each from 1 to"),
         (["--size", "16384x16384"], "2^25"),
+        (["--frames", "1000"], "2^25"),
+        (["--layout", ""], "no layout named"),
+        (["--encoding", ""], "no encoding named"),
+        (["--layout", "hybrid", "--rounding", "up"], "unknown rounding 'up'"),
+        (["--layout", "hybrid,hybrid.toml"], "two layouts are called hybrid"),
         (["--samples", "0"], "--samples 0: from 1 to 64"),
         (["--scale", "0"], "a scale is 0.05 to 1"),
         (["--scale", "nan"], "a scale is 0.05 to 1"),
@@ -205,10 +225,11 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     clash = "encoding = 'xy'\n[[targets]]\nformat = 'rgba8'\nholds = 'normal.x normal.y normal.x'\n"
     (tmp_path / "clash.toml").write_text(clash)
+    (tmp_path / "hybrid.toml").write_text(clash.replace(" normal.x'", "'"))
     status, out, err = run("render", "--pipeline", "hybrid", *arguments)
     assert (status, out) == (2, "")
     assert err.count("\n") == 1 and said in err, err
-    assert [path.name for path in tmp_path.iterdir()] == ["clash.toml"]
+    assert {path.name for path in tmp_path.iterdir()} == {"clash.toml", "hybrid.toml"}
 
 
 def test_a_sweep_counts_what_each_pass_draws(run):
@@ -268,6 +289,54 @@ def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
     assert rows[:3] == kept and len(rows) == 8 and not journal.exists()
 
 
+def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, monkeypatch):
+    """A layout that changed behind its name is another sweep."""
+    monkeypatch.chdir(tmp_path)
+    layout = "encoding = 'octahedral'\n[[targets]]\nformat = '{}'\nholds = 'normal.x normal.y'\n"
+    measure, rows = sweep.measure, []
+
+    def stopping(device, point):
+        if rows:
+            raise SystemExit(143)
+        rows.append(measure(device, point))
+        return rows[0]
+
+    command = (
+        "sweep",
+        *SMALL,
+        "--pipeline",
+        "prepass",
+        "--objects",
+        "3,5",
+        "--layout",
+        "mine.toml",
+        "-o",
+        "new/rows.csv",
+    )
+    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
+    monkeypatch.setattr(sweep, "measure", stopping)
+    with pytest.raises(SystemExit):
+        run(*command)
+    journal = tmp_path / "new" / ".rows.csv.rows"
+    kept = journal.read_text()
+    (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
+    status, _, err = run(*command)
+    assert status == 2 and "keeps 1 rows of another sweep" in err and journal.read_text() == kept
+    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
+    monkeypatch.setattr(sweep, "measure", measure)
+    assert run(*command)[0] == 0 and not journal.exists()
+
+
+def test_a_sweep_goes_through_a_pipe(run, tmp_path):
+    """What is no file has no journal beside it."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
+    status, *_ = run(*SWEEP, "--format", "csv", "-o", str(pipe))
+    assert status == 0 and reader.communicate(timeout=20)[0].count("\n") == 9
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
+
+
 def test_two_sweeps_do_not_share_an_output(run, tmp_path):
     with sweep.journal(tmp_path / "rows.csv"):
         status, _, err = run(*SWEEP, "-o", str(tmp_path / "rows.csv"))
@@ -293,6 +362,10 @@ def test_an_interrupted_process_leaves_its_journal(tmp_path):
     [
         (["--objects", "100,x"], "comma-separated"),
         (["--objects", "0"], "numbers from 1"),
+        (["--objects", "9" * 5000], "numbers from 1"),
+        (["--samples", "0"], "--samples 0: from 1 to 64"),
+        (["--scale", "2"], "a scale is 0.05 to 1"),
+        (["--layout", ""], "no layout named"),
         (["--objects", ""], "numbers from 1"),
         (["--size", "0x0"], "WIDTHxHEIGHT"),
         (["--plot", "plot.jpg"], "a plot's name ends in .png, .svg, .pdf"),

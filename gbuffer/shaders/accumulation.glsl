@@ -50,16 +50,16 @@ Accumulated fetch_light(ivec2 pixel) {
 }
 
 // A highlight of the light pass's fixed power at the material's own, [S / sum(N.L att)]^m sum(N.L att), with the sum
-// taken for the luminance of the diffuse light (seed 002).
-vec3 at_power(vec3 specular, float diffuse, float power) {
-    vec3 per_light = specular / max(diffuse, TINY) * 8.0 / (LIGHT_PASS_POWER + 8.0);
-    return pow(max(per_light, TINY), vec3(power / LIGHT_PASS_POWER)) * diffuse * (power + 8.0) / 8.0;
+// taken for the luminance of the diffuse light (seed 002). A light pass that knows no kinds took it for a general one.
+vec3 at_power(vec3 specular, float diffuse, int kind, float power) {
+    vec3 per_light = specular / max(diffuse, TINY) / lobe_gain(HAS_KIND != 0 ? kind : GENERAL, LIGHT_PASS_POWER);
+    return pow(max(per_light, TINY), vec3(power / LIGHT_PASS_POWER)) * diffuse * lobe_gain(kind, power);
 }
 
-// Specular light for a material of this power.
-vec3 specular_light(Accumulated a, float power) {
+// Specular light for a material of this kind and power; `material.glsl` is included before.
+vec3 specular_light(Accumulated a, int kind, float power) {
     vec3 diffuse = a.first.rgb;
     vec3 specular = LIGHT_TARGETS > 1 ? a.second.rgb : chromaticity(diffuse) * a.first.a;
-    return HAS_POWER != 0 ? specular : at_power(specular, luminance(diffuse), power);
+    return HAS_POWER != 0 ? specular : at_power(specular, luminance(diffuse), kind, power);
 }
 #endif

@@ -1,6 +1,7 @@
 #version 430
-// One light on what the G-buffer holds: the sun if LIT_BY_SUN is 1, else the lamp of number `light`. ACCUMULATES says what for: 0 light for a second geometry pass, 1 finished
-// colour, 2 the one for special materials and the other for general ones.
+// One light on what the G-buffer holds: the sun if LIT_BY_SUN is 1, else the lamp of number `light`. ACCUMULATES says
+// what for: 0 light for a second geometry pass, 1 finished colour, 2 the one for special materials and the other for
+// general ones.
 #define WRITES_LIGHT
 #include "gbuffer.glsl"
 #include "material.glsl"

@@ -15,6 +15,6 @@ void main() {
 #else
     Accumulated a = fetch_light(ivec2(gl_FragCoord.xy));
 #endif
-    vec3 lit = compose(s, a.first.rgb, specular_light(a, s.power));
+    vec3 lit = compose(s, a.first.rgb, specular_light(a, s.kind, s.power));
     colour = vec4(ADDS != 0 ? lit + s.emissive : lit + unlit(s), s.alpha);
 }

@@ -1,14 +1,17 @@
 // How materials answer light. Every kind is albedo x D + specular x S: D and S are sums over lights, which a light
-#include "../../encodings/vec.glsl"
 // buffer may hold, and only `light_terms` knows how a kind makes them. Kinds and constants come from materials.py.
+#include "../../encodings/vec.glsl"
 #include "surface.glsl"
 
 struct Terms {
     float diffuse, specular;
 };
 
-// Blinn-Phong, normalised so that its lobe under N.L holds as much light at every power: (n + 8) / 8 (N.H)^n.
-float lobe(float cosine, float power) { return (power + 8.0) / 8.0 * pow(max(cosine, TINY), power); }
+// What keeps the light in a Blinn-Phong lobe under N.L the same at every power, (n + 8) / 8; hair's has no such factor.
+float lobe_gain(int kind, float power) { return kind == HAIR ? 1.0 : (power + 8.0) / 8.0; }
+
+// Blinn-Phong, normalised: (n + 8) / 8 (N.H)^n
+float lobe(float cosine, float power) { return lobe_gain(GENERAL, power) * pow(max(cosine, TINY), power); }
 
 // Schlick 1994: F = F0 + (1 - F0) (1 - V.H)^5
 float fresnel(float cosine) { return COAT_F0 + (1.0 - COAT_F0) * pow(max(1.0 - cosine, 0.0), 5.0); }
@@ -22,7 +25,8 @@ Terms light_terms(int kind, vec3 direction, vec3 l, vec3 v, float power) {
         return Terms(max(d_l + SKIN_WRAP, 0.0) / ((1.0 + SKIN_WRAP) * (1.0 + SKIN_WRAP)), lit * lobe(d_h, power));
     }
     if (kind == HAIR) {
-        // Kajiya and Kay 1989, the highlight by Scheuermann 2004: D = sin(T, L), S = sin(T, H)^n
+        // Kajiya and Kay 1989, the highlight by Scheuermann 2004: D = sin(T, L), S = sin(T, L) sin(T, H)^n,
+        // sin(T, L) in place of N.L
         float sin_l = sqrt(max(1.0 - d_l * d_l, 0.0)), sin_h = sqrt(max(1.0 - d_h * d_h, 0.0));
         return Terms(sin_l, sin_l * pow(max(sin_h, TINY), power));
     }
