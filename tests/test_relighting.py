@@ -323,6 +323,21 @@ def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
         )
 
 
+def test_a_coarse_ball_does_not_shadow_what_its_normals_say_is_lit(gl):
+    """Smooth normals on flat faces: some faces that look away from the sun are lit all the same. All
+    pixels with an N.L of 0.05 or more are."""
+    view = View((-3.0, 3.0, 5.0), (0.0, 0.0, 0.0), 30.0, 0.5, 50.0)
+    ball = Part(sphere(1.0, 18, 12), placed((0, 0, 0)), np.array([0]))
+    white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
+    scene = Scene((ball,), (white,), (Light("sun", (1.0,) * 3, direction=SUN),), (0.0, 0.0, 0.0), view, view)
+    frame = draw(gl, "deferred", scene, shadows=True)
+    seen = surfaces(scene, frame.gbuffer)
+    facing = seen.direction @ -np.array(SUN)
+    wrong = (frame.image[seen.covered][:, 0] < facing - 1e-4) & (facing > 0.05)
+    assert np.sum(facing > 0.05) > 3000
+    assert not wrong.any(), f"{wrong.sum()} pixels too dark, where N.L is up to {facing[wrong].max():.2f}"
+
+
 # Positions
 
 
