@@ -20,6 +20,7 @@ from ..reports.plots import PlotError
 from .counts import DEFAULT_COUNT
 from .errors import MissingError, UsageError
 from .output import abandon_output, write
+from .progress import interrupted
 
 app = typer.Typer(
     add_completion=False,
@@ -202,10 +203,17 @@ def _say(message: str) -> None:
     print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
 
 
+def _interrupt(*_: object) -> None:
+    interrupted.set()
+    raise KeyboardInterrupt
+
+
 def main() -> int:
     """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
     # A terminated run clears up after itself as an interrupted one does.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    signal.signal(signal.SIGINT, _interrupt)
+    interrupted.clear()
     try:
         if sys.stdout is None:
             raise UsageError("standard output is closed; name a file with -o")

@@ -1,9 +1,14 @@
-"""A progress bar for whatever takes over a second."""
+"""A progress bar for whatever takes over a second, and the place where an interruption is not lost."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+# Set when Ctrl-C was pressed. KeyboardInterrupt may be raised where a library swallows it, as in a callback of the
+# garbage collector; then the next step raises it again.
+interrupted = threading.Event()
 
 
 @contextmanager
@@ -13,8 +18,13 @@ def progress(total: int) -> Iterator[Callable[[str], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+    def advance(description: str) -> None:
+        if interrupted.is_set():
+            raise KeyboardInterrupt
+        bar.update(task, advance=1, description=description)
+
     console = Console(stderr=True)
     columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=total)
-        yield lambda description: bar.update(task, advance=1, description=description)
+        yield advance

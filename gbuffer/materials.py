@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any
 
 from .scenes.scene import KINDS, LIGHT_KINDS
 
-CONSTANTS: Mapping[str, object] = MappingProxyType(
+CONSTANTS: Mapping[str, Any] = MappingProxyType(
     {
         **{kind.upper(): number for number, kind in enumerate(KINDS)},
         **{kind.upper(): number for number, kind in enumerate(LIGHT_KINDS)},
@@ -16,6 +17,7 @@ CONSTANTS: Mapping[str, object] = MappingProxyType(
         "BASE_POWER": 12.0,  # the broad lobe of a glossy material's metallic base
         "BASE_SHARE": 0.3,  # and how much of it
         "LIGHT_PASS_POWER": 32.0,  # the light pass's specular power where the G-buffer keeps none
+        "CONE_COSINE": 0.17,  # of the half angle of the widest spot drawn as a cone; wider ones are drawn as balls
         "LOG2_POWER_MAX": 11.0,  # powers up to 2048 are stored by their logarithm in fixed-point formats
         "LUMA": (0.2126, 0.7152, 0.0722),  # Rec. 709, linear (seed 002)
         "FILTER_DEPTH": 0.03,  # taps within this share of the depth are of the same surface

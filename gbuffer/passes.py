@@ -16,6 +16,7 @@ import numpy as np
 from . import raw
 from .formats import FORMATS
 from .frame import SHADOW_SIZE, Frame
+from .materials import CONSTANTS
 from .scenes.mesh import Mesh, wound
 from .scenes.scene import Light
 from .volumes import ball, cone
@@ -173,7 +174,7 @@ class LightVolumes:
         self._mark = frame.program("volume.vert", "nothing.frag")
         self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=0)
         self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=1))
-        self._shapes = {kind: self._upload(shape()) for kind, shape in (("point", ball), ("spot", cone))}
+        self._ball, self._cone = self._upload(ball()), self._upload(cone())
         self.queries: list[moderngl.Query] | None = None
 
     def _upload(self, bounds: Mesh) -> tuple[moderngl.VertexArray, moderngl.VertexArray]:
@@ -208,7 +209,9 @@ class LightVolumes:
         self._sun.render(moderngl.TRIANGLES, vertices=3)
 
     def _local(self, index: int, light: Light) -> None:
-        mark, shade = self._shapes[light.kind]
+        # Shader and shape go by the same number.
+        narrow = light.kind == "spot" and np.float32(np.cos(np.radians(light.outer))) > CONSTANTS["CONE_COSINE"]
+        mark, shade = self._cone if narrow else self._ball
         _state(self._frame, "<=")
         raw.mark_volume()
         self._mark["light"] = index

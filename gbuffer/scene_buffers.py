@@ -173,7 +173,7 @@ def sun_matrix(scene: Scene) -> np.ndarray:
 
 
 def _bump_texture(device: Device, size: int = 256) -> moderngl.Texture:
-    """A normal map, tiling: round studs with grooves between them, as slopes along u and v up to about 0.7."""
+    """A normal map, tiling: round pits, as slopes along u and v up to about 0.7."""
     u, v = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size)
     cells = 4
     x, y = (u * cells) % 1 - 0.5, (v * cells) % 1 - 0.5

@@ -77,6 +77,8 @@ IN_VIEW = {
     "spot from the eye": Light("spot", (40.0,) * 3, (0.0, 0.0, 0.0), 16.0, towards(0.2, -0.2, -1.0), 10.0, 25.0),
     "spot to the eye": Light("spot", (8.0,) * 3, (0.0, 1.0, -12.0), 14.0, towards(0.0, -0.08, 1.0), 25.0, 40.0),
     "wide spot": Light("spot", (10.0,) * 3, (1.0, 2.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.0),
+    "spot wider than any cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 120.0),
+    "spot at the widest cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.3),
     "spot past the eye": Light("spot", (10.0,) * 3, (-4.0, 0.0, -8.0), 12.0, towards(0.5, -0.1, 1.0), 20.0, 35.0),
 }
 

@@ -353,7 +353,8 @@ def test_an_interrupted_process_leaves_its_journal(tmp_path):
         time.sleep(0.1)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 130 and "rows are kept" in err and "Traceback" not in err
+    # Python ends itself by the signal where that came in the middle of an import; to a shell that is 130 as well.
+    assert process.returncode in (130, -signal.SIGINT) and "rows are kept" in err and "Traceback" not in err
     assert not output.exists()
 
 
