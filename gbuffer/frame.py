@@ -93,7 +93,7 @@ class Frame:
         previous = projection @ self.scene.previous.matrix() @ to_world
         up = np.tan(np.radians(view.fov) / 2)
         rays = (up * self.plan.size[0] / self.plan.size[1], up, view.near, view.far)
-        vectors = [(*self.scene.ambient, 0.0), rays, (*size, SHADOW_SIZE, len(self.scene.lights))]
+        vectors = [(*self.scene.ambient, 0.0), rays, (*size, SHADOW_SIZE, 0.0)]
         matrices = [projection, np.linalg.inv(projection), to_world, to_sun, previous]
         data = np.concatenate([*(m.T.ravel() for m in matrices), *map(np.array, vectors)])
         return self.device.owned(self.stack, self.context.buffer(data.astype(np.float32).tobytes()))

@@ -26,6 +26,8 @@ Run = Callable[[], None]
 # The shadow map keeps far sides, which shadow no lit side of their own: they are moved away by their slope over one
 # texel and a few of the smallest steps, just so that wrapped light on them is not torn by rounding.
 SHADOW_OFFSET = (1.0, 4.0)
+# What has two sides shadows with both: as far away as the slope reaches over the texels that are compared, corners too.
+THIN_SHADOW_OFFSET = (8.0, 16.0)
 # What light.frag's ACCUMULATES counts.
 ACCUMULATES = ("light", "colour", "by_id")
 # Of surfaces that meet in one depth the last wins, in the first geometry pass as in the second.
@@ -72,10 +74,12 @@ def shadow_map() -> Stage:
             target.viewport = (0, 0, SHADOW_SIZE, SHADOW_SIZE)
             target.clear(depth=1.0)
             _state(frame, "<")
-            frame.context.polygon_offset = SHADOW_OFFSET
             frame.prepare(casters.program, frame.plan.size)
             # The far sides of what is closed (Wang and Molnar 1994): no lit side can shadow itself.
+            frame.context.polygon_offset = SHADOW_OFFSET
             casters.draw("casters", cull="front")
+            frame.context.polygon_offset = THIN_SHADOW_OFFSET
+            casters.draw("thin casters")
             frame.context.polygon_offset = (0.0, 0.0)
 
         return run

@@ -31,8 +31,8 @@ class SceneBuffers:
     """What a scene's frames are drawn from, released with `stack`.
 
     Attributes:
-        draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters",
-            and for each light's index the opaque instances within its reach.
+        draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
+            (closed) and "thin casters" (two-sided), and for each light's index the opaque instances within its reach.
         lights, first_lamp: the lights as shaders number them, and the first that is no sun.
         meshes: vertex and index buffers.
         two_sided: whether the back of each mesh is drawn as well.
@@ -104,11 +104,15 @@ class SceneBuffers:
         material = np.concatenate([part.materials for part in parts])
         transparent = np.array([m.alpha < 1 for m in materials])[material]
         special = np.array([m.kind != KINDS[0] for m in materials])[material]
-        casts = np.repeat([part.casts for part in parts], [len(part.models) for part in parts])
+        casts, thin = (
+            np.repeat([getattr(part, field) for part in parts], [len(part.models) for part in parts])
+            for field in ("casts", "two_sided")
+        )
         chosen: dict[str | int, np.ndarray] = {
             "general": ~transparent & ~special,
             "special": ~transparent & special,
-            "casters": ~transparent & casts,
+            "casters": ~transparent & casts & ~thin,
+            "thin casters": ~transparent & casts & thin,
         }
         centres, radii = bounds(self._scene)
         for index, light in enumerate(self.lights):

@@ -77,7 +77,7 @@ def lit_playground(setting: Setting) -> Scene:
     return Scene(
         parts=parts,
         materials=materials,
-        lights=(Light("sun", (0.5, 0.48, 0.45), direction=(-0.2, -0.16, -0.96664)), *_lights(setting, rng)),
+        lights=(Light("sun", (0.5, 0.48, 0.45), direction=(-0.968, -0.08, -0.23778)), *_lights(setting, rng)),
         ambient=(0.05, 0.05, 0.06),
         view=view,
         previous=View((0.05, 0, 0), (0.05, 0, -1.0), CAMERA.fov, CAMERA.near, CAMERA.far),

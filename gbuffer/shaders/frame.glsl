@@ -8,10 +8,9 @@ layout(std140, binding = 0) uniform Frame {
     mat4 previous_clip;       // view space now to clip space a frame ago
     vec4 ambient;
     vec4 eye_ray;             // tan(fov/2) aspect, tan(fov/2), near, far
-    vec4 size;                // of the target, in pixels; shadow map's size; number of lights
+    vec4 size;                // of the target, in pixels; of the shadow map
 };
 
-#define NEAR eye_ray.z
 #define FAR eye_ray.w
 
 // View-space position from the depth buffer's z/w: the inverse projection of clip space.
