@@ -20,7 +20,7 @@ from ..reports.plots import PlotError
 from .counts import DEFAULT_COUNT
 from .errors import MissingError, UsageError
 from .output import abandon_output, write
-from .progress import interrupted
+from .progress import ending
 
 app = typer.Typer(
     add_completion=False,
@@ -203,17 +203,17 @@ def _say(message: str) -> None:
     print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
 
 
-def _interrupt(*_: object) -> None:
-    interrupted.set()
-    raise KeyboardInterrupt
+def _end(by: BaseException) -> None:
+    ending.append(by)
+    raise by
 
 
 def main() -> int:
     """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
     # A terminated run clears up after itself as an interrupted one does.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    signal.signal(signal.SIGINT, _interrupt)
-    interrupted.clear()
+    signal.signal(signal.SIGTERM, lambda *_: _end(SystemExit(143)))
+    signal.signal(signal.SIGINT, lambda *_: _end(KeyboardInterrupt()))
+    ending.clear()
     try:
         if sys.stdout is None:
             raise UsageError("standard output is closed; name a file with -o")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-# Set when Ctrl-C was pressed. KeyboardInterrupt may be raised where a library swallows it, as in a callback of the
-# garbage collector; then the next step raises it again.
-interrupted = threading.Event()
+# What a signal raised to end the program. It may be raised where a library swallows it, as in a callback of the garbage
+# collector; then the next step raises it again.
+ending: list[BaseException] = []
 
 
 @contextmanager
@@ -19,8 +18,8 @@ def progress(total: int) -> Iterator[Callable[[str], None]]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     def advance(description: str) -> None:
-        if interrupted.is_set():
-            raise KeyboardInterrupt
+        if ending:
+            raise ending[0]
         bar.update(task, advance=1, description=description)
 
     console = Console(stderr=True)

@@ -30,8 +30,11 @@ SHADOW_OFFSET = (1.0, 4.0)
 THIN_SHADOW_OFFSET = (8.0, 16.0)
 # What light.frag's ACCUMULATES counts.
 ACCUMULATES = ("light", "colour", "by_id")
-# Of surfaces that meet in one depth the last wins, in the first geometry pass as in the second.
-NEAREST = "<="
+# Of surfaces that meet in one depth, as the two faces of a silhouette do, the first wins: passes that write the depth
+# keep it, passes over that depth change each sample once. Every pass leaves the stencil at 0.
+NEAREST, AGAIN = "<", "<="
+# Lights are told apart in eight bits of stencil: lamps by 1 to 254 in turn, the sun by 255.
+LAMP_NUMBERS = 254
 ADD = (moderngl.ONE, moderngl.ONE)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
 
@@ -290,12 +293,19 @@ def material(draws: str, adds: bool = False, filters: bool = False, blends: bool
                 target.clear()
             if begins and filters:
                 raw.clear_depth_stencil()
-            _state(frame, NEAREST, ADD if adds else OVER if blends else None)
+            guarded = not (blends or filters)
+            _state(frame, AGAIN if guarded else NEAREST, ADD if adds else OVER if blends else None)
+            if guarded:
+                frame.context.enable_direct(raw.STENCIL_TEST)
+                raw.once_a_pixel(1)
             read = gbuffer_textures(frame) if filters else {}
             frame.prepare(program, frame.buffer_size, light_texels=frame.light, **read)
             if "full_size" in program:
                 program["full_size"] = frame.plan.size
             surfaces.draw(draws)
+            if guarded:
+                frame.context.disable_direct(raw.STENCIL_TEST)
+                raw.clear_stencil()
 
         return run
 
@@ -331,13 +341,21 @@ def forward_lights() -> Stage:
 
         def run() -> None:
             target.use()
-            _state(frame, NEAREST, ADD)
+            _state(frame, AGAIN, ADD)
+            frame.context.enable_direct(raw.STENCIL_TEST)
             if frame.scene_buffers.first_lamp:
+                raw.once_a_pixel(LAMP_NUMBERS + 1)
                 sunlit.prepare(base=0.0)
                 sunlit.draw("opaque", 0, 0)
             lamplit.prepare(base=0.0)
             for lamp in range(*lamplit.lamps):
+                number = lamp % LAMP_NUMBERS + 1
+                if number == 1:
+                    raw.clear_stencil()
+                raw.once_a_pixel(number)
                 lamplit.draw(lamp, lamp, lamp + 1)
+            frame.context.disable_direct(raw.STENCIL_TEST)
+            raw.clear_stencil()
 
         return run
 

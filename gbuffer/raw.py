@@ -12,11 +12,11 @@ import moderngl
 TEXTURE_2D, TEXTURE_2D_MULTISAMPLE = 0x0DE1, 0x9100
 DEPTH32F_STENCIL8 = 0x8CAD
 DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x821A, 0x8D40, 0x8CD5
-FRAMEBUFFER_DEPTH_STENCIL = 0x84F9
+FRAMEBUFFER_DEPTH_STENCIL, STENCIL = 0x84F9, 0x1802
 STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
 FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
 ALWAYS, NOTEQUAL = 0x0207, 0x0205
-KEEP, ZERO, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x8507, 0x8508
+KEEP, ZERO, REPLACE, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x1E01, 0x8507, 0x8508
 
 _SIGNATURES = {
     "glGenTextures": "ip",
@@ -27,6 +27,7 @@ _SIGNATURES = {
     "glFramebufferTexture2D": "uuuui",
     "glCheckFramebufferStatus": "u",
     "glClearBufferfi": "uifi",
+    "glClearBufferiv": "uip",
     "glColorMask": "bbbb",
     "glStencilFunc": "uiu",
     "glStencilOpSeparate": "uuuu",
@@ -111,3 +112,14 @@ def shade_marked() -> None:
     function("glColorMask")(1, 1, 1, 1)
     function("glStencilFunc")(NOTEQUAL, 0, 0xFF)
     function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, ZERO, ZERO)
+
+
+def once_a_pixel(number: int) -> None:
+    """Draws change each sample once: where the stencil is not `number`, 1 to 255, and set it so."""
+    function("glStencilFunc")(NOTEQUAL, number, 0xFF)
+    function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, KEEP, REPLACE)
+
+
+def clear_stencil() -> None:
+    """Stencil to 0 in the framebuffer in use, depth as it is."""
+    function("glClearBufferiv")(STENCIL, 0, ctypes.byref(ctypes.c_int(0)))

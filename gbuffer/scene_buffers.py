@@ -127,8 +127,8 @@ class SceneBuffers:
         self.draws["transparent"] = []
         for instance in glass:
             self.draws["transparent"] += _listed(np.array([instance]), mesh, order)
-        # Special materials last: where two surfaces meet in one depth, both geometry passes keep the same one.
-        self.draws["opaque"] = self.draws["general"] + self.draws["special"]
+        # Special materials first: where a general surface meets one in one depth, both geometry passes keep that one.
+        self.draws["opaque"] = self.draws["special"] + self.draws["general"]
         return np.array(order, np.int32)
 
 

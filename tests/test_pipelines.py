@@ -15,6 +15,7 @@ from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.scene import KINDS, Scene
+from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("shadows", [False, True], ids=["no shadows", "shadows"])
@@ -28,6 +29,13 @@ def test_all_pipelines_give_one_image(gl, name, shadows):
         counts = ~glass if "inferred" in (one, other) else np.ones_like(glass)
         found = apart(images[one][counts], images[other][counts])
         assert found >= (55 if shadows else 70), f"{one} and {other} on {name}: {found:.1f} dB"
+
+
+def test_more_lights_than_the_stencil_counts(gl):
+    """600 lamps, each lighting each pixel once, in passes and all at once: 120 dB."""
+    scene = SCENES["playground"].make(Setting(lights=600))
+    found = apart(draw(gl, "forward_multipass", scene).image, draw(gl, "forward", scene).image)
+    assert found >= 120, f"{found:.1f} dB"
 
 
 @pytest.mark.parametrize("name", ["objects", "room"])
