@@ -47,6 +47,8 @@ def machine() -> dict[str, str]:
         "GL version": gl.version,
         "GL is software": "yes" if gl.is_software else "no",
         "GL largest texture": str(gl.max_size),
+        "GL targets at once": str(gl.max_targets),
+        "GL samples a pixel": str(gl.max_samples),
         **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
 
