@@ -18,16 +18,18 @@ def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]
     return float(np.mean(difference**2)), int(broken.sum())
 
 
-def flip(image: np.ndarray, reference: np.ndarray) -> float:
-    """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images, 0 to 1, at its usual 67 pixels a degree.
-
-    Raises:
-        MissingError: flip-evaluator is not installed.
-    """
+def require_flip() -> None:
+    """Raises MissingError where FLIP cannot be measured."""
     try:
-        from flip_evaluator import evaluate
+        import flip_evaluator  # noqa: F401 # asked for, not used
     except ImportError as error:
         raise MissingError(f"--flip needs flip-evaluator ({error}); pip install flip-evaluator") from error
+
+
+def flip(image: np.ndarray, reference: np.ndarray) -> float:
+    """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images, 0 to 1, at its usual 67 pixels a degree."""
+    from flip_evaluator import evaluate
+
     # It passes over a pixel that is no number; as black it differs.
     exact, measured = (np.nan_to_num(i).astype(np.float32) for i in (reference, image))
     return float(evaluate(exact, measured, "LDR", applyMagma=False, computeMeanError=True)[1])

@@ -24,6 +24,7 @@ from ..gbuffer.scenes.catalogue import SCENES
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures
 from .errors import UsageError, pick
+from .image_metrics import require_flip
 from .output import check_folder, check_writable, whole_file, write
 from .progress import progress
 from .quality import check_twin, require_device
@@ -231,6 +232,8 @@ def render_command(
 ) -> None:
     """Render, measure, write the pictures if asked for, then the rows."""
     device = require_device()
+    if with_flip:
+        require_flip()
     cases = request.cases(device)
     if images:
         check_folder(images)

@@ -44,7 +44,7 @@ def run(monkeypatch, capsys):
 
 
 def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
-    status, out, _ = run(*QUICK, "--pipeline", "deferred,forward", "--flip")
+    status, out, _ = run(*QUICK, "--pipeline", "deferred,forward")
     rows = json.loads(out)
     assert status == 0 and all(tuple(row) == rendering.COLUMNS for row in rows)
     octahedral, xy, forward = rows
@@ -53,12 +53,25 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
         "octahedral",
         "rgba8",
     )
-    assert octahedral["psnr_db"] > xy["psnr_db"] > 20 and xy["flip"] > octahedral["flip"] > 0
+    assert octahedral["psnr_db"] > xy["psnr_db"] > 20 and xy["flip"] is None
     assert (octahedral["rank"], xy["rank"], octahedral["normal_rank"], xy["normal_rank"]) == (1, 2, 1, 2)
     assert octahedral["bytes_per_pixel"] == 64 + 4 + 5 + 16, "the normal's RGBA32F still holds the depth"
     assert forward["layout"] is None and forward["exact"] and forward["psnr_db"] is None
     assert octahedral["ms_frame"] > 0 and octahedral["ms_lights"] > 0 and octahedral["ms_forward"] is None
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
+
+
+def test_flip_is_measured_where_it_is_asked_for(run):
+    pytest.importorskip("flip_evaluator")
+    status, out, _ = run(*QUICK, "--pipeline", "deferred", "--flip")
+    octahedral, xy = json.loads(out)
+    assert status == 0 and 1 > xy["flip"] > octahedral["flip"] > 0
+
+
+def test_flip_that_is_not_installed_is_one_line(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
+    status, out, err = run(*QUICK, "--flip")
+    assert (status, out) == (3, "") and err.count("\n") == 1 and "pip install flip-evaluator" in err
 
 
 def test_layouts_are_measured_as_they_are(run):
@@ -181,6 +194,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
     broken = image.copy()
     broken[1, 2, 0] = np.nan
     assert image_metrics.squared_error(broken, image) == (1 / 16, 1)
+    pytest.importorskip("flip_evaluator")
     assert image_metrics.flip(broken, image) > 0
 
 
