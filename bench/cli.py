@@ -205,7 +205,14 @@ def _say(message: str) -> None:
 
 def _end(by: BaseException) -> None:
     ending.append(by)
+    sys.unraisablehook = _say_unless_ending
     raise by
+
+
+def _say_unless_ending(what: sys.UnraisableHookArgs) -> None:
+    """What a callback swallowed: nothing to be said of what the next step raises again."""
+    if not any(what.exc_value is by for by in ending):
+        sys.__unraisablehook__(what)
 
 
 def main() -> int:

@@ -405,3 +405,21 @@ def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
     values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)
     assert np.array_equal(gl.through(values, STORAGES["rgba32f"]), values)
     assert gl.context.error == "GL_NO_ERROR"
+
+
+def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
+    """As JAX's does in the garbage collector: no traceback, and the next step ends."""
+    program = (
+        "import gc, os, signal, sys\n"
+        "from normalbench.bench import cli\n"
+        "def callback(*_):\n"
+        "    if 'normalbench.bench.sweep' in sys.modules and not sent:\n"
+        "        sent.append(os.kill(os.getpid(), signal.SIGINT))\n"
+        "sent = []\n"
+        "gc.callbacks.append(callback)\n"
+        "sys.exit(cli.main())\n"
+    )
+    command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 130, done.stderr
+    assert "rows are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr
