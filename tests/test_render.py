@@ -421,5 +421,5 @@ def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
     )
     command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 130, done.stderr
+    assert done.returncode in (130, -signal.SIGINT), done.stderr
     assert "rows are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr
