@@ -76,7 +76,7 @@ def shadow_map() -> Stage:
             target.use()
             target.viewport = (0, 0, SHADOW_SIZE, SHADOW_SIZE)
             target.clear(depth=1.0)
-            _state(frame, "<")
+            _state(frame, NEAREST)
             frame.prepare(casters.program, frame.plan.size)
             # The far sides of what is closed (Wang and Molnar 1994): no lit side can shadow itself.
             frame.context.polygon_offset = SHADOW_OFFSET
@@ -174,7 +174,7 @@ class LightVolumes:
     """
 
     def __init__(self, frame: Frame, accumulates: str, clears: int):
-        self._frame, self._clears = frame, clears
+        self._frame = frame
         self._target = frame.framebuffer(frame.light, frame.depth)
         self._cleared = [frame.framebuffer([texture]) for texture in frame.light[clears:]]
         kind = ACCUMULATES.index(accumulates)
@@ -371,7 +371,7 @@ def transparent() -> Stage:
 
         def run() -> None:
             target.use()
-            _state(frame, "<", OVER)
+            _state(frame, NEAREST, OVER)
             surfaces.prepare(base=1.0)
             surfaces.draw("transparent", *surfaces.lamps)
 

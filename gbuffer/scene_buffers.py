@@ -44,6 +44,8 @@ class SceneBuffers:
         self.view = scene.view.matrix()
         self.two_sided = [part.two_sided for part in scene.parts]
         self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
+        self._material = np.concatenate([part.materials for part in scene.parts])
+        self._transparent = np.array([m.alpha < 1 for m in scene.materials])[self._material]
         self.draws: dict[str | int, list[Draw]] = {}
         # The shaders find the sun in the first place.
         self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
@@ -67,16 +69,13 @@ class SceneBuffers:
         return self._buffer(vertices.astype(np.float32)), self._buffer(wound(mesh).astype(np.int32))
 
     def _instances(self) -> np.ndarray:
-        parts = self._scene.parts
-        count = sum(len(part.models) for part in parts)
+        models = np.concatenate([part.models for part in self._scene.parts])
+        count = len(models)
         table = np.zeros(count, [("model_view", np.float32, (4, 4)), ("numbers", np.int32, 4)])
-        models = np.concatenate([part.models for part in parts])
         # GLSL's matrices go column by column.
         table["model_view"] = np.swapaxes(self.view @ models, 1, 2)
-        materials = np.concatenate([part.materials for part in parts])
-        transparent = np.array([material.alpha < 1 for material in self._scene.materials])[materials]
-        layers = np.where(transparent, (np.cumsum(transparent) - 1) % LAYERS + 1, 0)
-        table["numbers"][:, 0], table["numbers"][:, 1] = materials, layers
+        layers = np.where(self._transparent, (np.cumsum(self._transparent) - 1) % LAYERS + 1, 0)
+        table["numbers"][:, 0], table["numbers"][:, 1] = self._material, layers
         table["numbers"][:, 2] = np.arange(count) % IDENTITIES + 1
         return table
 
@@ -99,11 +98,9 @@ class SceneBuffers:
 
     def _order(self) -> np.ndarray:
         """Fills `draws` and gives the instances that they list."""
-        parts, materials = self._scene.parts, self._scene.materials
+        parts, transparent = self._scene.parts, self._transparent
         mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
-        material = np.concatenate([part.materials for part in parts])
-        transparent = np.array([m.alpha < 1 for m in materials])[material]
-        special = np.array([m.kind != KINDS[0] for m in materials])[material]
+        special = np.array([m.kind != KINDS[0] for m in self._scene.materials])[self._material]
         casts, thin = (
             np.repeat([getattr(part, field) for part in parts], [len(part.models) for part in parts])
             for field in ("casts", "two_sided")

@@ -16,21 +16,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench import cli, quality, seeds
+from normalbench.bench import quality, seeds
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.reports import tables
 
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])
-        status = cli.main()
-        return status, *capsys.readouterr()
-
-    return command
 
 
 def in_a_process(*arguments: str, **environment: str) -> subprocess.CompletedProcess:

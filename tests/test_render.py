@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench import cli, image_metrics, rendering, sweep
+from normalbench.bench import image_metrics, rendering, sweep
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
@@ -31,16 +31,6 @@ SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
 QUICK = ["render", *SMALL, "--scene", "room", "--encoding", "octahedral,xy", "--format", "json"]
 SWEEP = ["sweep", *SMALL, "--objects", "3,5", "--pipeline", "prepass,hybrid"]
 CODECS = [Codec(e, s) for e in ENCODINGS.values() for s in STORAGES.values() if e.components <= s.channels]
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])
-        status = cli.main()
-        return status, *capsys.readouterr()
-
-    return command
 
 
 def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
