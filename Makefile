@@ -1,6 +1,6 @@
 # make bench   set up what is missing, then measure the default suite
 # make test    set up what is missing, then run the tests
-# make setup   virtual environment in .venv, packages, GL driver
+# make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
 PYTHON ?= python3
@@ -26,4 +26,5 @@ lint: .venv/ready
 	.ci/prepare-venv $(PYTHON)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --editable ".[dev]"
 	.ci/prepare-gl $(BIN)/python
+	.ci/prepare-isa $(BIN)/python
 	touch $@

@@ -11,13 +11,14 @@ import jax
 
 from ..encodings.storage import STORAGES
 from ..gbuffer.device import NoDeviceError, device
+from . import isa, spirv
 
 ROUNDS = {
     "nearest": "nearest",
     "truncate": "truncate (nearest is rounded in the shader)",
     "other": "neither nearest nor truncate (both are rounded in the shader)",
 }
-PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib")
+PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan")
 
 
 def _cpu() -> str:
@@ -38,11 +39,15 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
+    return facts | _gl() | _compilers()
+
+
+def _gl() -> dict[str, str]:
     try:
         gl = device()
     except NoDeviceError as error:
-        return facts | {"GL": str(error)}
-    return facts | {
+        return {"GL": str(error)}
+    return {
         "GL": gl.renderer,
         "GL version": gl.version,
         "GL is software": "yes" if gl.is_software else "no",
@@ -51,6 +56,21 @@ def machine() -> dict[str, str]:
         "GL samples a pixel": str(gl.max_samples),
         **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
+
+
+def _compilers() -> dict[str, str]:
+    """What `cost` counts instructions by."""
+    glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
+    return {
+        "RADV": isa.driver_version(),
+        "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
+        "SPIR-V optimiser": optimiser.splitlines()[0] if optimiser else spirv.NO_OPTIMISER,
+    }
+
+
+def lacks_compilers() -> bool:
+    """Whether there is something that `cost --isa` would have to do without."""
+    return any("install" in value for value in _compilers().values())
 
 
 def examine() -> list[dict[str, str]]:

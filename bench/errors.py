@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
+from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -34,6 +35,28 @@ def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:
         raise UsageError(f"unknown {what} {quoted(unknown)}; known: all, {', '.join(known)}")
     chosen = known if "all" in asked else dict.fromkeys(asked)
     return [known[name] for name in chosen]
+
+
+def pick_or_read(
+    what: str, names: str, known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
+) -> list[T]:
+    """The values that comma-separated names stand for, or files by what their names end in.
+
+    Raises:
+        UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
+    """
+    words = list(dict.fromkeys(name.strip() for name in names.split(",") if name.strip()))
+    files = [Path(word) for word in words if Path(word).suffix.lower() in endings]
+    called = [file.name for file in files]
+    twice = [name for name in called if called.count(name) > 1]
+    if twice:
+        raise UsageError(f"two files are called {twice[0]}, which is how rows name them; rename one")
+    others = [word for word in words if Path(word).suffix.lower() not in endings]
+    try:
+        chosen = pick(what, ",".join(others), known) if others or not files else []
+    except UsageError as error:
+        raise UsageError(f"{error}; or a file that ends in {', '.join(endings)}") from None
+    return chosen + [read(file) for file in files]
 
 
 def quoted(names: Iterable[str]) -> str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..encodings.catalogue import ENCODINGS
-from ..encodings.storage import STORAGES
+from ..encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
+from ..encodings.storage import DEPTH_STORAGES, STORAGES
 from ..gbuffer.layouts import LAYOUTS
-from ..gbuffer.light_buffers import LIGHT_BUFFERS
 from ..gbuffer.pipelines import PIPELINES
 from ..gbuffer.scenes.catalogue import SCENES
 from .errors import pick
@@ -19,6 +18,7 @@ NORMAL_SETS = {
 }
 
 
+HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
 COLUMNS = ("kind", "name", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
 Row = dict[str, object]
 
@@ -40,6 +40,16 @@ def _storages() -> list[Row]:
         _row("storage", s.name, f"{s.title}, {s.kind}", components=str(s.channels))
         | {"holds": f"{':'.join(map(str, s.bits))} bits"}
         for s in STORAGES.values()
+    ]
+
+
+def _depths() -> list[Row]:
+    return [
+        *(
+            _row("depth", d.name, d.title, holds=f"usually in {', '.join(d.storages)}") | {"from": d.citation}
+            for d in DEPTH_ENCODINGS.values()
+        ),
+        *(_row("depth storage", s.name, s.title, holds=f"{s.bits} bits") for s in DEPTH_STORAGES.values()),
     ]
 
 
@@ -68,14 +78,16 @@ def _scenes() -> list[Row]:
 
 def _light_buffers() -> list[Row]:
     return [
-        _row("light buffer", light.name, light.title, bytes_per_pixel=sum(light.storage.bits) // 8)
-        for light in LIGHT_BUFFERS.values()
+        _row("light buffer", light.name, light.title, bytes_per_pixel=light.bytes_per_pixel)
+        | {"holds": f"up to {light.limit:.6g}, by {HOW[light.blend]}", "from": light.citation}
+        for light in LIGHT_ENCODINGS.values()
     ]
 
 
 KINDS = {
     "encodings": _encodings,
     "storages": _storages,
+    "depths": _depths,
     "normals": _normal_sets,
     "layouts": _layouts,
     "pipelines": _pipelines,

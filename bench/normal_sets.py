@@ -46,6 +46,8 @@ class NormalSet:
         shape: (height, width) of a set that is an image, else None.
         seed: what the set was made with.
         chunk: start index -> Chunk.
+        background: how many of them are of no surface and do not count; None where there can be none.
+        not_finite: how many of a file's were NaN or infinite, which do not count either.
     """
 
     name: str
@@ -55,6 +57,8 @@ class NormalSet:
     shape: tuple[int, int] | None
     seed: int
     chunk: Callable[[int], Chunk]
+    background: int | None = None
+    not_finite: int | None = None
 
     @property
     def starts(self) -> range:
@@ -112,19 +116,31 @@ def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
     return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
 
 
-def from_arrays(name: str, title: str, n, view, covered, shape=None) -> NormalSet:
+def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite: int | None = None) -> NormalSet:
     """A set of given normals.
 
     Args:
         n, view: float32 arrays of shape (..., 3).
         covered: which of them count, bool of shape (...).
+        not_finite: how many of those that do not are NaN or infinite in the file they come from.
     """
     count = covered.size
+    background = count - int(np.count_nonzero(covered)) - (not_finite or 0)
     chunks = [
         _padded_chunk(*(np.asarray(a).reshape(count, -1)[start : start + CHUNK] for a in (n, view, covered)))
         for start in range(0, count, CHUNK)
     ]
-    return NormalSet(name, title, None, count, shape, 0, lambda start: chunks[start // CHUNK])
+    return NormalSet(
+        name,
+        title,
+        None,
+        count,
+        shape,
+        0,
+        lambda start: chunks[start // CHUNK],
+        background if shape else None,
+        not_finite,
+    )
 
 
 def _padded_chunk(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> Chunk:

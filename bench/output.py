@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -74,27 +74,6 @@ def whole_file(path: Path) -> Iterator[Path]:
             partial.unlink(missing_ok=True)
 
 
-@contextmanager
-def whole_folder(folder: Path) -> Iterator[Path]:
-    """A folder to fill that becomes `folder` when all is well and vanishes otherwise.
-
-    Raises:
-        UsageError: `folder` exists already, or cannot be written.
-    """
-    if folder.exists():
-        raise UsageError(f"{folder} exists already; name a folder that does not")
-    check_folder(folder)
-    partial = _partial(folder)
-    try:
-        partial.mkdir(parents=True)
-        yield partial
-        partial.rename(folder)
-    except OSError as error:
-        raise UsageError(f"cannot write {folder}: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-
-
 def say(text: str) -> None:
     """Text to standard output; a reader that has seen enough and gone is no error."""
     try:
@@ -109,12 +88,35 @@ def abandon_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def write(rows: Sequence[dict[str, Any]], format: str, output: Path | None, expendable: Sequence[str] = ()) -> None:
-    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns."""
+def write(
+    rows: Sequence[dict[str, Any]],
+    format: str,
+    output: Path | None,
+    expendable: Sequence[str] = (),
+    by: str | None = None,
+) -> None:
+    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
+
+    For people, rows that differ in column `by` are tables of their own.
+    """
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns
-        say(tables.written(rows, format, width, expendable))
+        say(tables.written(rows, format, width, expendable, by))
         return
     check_writable(output)
     with whole_file(output) as partial:
-        partial.write_text(tables.written(rows, format), encoding="utf-8")
+        partial.write_text(tables.written(rows, format, by=by), encoding="utf-8")
+
+
+def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:
+    """The rows less some of their columns."""
+    return [{column: value for column, value in row.items() if column not in hidden} for row in rows]
+
+
+def say_skipped(rows: Sequence[dict[str, Any]]) -> None:
+    """Why rows have no figures, each reason once, to standard error. Raises UsageError where none has any."""
+    reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
+    if reasons and all(row.get("skipped") for row in rows):
+        raise UsageError(next(iter(reasons)))
+    for reason in reasons:
+        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)

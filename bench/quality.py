@@ -14,13 +14,15 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
+from ..encodings.storage import ROUNDINGS, STORAGES
 from ..encodings.vec import Vec3
 from ..gbuffer.codec_passes import CodecPasses
 from ..gbuffer.device import Device, FormatError, NoDeviceError, device
 from ..gbuffer.shader import ShaderError
-from .errors import MissingError, UsageError
+from .errors import MissingError, UsageError, pick
 from .metrics import Decoded, Meter, Statistics, effective_bits, idle, psnr_db
 from .normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
+from .user_encodings import NoTwinError, encodings_named
 
 COLUMNS = (
     "encoding",
@@ -30,6 +32,8 @@ COLUMNS = (
     "backend",
     "bits",
     "count",
+    "background",
+    "not_finite",
     "invalid",
     "mse",
     "psnr_db",
@@ -47,7 +51,7 @@ COLUMNS = (
 )
 
 # Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
@@ -99,6 +103,8 @@ def check_twin(encoding: Encoding) -> None:
         if len(code) != size:
             raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
         jax.eval_shape(encoding.decode, code, n)
+    except NoTwinError:
+        return
     except Exception as error:  # whatever a user's own code raises
         raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error
 
@@ -139,6 +145,17 @@ def cases(codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: I
     return [Case(codec, chosen, backend) for chosen in normal_sets for codec in codecs for backend in backends]
 
 
+def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
+    """Every combination of comma-separated names, files of users' encodings among them. Raises UsageError."""
+    chosen = encodings_named(encodings)
+    return [
+        Codec(encoding, storage, rounding)
+        for storage in pick("storage", storages, STORAGES)
+        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for encoding in chosen
+    ]
+
+
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     """The codecs whose storage has room for their components, and a line for each that is left out.
 
@@ -170,6 +187,8 @@ def measure(case: Case, tick: Tick = idle) -> Row:
         "normals": case.normal_set.name,
         "backend": case.backend,
         "bits": case.codec.bits,
+        "background": case.normal_set.background,
+        "not_finite": case.normal_set.not_finite,
         "seed": case.normal_set.seed,
     }
     try:
@@ -206,16 +225,24 @@ def require_jax() -> None:
     try:
         jax.devices()
     except Exception as error:
-        reason = str(error).strip().splitlines() or [type(error).__name__]
+        reason = str(error).strip().splitlines() or ["the platform does not start"]
         raise MissingError(f"JAX has no device to compute on: {reason[0]}; unset JAX_PLATFORMS") from error
+
+
+def found_device() -> tuple[Device | None, str]:
+    """The GL device; or None, and why there is none."""
+    try:
+        return device(), ""
+    except NoDeviceError as error:
+        return None, str(error)
 
 
 def require_device() -> Device:
     """The GL device. Raises MissingError where there is none."""
-    try:
-        return device()
-    except NoDeviceError as error:
-        raise MissingError(str(error)) from error
+    gl, missing = found_device()
+    if not gl:
+        raise MissingError(missing)
+    return gl
 
 
 @dataclass(frozen=True)

@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 import math
-import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-from ..encodings.catalogue import ENCODINGS
-from ..encodings.codec import Codec
-from ..encodings.storage import ROUNDINGS, STORAGES
+from ..encodings.catalogue import LIGHT_ENCODINGS
 from ..gbuffer.device import Device
 from ..gbuffer.frame import Plan
 from ..gbuffer.layout import Layout, LayoutError, read_layout
 from ..gbuffer.layouts import LAYOUTS
-from ..gbuffer.light_buffers import LIGHT_BUFFERS
 from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import check
-from ..gbuffer.scenes.catalogue import SCENES
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures
+from .counts import checked_sides
 from .errors import UsageError, pick
 from .image_metrics import require_flip
-from .output import check_folder, check_writable, whole_file, write
+from .light_names import light_buffers_named
+from .output import check_folder, check_writable, say_skipped, whole_file, without, write
 from .progress import progress
-from .quality import check_twin, require_device
+from .quality import check_twin, codecs_named, require_device, require_jax
 from .rendering import Bench, Case, Drawn, Row, ranked
+from .scene_names import scenes_named
 
 # Every pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
 MAX_SAMPLES = 2**25
@@ -76,15 +74,11 @@ class RenderRequest:
         if self.layout is not None and self.encoding is self.storage is self.rounding is None:
             return chosen
         # Half a codec is completed by what is usual.
-        storages = "rgba8" if self.storage is None else self.storage
-        encodings = "all" if self.encoding is None else self.encoding
-        roundings = "nearest" if self.rounding is None else self.rounding
-        codecs = [
-            Codec(encoding, storage, rounding)
-            for storage in pick("storage", storages, STORAGES)
-            for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
-            for encoding in pick("encoding", encodings, ENCODINGS)
-        ]
+        codecs = codecs_named(
+            "all" if self.encoding is None else self.encoding,
+            "rgba8" if self.storage is None else self.storage,
+            "nearest" if self.rounding is None else self.rounding,
+        )
         for encoding in {codec.encoding for codec in codecs}:
             check_twin(encoding)
         made: list[Layout] = []
@@ -97,36 +91,27 @@ class RenderRequest:
                 _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
         return what_is_left(made, complaints)
 
-    def setting(self) -> Setting:
-        """The scenes' setting. Raises UsageError for counts that no scene has."""
-        in_range("--objects", self.objects, 1, MAX_OBJECTS)
-        in_range("--lights", self.lights, 0, MAX_LIGHTS)
-        in_range("--seed", self.seed, 0, 2**63 - 1)
-        return Setting(self.objects, self.lights, self.seed)
-
     def cases(self, device: Device) -> list[Case]:
         """One case for each row; combinations that cannot be are named on standard error.
 
         Raises:
             UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
         """
-        size, setting = checked_size(self.size, device), self.setting()
-        in_range("--samples", self.samples, 1, 64)
         in_range("--frames", self.frames, 0, MAX_FRAMES)
+        size, samples = checked_target(self.size, self.samples, max(self.frames, 1), device)
+        setting = checked_setting(self.objects, self.lights, self.seed)
         in_range("--repeats", self.repeats, 1, MAX_REPEATS)
         check_scale(self.scale)
-        samples = given_samples(self.samples, device)
-        check_budget(size, samples * max(self.frames, 1))
         plans = [
             Plan(size, samples, layout, light, targets, shadows, self.scale)
             for layout in self.layouts()
-            for light in pick("light buffer", self.light_buffer, LIGHT_BUFFERS)
+            for light in light_buffers_named(self.light_buffer)
             for targets in pick("number of light targets", self.light_targets, TARGETS)
             for shadows in pick("shadow", self.shadow, SHADOWS)
         ]
         cases: list[Case] = []
         complaints: list[str] = []
-        for maker in pick("scene", self.scene, SCENES):
+        for maker in scenes_named(self.scene):
             for pipeline in pick("pipeline", self.pipeline, PIPELINES):
                 for plan in suited(device, pipeline, plans, complaints):
                     cases.append(Case(pipeline, plan, maker, setting, self.frames or maker.frames, self.samples))
@@ -140,7 +125,7 @@ def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: li
         own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
         if not pipeline.has_gbuffer:
             # Neither layouts nor light buffers reach it: one row for all of them.
-            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
+            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_ENCODINGS["rgba32f"], light_targets=1)
         elif len(pipeline.light_targets) == 1:
             own = replace(own, light_targets=pipeline.light_targets[0])
         try:
@@ -204,16 +189,23 @@ def check_scale(scale: float) -> None:
         raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
 
 
-def checked_size(text: str, device: Device) -> tuple[int, int]:
-    """Width and height of "WxH". Raises UsageError for what is no size, or beyond the device."""
-    match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
-    most = device.max_size
-    if not match or not all(1 <= int(side) <= most for side in match.groups()):
-        raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} on {device.renderer}")
-    return int(match[1]), int(match[2])
+def checked_setting(objects: int, lights: int, seed: int) -> Setting:
+    """The scenes' setting. Raises UsageError for counts that no scene has."""
+    in_range("--objects", objects, 1, MAX_OBJECTS)
+    in_range("--lights", lights, 0, MAX_LIGHTS)
+    in_range("--seed", seed, 0, 2**63 - 1)
+    return Setting(objects, lights, seed)
 
 
-def check_budget(size: tuple[int, int], samples: int) -> None:
+def checked_target(size: str, samples: int, frames: int, device: Device) -> tuple[tuple[int, int], int]:
+    """The size, and the samples a pixel that the device gives. Raises UsageError for what is beyond it."""
+    in_range("--samples", samples, 1, 64)
+    sides, given = checked_sides(size, device.max_size, f"on {device.renderer}"), device.given_samples(samples)
+    _check_budget(sides, given * frames)
+    return sides, given
+
+
+def _check_budget(size: tuple[int, int], samples: int) -> None:
     """Raises UsageError where frames of this size, with all their samples, are too large to be held."""
     if math.prod(size) * samples > MAX_SAMPLES:
         raise UsageError(
@@ -222,15 +214,11 @@ def check_budget(size: tuple[int, int], samples: int) -> None:
         )
 
 
-def given_samples(asked: int, device: Device) -> int:
-    """The most samples a pixel that the device has and were asked for: a power of two."""
-    return 1 << (min(asked, device.max_samples).bit_length() - 1)
-
-
 def render_command(
     request: RenderRequest, with_flip: bool, images: Path | None, format: str, output: Path | None
 ) -> None:
     """Render, measure, write the pictures if asked for, then the rows."""
+    require_jax()
     device = require_device()
     if with_flip:
         require_flip()
@@ -251,16 +239,12 @@ def render_command(
     rows = ranked(rows)
     if format == "table":
         hidden = ("exact", "skipped", "invalid", "samples_asked" if request.samples == cases[0].plan.samples else "")
-        rows = [{column: value for column, value in row.items() if column not in hidden} for row in rows]
+        rows = without(rows, hidden)
     write(rows, format, output, EXPENDABLE)
 
 
 def _say_what_went_wrong(rows: list[Row]) -> None:
-    reasons = dict.fromkeys(row["skipped"] for row in rows if row["skipped"])
-    if reasons and all(row["skipped"] for row in rows):
-        raise UsageError(next(iter(reasons)))
-    for reason in reasons:
-        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+    say_skipped(rows)
     for row in rows:
         if row["invalid"]:
             what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))

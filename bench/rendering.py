@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..encodings.catalogue import LIGHT_ENCODINGS
 from ..gbuffer.device import Device, FormatError
 from ..gbuffer.frame import Plan
 from ..gbuffer.layouts import LAYOUTS
-from ..gbuffer.light_buffers import LIGHT_BUFFERS
 from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import Rendering, bytes_per_pixel, displayed, rendering
 from ..gbuffer.scenes.catalogue import SceneMaker
@@ -71,7 +71,7 @@ class Case:
         exact = replace(
             self.plan,
             layout=LAYOUTS["fp32"],
-            light_buffer=LIGHT_BUFFERS["rgba32f"],
+            light_buffer=LIGHT_ENCODINGS["rgba32f"],
             light_targets=targets,
             scale=1.0,
         )
@@ -112,7 +112,7 @@ class Bench:
 
     Args:
         device: where.
-        repeats: frames that times are taken over.
+        repeats: frames that times are taken over; none are taken for 0.
         with_flip: whether FLIP is wanted.
     """
 
@@ -142,7 +142,9 @@ class Bench:
         row = dict.fromkeys(COLUMNS) | _described(case) | {"device": self._device.renderer}
         times: Row = {}
         try:
-            frames = self._frames(case, lambda made: times.update(_times(made, self._repeats)))
+            frames = self._frames(
+                case, lambda made: times.update(_times(made, self._repeats)) if self._repeats else None
+            )
             if case == case.reference:
                 self._references.setdefault(case, frames)
             reference = self.reference(case)
@@ -173,31 +175,38 @@ def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
     return float(np.mean((one.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
 
 
-def _described(case: Case) -> Row:
-    plan, pipeline = case.plan, case.pipeline
-    row: Row = {
+def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
+    """What a row says of how it was rendered; what makes no difference to the pipeline is None."""
+    kept = pipeline.has_gbuffer
+    return {
         "pipeline": pipeline.name,
-        "scene": case.maker.name,
+        "layout": plan.layout.name if kept else None,
+        "light_buffer": plan.light_buffer.name if kept else None,
+        "light_targets": plan.light_targets if kept else None,
+        "scale": plan.scale if pipeline.scaled else None,
+        "objects": setting.objects,
+        "lights": setting.lights,
         "shadow": plan.shadows,
         "size": f"{plan.size[0]}x{plan.size[1]}",
         "samples": plan.samples,
-        "samples_asked": case.asked,
-        "lights": case.setting.lights,
-        "objects": case.setting.objects,
-        "frames": case.frames,
-        "bytes_per_pixel": bytes_per_pixel(pipeline, plan),
-        "seed": case.setting.seed,
+        "samples_asked": asked,
+        "seed": setting.seed,
     }
+
+
+def _described(case: Case) -> Row:
+    plan, pipeline = case.plan, case.pipeline
+    row = described(pipeline, plan, case.setting, case.asked)
+    row |= {"scene": case.maker.name, "frames": case.frames, "bytes_per_pixel": bytes_per_pixel(pipeline, plan)}
     if pipeline.has_gbuffer:
-        codec = plan.layout.codec
-        row |= {"layout": plan.layout.name, "encoding": codec.encoding.name, "storage": plan.layout.normal_storage}
+        row |= {"encoding": plan.layout.codec.encoding.name, "storage": plan.layout.normal_storage}
         row |= {"rounding": plan.layout.rounding, "normal_bits": plan.layout.normal_bits}
-        row |= {"light_buffer": plan.light_buffer.name, "light_targets": plan.light_targets}
-        row |= {"scale": plan.scale if pipeline.scaled else None}
     return row
 
 
 def _times(made: Rendering, repeats: int) -> Row:
+    if not repeats:
+        return {}
     timings, clock = made.timings(repeats)
     row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
     return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}

@@ -8,25 +8,23 @@ from pathlib import Path
 
 from ..gbuffer.device import Device
 from ..gbuffer.frame import Plan
-from ..gbuffer.light_buffers import LIGHT_BUFFERS
 from ..gbuffer.pipelines import PIPELINES
-from ..gbuffer.scenes.setting import Setting
 from ..reports import plots
 from . import sweep
 from .errors import UsageError, pick
-from .output import check_writable, whole_file, write
+from .journal import Journal
+from .light_names import light_buffers_named
+from .output import check_writable, whole_file, without, write
 from .progress import progress
-from .quality import require_device
+from .quality import require_device, require_jax
 from .render_commands import (
-    MAX_LIGHTS,
     MAX_OBJECTS,
     MAX_REPEATS,
     SHADOWS,
     TARGETS,
-    check_budget,
     check_scale,
-    checked_size,
-    given_samples,
+    checked_setting,
+    checked_target,
     in_range,
     layouts_named,
     suited,
@@ -64,23 +62,19 @@ class SweepRequest:
         Raises:
             UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
         """
-        in_range("--samples", self.samples, 1, 64)
-        size, samples = checked_size(self.size, device), given_samples(self.samples, device)
-        check_budget(size, samples)
+        size, samples = checked_target(self.size, self.samples, 1, device)
         check_scale(self.scale)
-        in_range("--lights", self.lights, 0, MAX_LIGHTS)
         in_range("--repeats", self.repeats, 1, MAX_REPEATS)
-        in_range("--seed", self.seed, 0, 2**63 - 1)
         points: list[sweep.Point] = []
         complaints: list[str] = []
         for shadows in pick("shadow", self.shadow, SHADOWS):
             for count in _counts(self.objects):
-                setting = Setting(count, self.lights, self.seed)
+                setting = checked_setting(count, self.lights, self.seed)
                 for pipeline in pick("pipeline", self.pipeline, PIPELINES):
                     plans = [
                         Plan(size, samples, layout, light, targets, shadows, self.scale)
                         for layout in layouts_named(pipeline.usual_layout if self.layout is None else self.layout)
-                        for light in pick("light buffer", self.light_buffer, LIGHT_BUFFERS)
+                        for light in light_buffers_named(self.light_buffer)
                         for targets in pick("number of light targets", self.light_targets, TARGETS)
                     ]
                     for plan in suited(device, pipeline, plans, complaints):
@@ -98,13 +92,14 @@ def _counts(text: str) -> list[int]:
 
 def sweep_command(request: SweepRequest, plot: Path | None, format: str, output: Path | None) -> None:
     """Measure each point that has not been measured before, then write the rows, and the plot if asked for."""
+    require_jax()
     device = require_device()
     points = request.points(device)
     for path in filter(None, (plot, output)):
         check_writable(path)
     if plot:
         plots.check_format(plot)
-    with sweep.journal(output) as kept:
+    with sweep.journal_beside(output) as kept:
         try:
             rows = _measured(device, points, kept)
         except (KeyboardInterrupt, SystemExit):
@@ -116,7 +111,7 @@ def sweep_command(request: SweepRequest, plot: Path | None, format: str, output:
         write(_shown(rows) if format == "table" else rows, format, output, EXPENDABLE)
 
 
-def _measured(device: Device, points: list[sweep.Point], kept: sweep.Journal | None) -> list[Row]:
+def _measured(device: Device, points: list[sweep.Point], kept: Journal | None) -> list[Row]:
     done = sweep.resumed(kept, points, device)
     with progress(len(points)) as tick:
         for point in points:
@@ -128,9 +123,9 @@ def _measured(device: Device, points: list[sweep.Point], kept: sweep.Journal | N
     return [done[point] for point in points]
 
 
-def _say_how_to_go_on(kept: sweep.Journal | None, total: int) -> None:
+def _say_how_to_go_on(kept: Journal | None, total: int) -> None:
     if kept:
-        print(f"normalbench: {len(kept.rows)} of {total} rows are kept; the same command goes on", file=sys.stderr)
+        print(f"normalbench: {len(kept.lines)} of {total} rows are kept; the same command goes on", file=sys.stderr)
     else:
         print("normalbench: nothing is kept; with -o FILE a stopped sweep goes on", file=sys.stderr)
 
@@ -138,5 +133,5 @@ def _say_how_to_go_on(kept: sweep.Journal | None, total: int) -> None:
 def _shown(rows: list[Row]) -> list[Row]:
     """The rows for a terminal: of the spreads only the whole frame's, no triangles of passes that draw the screen."""
     hidden = {c for c in rows[0] if c.endswith("_spread") and c != "ms_frame_spread"}
-    hidden |= {"triangles_linear_depth", "triangles_screen"}
-    return [{column: value for column, value in row.items() if column not in hidden} for row in rows]
+    hidden |= {"triangles_linear_depth", "triangles_screen", "ms_frame_each"}
+    return without(rows, hidden)

@@ -87,10 +87,11 @@ def reading(data: Input) -> Callable[[], object]:
         return jax.lax.scan(step, jnp.zeros(FAST_BLOCK, jnp.float32), blocks)[0].reshape(-1, LANES).sum()
 
     call = compiled(total)
-    return lambda: _on_all_cores(lambda n, _: float(call(n)), data)
+    return lambda: on_all_cores(lambda n, _: float(call(n)), data)
 
 
-def _on_all_cores(function, data: Input) -> list:
+def on_all_cores(function, data: Input) -> list:
+    """What a function makes of each shard's planes, side by side."""
     with ThreadPoolExecutor(CORES) as pool:
         return list(pool.map(lambda shard: function(*shard), data.shards))
 
@@ -112,7 +113,7 @@ def compare(name: str, statistics: str, data: Input, read: float) -> dict[str, o
         project = rate(lambda: meter.measure(normals.loads(), count), count)
     else:
         errors = squared_errors(codec)
-        project = rate(lambda: _on_all_cores(errors, data), count)
+        project = rate(lambda: on_all_cores(errors, data), count)
     numpy = rate(lambda: summary(data.n, by_numpy(data.n, data.view, baseline.quantise_unorm)), count)
     blocked = rate(lambda: _numpy_blocked(by_numpy, summary, data), count)
     return {

@@ -1,11 +1,14 @@
-"""The catalogue of normal encodings. Adding one is its pair of files in `normals/` and one line here."""
+"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here."""
 
 from __future__ import annotations
 
 from importlib import import_module
+from typing import TypeVar
 
+from .depth_encoding import DepthEncoding
 from .encoding import Encoding
 from .errors import CatalogueError
+from .light_encoding import LightEncoding
 
 NAMES = (
     "xyz",
@@ -22,16 +25,41 @@ NAMES = (
     "octahedral",
     "best_fit",
 )
+LIGHT_NAMES = (
+    "rgba32f",
+    "rgba16f",
+    "r11g11b10f",
+    "linear",
+    "srgb",
+    "log",
+    "rgbm",
+    "nao32",
+    "rgb9e5",
+)
+
+# A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
+DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
+
+E = TypeVar("E", Encoding, LightEncoding, DepthEncoding)
 
 
-def _load(name: str) -> Encoding:
+def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> dict[str, E]:
+    return {name: _loaded(folder, name, kind) for name in names}
+
+
+def _loaded(folder: str, name: str, kind: type[E]) -> E:
+    place = f"encodings/{folder}/{name}.py"
     try:
-        encoding = import_module(f".normals.{name}", __package__).ENCODING
+        encoding = import_module(f".{folder}.{name}", __package__).ENCODING
     except Exception as error:  # whatever a user's own file raises
-        raise CatalogueError(f"encodings/normals/{name}.py: {type(error).__name__}: {error}") from error
+        raise CatalogueError(f"{place}: {type(error).__name__}: {error}") from error
+    if not isinstance(encoding, kind):
+        raise CatalogueError(f"{place}: its ENCODING is no {kind.__name__}")
     if encoding.name != name:
-        raise CatalogueError(f"encodings/normals/{name}.py: its ENCODING is named {encoding.name!r}, not {name!r}")
+        raise CatalogueError(f"{place}: its ENCODING is named {encoding.name!r}, not {name!r}")
     return encoding
 
 
-ENCODINGS: dict[str, Encoding] = {name: _load(name) for name in NAMES}
+ENCODINGS: dict[str, Encoding] = _load("normals", NAMES, Encoding)
+LIGHT_ENCODINGS: dict[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
+DEPTH_ENCODINGS: dict[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)

@@ -1,4 +1,5 @@
-// Trigonometry in half turns, beside elementary.py. ATAN2_PI, SIN_PI and COS_PI are its coefficients.
+// Trigonometry in half turns, logarithms and powers of two, beside elementary.py. ATAN2_PI, SIN_PI, COS_PI, LOG2, EXP2
+// and SQRT_HALF_BITS are its numbers.
 #include "vec.glsl"
 
 float atan2_pi(float y, float x) {
@@ -27,4 +28,24 @@ vec2 sincos_pi(float a) {
     sc.x = quadrant < 0.0 || quadrant == 2.0 ? -sc.x : sc.x;
     sc.y = quadrant == 1.0 || abs(quadrant) == 2.0 ? -sc.y : sc.y;
     return sc;
+}
+
+// log2(x) for positive normal x, octaves counted from the square root of one half.
+float log2_of(float x) {
+    int bits = floatBitsToInt(x), octave = (bits - SQRT_HALF_BITS) >> 23;
+    float m = intBitsToFloat(bits - (octave << 23));
+    float s = (m - 1.0) / (m + 1.0);
+    const float k[] = LOG2;
+    float p = k[k.length() - 1];
+    for (int i = k.length() - 2; i >= 0; --i) p = p * (s * s) + k[i];
+    return float(octave) + s * p;
+}
+
+// 2^x for x in [-126, 127].
+float exp2_of(float x) {
+    float octave = floor(x + 0.5), r = x - octave;
+    const float k[] = EXP2;
+    float p = k[k.length() - 1];
+    for (int i = k.length() - 2; i >= 0; --i) p = p * r + k[i];
+    return power_of_two(octave) * p;
 }

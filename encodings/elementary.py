@@ -1,14 +1,17 @@
-"""Trigonometry that both languages compute the same way.
+"""Trigonometry and logarithms that both languages compute the same way.
 
 GLSL promises next to nothing of `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and an
-absolute 2^-11), so a table made with them would measure the driver's polynomial, not the encoding. These are near
-minimax polynomials with float32 coefficients, in half turns: an angle of 1 is pi.
+absolute 2^-11) and little of `log2` (an absolute 2^-21), so a table made with them would measure the driver's
+polynomial, not the encoding. These are near minimax polynomials with float32 coefficients; angles are in half turns: an
+angle of 1 is pi.
 The GLSL twin of this file is `elementary.glsl`, which takes the coefficients from here.
 """
 
 from __future__ import annotations
 
-from .vec import TINY, jnp, maximum, minimum, select
+import math
+
+from .vec import TINY, jnp, maximum, minimum, power_of_two, select
 
 # atan(sqrt s) / (pi sqrt s) on [0, 1], relative error below 5e-8; on [0, 1/16] sin(pi sqrt s) / sqrt s, relative error
 # below 4e-8, and cos(pi sqrt s), absolute error below 1e-8. Lowest power first.
@@ -26,7 +29,21 @@ ATAN2_PI = (
 SIN_PI = (3.1415927410125732, -5.167707920074463, 2.5497610569000244, -0.5890122056007385)
 COS_PI = (1.0, -4.934802055358887, 4.058707237243652, -1.3350446224212646, 0.23132970929145813)
 
-CONSTANTS = {"ATAN2_PI": ATAN2_PI, "SIN_PI": SIN_PI, "COS_PI": COS_PI}
+# log2(m) / s for s = (m - 1) / (m + 1) as a series in s^2 (that of the inverse hyperbolic tangent), relative error
+# below 1e-8 for m in [sqrt(1/2), sqrt(2)]; 2^r as a series in r, relative error below 1e-8 on [-1/2, 1/2].
+LOG2 = tuple(2 / math.log(2) / (2 * k + 1) for k in range(5))
+EXP2 = tuple(math.log(2) ** k / math.factorial(k) for k in range(8))
+# The bits of float32 sqrt(1/2): what is counted in whole octaves from there.
+SQRT_HALF_BITS = 0x3F3504F3
+
+CONSTANTS = {
+    "ATAN2_PI": ATAN2_PI,
+    "SIN_PI": SIN_PI,
+    "COS_PI": COS_PI,
+    "LOG2": LOG2,
+    "EXP2": EXP2,
+    "SQRT_HALF_BITS": SQRT_HALF_BITS,
+}
 
 
 def _horner(coefficients, s):
@@ -57,3 +74,24 @@ def sincos_pi(a):
     sine = select((quadrant < 0.0) | (quadrant == 2.0), -sine, sine)
     cosine = select((quadrant == 1.0) | (abs(quadrant) == 2.0), -cosine, cosine)
     return sine, cosine
+
+
+def log2_of(x):
+    """log2(x) for positive normal x: of float32 within 2 units in the last place of itself or, near 1, of x - 1; of
+    float64, which stands for the exact map, by JAX."""
+    x = jnp.asarray(x)
+    if x.dtype != jnp.float32:
+        return jnp.log2(x)
+    bits = x.view(jnp.int32)
+    octave = (bits - SQRT_HALF_BITS) >> 23
+    m = (bits - (octave << 23)).view(jnp.float32)
+    s = (m - 1.0) / (m + 1.0)
+    return octave.astype(jnp.float32) + s * _horner(LOG2, s * s)
+
+
+def exp2_of(x):
+    """2^x for x in [-126, 127]: of float32 within 2 units in the last place; of float64 by JAX."""
+    if x.dtype != jnp.float32:
+        return jnp.exp2(x)
+    octave = jnp.floor(x + 0.5)
+    return power_of_two(octave) * _horner(EXP2, x - octave)

@@ -1,5 +1,6 @@
 // Rounding in the shader, beside storage.py, for a device that does not round as the codec asks. The kinds of format
 // are UNORM 0, SNORM 1, half 2, and other floats 3, which the shader leaves to the device.
+#include "sign.glsl"
 
 float round_half(float x, bool truncates) {
     const float STEP = exp2(24.0);  // below 2^-14 half floats are multiples of 2^-24
@@ -20,6 +21,45 @@ float round_number(float x, int kind, float scale, bool truncates) {
     if (kind >= 2) return kind == 2 ? round_half(x, truncates) : x;
     float product = clamp(x, kind == 0 ? 0.0 : -1.0, 1.0) * scale;
     return (truncates ? trunc(product) : roundEven(product)) / scale;
+}
+
+// The unsigned integer that stands for c in [0, 1] where `scale` stands for 1. A signed c in [-1, 1] lies in sign and
+// magnitude: the upper half of the integers is for the negative ones and for -0.
+uint fixed_code(float c, float scale, bool is_signed) {
+    float half_scale = floor(scale * 0.5);
+    float magnitude = clamp(is_signed ? abs(c) : c, 0.0, 1.0) * (is_signed ? half_scale : scale);
+    uint integer = uint(roundEven(magnitude));
+    return is_signed && sign_bit(c) ? integer + uint(half_scale) + 1u : integer;
+}
+
+// integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ... As a quotient a compiler may
+// multiply by the rounded reciprocal, which is a whole step off where n is 24.
+float share_of(uint integer, float scale) {
+    float high = float(integer) * (1.0 / (scale + 1.0));
+    return high + high * (1.0 / (scale + 1.0));
+}
+
+// The number that an unsigned integer stands for.
+float from_fixed_code(uint integer, float scale, bool is_signed) {
+    if (!is_signed) return share_of(integer, scale);
+    uint half_scale = uint(floor(scale * 0.5));
+    bool is_negative = integer > half_scale;
+    float magnitude = share_of(is_negative ? integer - half_scale - 1u : integer, float(half_scale));
+    return is_negative ? with_sign_of(magnitude, -1.0) : magnitude;
+}
+
+// An unsigned integer of `bits` bits laid across a texel's channels of 8, from bit `first` on, the highest bits first:
+// the byte of a channel, and a channel's part of the integer.
+uint byte_of(uint integer, int first, int bits, int channel) {
+    int shift = 8 * (channel + 1) - first - bits;
+    if (8 * (channel + 1) <= first || shift >= 8) return 0u;
+    return (shift >= 0 ? integer << shift : integer >> -shift) & 0xFFu;
+}
+
+uint part_of(uint byte, int first, int bits, int channel) {
+    int shift = 8 * (channel + 1) - first - bits;
+    if (8 * (channel + 1) <= first || shift >= 8) return 0u;
+    return (shift >= 0 ? byte >> shift : byte << -shift) & ((1u << bits) - 1u);
 }
 
 #ifdef STORAGE_KIND

@@ -16,9 +16,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from .vec import jnp, maximum, minimum, select
+from .vec import jnp, maximum, minimum, select, sign_bit
 
 ROUNDINGS = ("nearest", "truncate")
+# IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
+SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,7 @@ class Storage:
         kind: "unorm", "snorm" or "float".
         bits: bits of each channel, in channel order.
         internal_format: the GL enum.
+        curved: how many of its channels, the first, keep linear light by the sRGB curve.
     """
 
     name: str
@@ -38,6 +41,7 @@ class Storage:
     kind: str
     bits: tuple[int, ...]
     internal_format: int
+    curved: int = 0
 
     @property
     def channels(self) -> int:
@@ -62,6 +66,21 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rg16f": Storage("rg16f", "RG16F", "float", (16, 16), 0x822F),
         "rgba16f": Storage("rgba16f", "RGBA16F", "float", (16, 16, 16, 16), 0x881A),
         "rgba32f": Storage("rgba32f", "RGBA32F", "float", (32, 32, 32, 32), 0x8814),
+    }
+)
+
+R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
+R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
+# Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.
+SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)
+
+# Every format that a render target may have; normals are measured in those above.
+FORMATS: Mapping[str, Storage] = MappingProxyType(
+    {
+        **STORAGES,
+        "r8": Storage("r8", "R8", "unorm", (8,), 0x8229),
+        "r32f": R32F,
+        "r11g11b10f": R11G11B10F,
     }
 )
 
@@ -95,10 +114,157 @@ def store_half(x, rounding: str = "nearest"):
     return select(jnp.isfinite(x), minimum(maximum(kept, -65504.0), 65504.0), x)
 
 
+def store_small_float(x, bits: int, rounding: str = "nearest"):
+    """x (float32, any shape) as an unsigned float of 11 or 10 bits stores it: five of exponent, the rest of mantissa.
+
+    There is nothing below 0, and what is finite stays finite: 65024 or 64512 at most (OpenGL 4.6, 2.3.4.3 and 2.3.4.4).
+    """
+    cut = 23 - (bits - 5)
+    least, most = 2.0 ** (-14 - (bits - 5)), 2.0**16 - 2.0 ** (15 - (bits - 5))
+    word = maximum(x, 0.0).view(jnp.uint32)
+    half = jnp.uint32(2 ** (cut - 1) - 1) + (word >> cut & 1) if rounding == "nearest" else jnp.uint32(0)
+    normal = (word + half & jnp.uint32(2**32 - 2**cut)).view(jnp.float32)
+    steps = maximum(x, 0.0) * (1.0 / least)
+    subnormal = (jnp.round(steps) if rounding == "nearest" else jnp.floor(steps)) * least
+    kept = minimum(select(x < 2.0**-14, subnormal, normal), most)
+    return select((x == jnp.inf) | jnp.isnan(x), x, kept)
+
+
+def to_srgb(x):
+    """Linear light in [0, 1] (float32, any shape) by the sRGB curve."""
+    curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
+    return select(x <= SRGB_KNEE, x * SRGB_SLOPE, curved)
+
+
+def from_srgb(x):
+    """Linear light of a value of the sRGB curve in [0, 1] (float32, any shape)."""
+    straight = x * (1.0 / SRGB_SLOPE)
+    return select(straight <= SRGB_KNEE, straight, ((x + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER)
+
+
+def store_srgb(x, scale: int, rounding: str = "nearest"):
+    """x (float32, any shape) as a colour of an sRGB target stores it and gives it back, in [0, 1]; NaN is 0."""
+    return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
+
+
+def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
+    """One number of a texel (float32, any shape), as the format is given it, through one channel and back."""
+    bits, scale = storage.bits[channel], storage.scale(channel)
+    if storage.kind == "float":
+        return x if bits == 32 else store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
+    if storage.kind == "snorm":
+        return store_snorm(x, scale, rounding)
+    return (store_srgb if channel < storage.curved else store_unorm)(x, scale, rounding)
+
+
 def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
     """One number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
     if storage.kind == "unorm":
-        return store_unorm(c * 0.5 + 0.5, storage.scale(channel), rounding) * 2.0 - 1.0
-    if storage.kind == "snorm":
-        return store_snorm(c, storage.scale(channel), rounding)
-    return store_half(c, rounding) if storage.bits[channel] == 16 else c
+        return store_texel(c * 0.5 + 0.5, storage, channel, rounding) * 2.0 - 1.0
+    return store_texel(c, storage, channel, rounding)
+
+
+@dataclass(frozen=True)
+class DepthStorage:
+    """Where the number of a depth lies.
+
+    Attributes:
+        name: the catalogue's key.
+        title: what a reader calls it.
+        format: of the render target, or of the depth attachment.
+        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", a target's first; or
+            "attachment", the depth buffer itself.
+        bits: of the number.
+    """
+
+    name: str
+    title: str
+    format: Storage
+    home: str
+    bits: int
+
+    @property
+    def scale(self) -> int:
+        """The integer that stands for 1; 1 for floats."""
+        return 1 if self.format.kind == "float" else 2**self.bits - 1
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether there is room for a sign: a depth buffer holds 0 to 1."""
+        return self.home != "attachment"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether numbers beyond 1 keep their value: floats that are not a depth buffer's."""
+        return self.format.kind == "float" and self.home == "channel"
+
+
+def _native(name: str, title: str, kind: str, bits: int, internal_format: int) -> DepthStorage:
+    return DepthStorage(name, title, Storage(name, title, kind, (bits,), internal_format), "attachment", bits)
+
+
+# A depth buffer of 32-bit integers is not among them: few devices have one, and a shader's depth is a float32, whose
+# steps below 1 are 2^-24.
+DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
+    {
+        "packed16": DepthStorage("packed16", "8:8 in B and A of RGBA8", STORAGES["rgba8"], "packed", 16),
+        "packed24": DepthStorage("packed24", "8:8:8 in G, B and A of RGBA8", STORAGES["rgba8"], "packed", 24),
+        "r16f": DepthStorage("r16f", "R16F", Storage("r16f", "R16F", "float", (16,), 0x822D), "channel", 16),
+        "r32f": DepthStorage("r32f", "R32F", R32F, "channel", 32),
+        "depth16": _native("depth16", "depth buffer, 16 bits", "unorm", 16, 0x81A5),
+        "depth24": _native("depth24", "depth buffer, 24 bits", "unorm", 24, 0x81A6),
+        "depth32f": _native("depth32f", "depth buffer, 32-bit float", "float", 32, 0x8CAC),
+    }
+)
+
+
+def fixed(c, scale: int, is_signed: bool):
+    """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0.
+
+    A signed c in [-1, 1] lies in sign and magnitude: the upper half of the integers is for the negative and for -0.
+    """
+    half = scale // 2
+    magnitude = minimum(maximum(abs(c) if is_signed else c, 0.0), 1.0)
+    integer = jnp.round(magnitude * jnp.float32(half if is_signed else scale)).astype(jnp.uint32)
+    return select(sign_bit(c), integer + jnp.uint32(half + 1), integer) if is_signed else integer
+
+
+def from_fixed(integer, scale: int, is_signed: bool):
+    """The number that an unsigned integer (uint32) stands for."""
+    half = scale // 2
+    if not is_signed:
+        return _share(integer, scale)
+    is_negative = integer > half
+    magnitude = _share(select(is_negative, integer - jnp.uint32(half + 1), integer), half)
+    return select(is_negative, -magnitude, magnitude)
+
+
+def _share(integer, scale: int):
+    """integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ...
+
+    As a quotient a compiler may multiply by the rounded reciprocal, which is a whole step off where n is 24.
+    """
+    high = integer.astype(jnp.float32) * jnp.float32(1.0 / (scale + 1))
+    return high + high * jnp.float32(1.0 / (scale + 1))
+
+
+def store_bytes(integer, bits: int):
+    """An unsigned integer over channels of 8-bit UNORM, the highest byte first, and back. No byte is rounded by itself,
+    so none can carry into another."""
+    together = jnp.zeros_like(integer)
+    for shift in range(bits - 8, -1, -8):
+        byte = ((integer >> shift) & 0xFF).astype(jnp.float32)
+        texel = store_unorm(byte / 255.0, 255)
+        together = together | ((texel * 255.0 + 0.5).astype(jnp.uint32) << shift)
+    return together
+
+
+def store_depth(c, storage: DepthStorage, is_signed: bool = False):
+    """The number of a depth (float32, any shape) as it comes back; with a sign where `is_signed`."""
+    if storage.home == "packed":
+        integer = store_bytes(fixed(c, storage.scale, is_signed), storage.bits)
+        return from_fixed(integer, storage.scale, is_signed)
+    if storage.format.kind != "float":
+        return store_unorm(c, storage.scale)
+    kept = c if storage.is_open else minimum(maximum(c, 0.0), 1.0)
+    return store_half(kept) if storage.bits == 16 else kept

@@ -1,4 +1,5 @@
-// The functions both languages need, beside vec.py. TINY comes from there.
+// The functions both languages need, beside vec.py. TINY, BRIGHTEST and FLOAT_BIAS come from there.
+#include "sign.glsl"
 
 // v at length 1, and the first axis where v is zero.
 vec2 unit(vec2 v) { return dot(v, v) > TINY ? v * inversesqrt(dot(v, v)) : vec2(1.0, 0.0); }
@@ -11,4 +12,20 @@ vec2 sign_not_zero(vec2 v) { return vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.
 vec3 direction_or_forward(vec3 v) {
     float length2 = dot(v, v);
     return length2 > TINY && length2 < 1.0 / TINY ? v : vec3(0.0, 0.0, 1.0);
+}
+
+// A signed depth, its magnitude at most far; NaN and infinity become far, the sign bit stays.
+float depth_or_far(float depth, float far) {
+    float magnitude = abs(depth);
+    return with_sign_of(magnitude <= far ? magnitude : far, depth);
+}
+
+// The floor of the logarithm to base 2, and a whole power of two, both exact.
+float floor_log2(float x) { return float(floatBitsToUint(x) >> 23) - float(FLOAT_BIAS); }
+float power_of_two(float x) { return intBitsToFloat(int(x) + FLOAT_BIAS << 23); }
+
+// Light itself, 0 where it is negative or NaN, and no more than BRIGHTEST.
+vec4 light_or_none(vec4 light) {
+    return vec4(light.x > 0.0 ? min(light.x, BRIGHTEST) : 0.0, light.y > 0.0 ? min(light.y, BRIGHTEST) : 0.0,
+                light.z > 0.0 ? min(light.z, BRIGHTEST) : 0.0, light.w > 0.0 ? min(light.w, BRIGHTEST) : 0.0);
 }

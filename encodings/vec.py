@@ -1,7 +1,7 @@
 """Vectors with named components, and the few functions both languages need, named as GLSL names them.
 
-`Vec2` and `Vec3` hold one array per component (separate planes), all of one shape. They are named tuples, so JAX sees
-them as pytrees without being imported here: importing an encoding must stay instant for `normalbench list`.
+`Vec2`, `Vec3` and `Vec4` hold one array per component (separate planes), all of one shape. They are named tuples, so
+JAX sees them as pytrees without being imported here: importing an encoding must stay instant for `normalbench list`.
 The GLSL twin of this file is `vec.glsl`.
 """
 
@@ -29,7 +29,13 @@ else:
 # The least square of a length that is still told from zero; its root, 2^-60, is far below a unit vector's rounding.
 TINY = 2.0**-120
 
-CONSTANTS = {"TINY": TINY}
+# What light counts as infinite: far beyond every format but RGBA32F, where it leaves room to add.
+BRIGHTEST = 2.0**120
+
+# What the exponent of a float32 is biased by.
+FLOAT_BIAS = 127
+
+CONSTANTS = {"TINY": TINY, "BRIGHTEST": BRIGHTEST, "FLOAT_BIAS": FLOAT_BIAS}
 
 
 class _Operators:
@@ -97,7 +103,21 @@ class Vec3(_Operators, namedtuple("Vec3", "x y z")):  # type: ignore[misc]
         return Vec2(self.x, self.y)
 
 
-V = TypeVar("V", Vec2, Vec3)
+class Vec4(_Operators, namedtuple("Vec4", "x y z w")):  # type: ignore[misc]
+    """Four arrays of one shape, `x`, `y`, `z` and `w`."""
+
+    __slots__ = ()
+    x: Any
+    y: Any
+    z: Any
+    w: Any
+
+    @property
+    def xyz(self) -> Vec3:
+        return Vec3(self.x, self.y, self.z)
+
+
+V = TypeVar("V", Vec2, Vec3, Vec4)
 S = TypeVar("S")
 
 
@@ -109,6 +129,36 @@ def sqrt(x):
 def inversesqrt(x):
     """One over the square root."""
     return 1.0 / jnp.sqrt(x)
+
+
+def exp2(x):
+    """2 to a power."""
+    return jnp.exp2(x)
+
+
+def log2(x):
+    """The logarithm to base 2."""
+    return jnp.log2(x)
+
+
+def floor(x):
+    """The largest whole number that is not above `x`."""
+    return jnp.floor(x)
+
+
+def ceil(x):
+    """The smallest whole number that is not below `x`."""
+    return jnp.ceil(x)
+
+
+def floor_log2(x):
+    """The floor of the logarithm to base 2, exactly, of a positive float32; -127 for 0 and below 2^-126."""
+    return (x.view(jnp.uint32) >> 23).astype(jnp.float32) - FLOAT_BIAS
+
+
+def power_of_two(x):
+    """2 to a whole power of -126 to 127 (float32), exactly."""
+    return ((x.astype(jnp.int32) + FLOAT_BIAS) << 23).view(jnp.float32)
 
 
 def maximum(a, b):
@@ -123,7 +173,7 @@ def minimum(a, b):
 
 def select(condition, a: S, b: S) -> S:
     """GLSL's `condition ? a : b`, for arrays and vectors."""
-    if isinstance(a, Vec2 | Vec3):
+    if isinstance(a, Vec2 | Vec3 | Vec4):
         chosen = type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))  # type: ignore[arg-type]
     else:
         chosen = jnp.where(condition, a, b)  # type: ignore[arg-type]
@@ -171,6 +221,25 @@ def direction_or_forward(v: Vec3) -> Vec3:
     return select(is_direction, v, Vec3(0.0, 0.0, 1.0))
 
 
+def sign_bit(x):
+    """Whether a float32 has its sign bit set: of negative numbers and of -0."""
+    return jnp.signbit(x)
+
+
+def with_sign_of(x, signed):
+    """`x`, which is not negative, under the sign bit of `signed`."""
+    return select(sign_bit(signed), -x, x)
+
+
+def depth_or_far(depth, far):
+    """A signed depth, its magnitude at most `far`; NaN and infinity become `far`, the sign bit stays.
+
+    Every path into a depth encoder goes through this once, so that no input makes a texel that is not a number.
+    """
+    magnitude = abs(depth)
+    return with_sign_of(select(magnitude <= far, magnitude, far), depth)
+
+
 def from_array(array) -> Vec3:
     """Planes of an array of unit vectors of shape (..., 3), as float32; what is no direction becomes (0, 0, 1).
 
@@ -186,3 +255,11 @@ def from_array(array) -> Vec3:
 def to_array(v: Vec3) -> Array:
     """An array of shape (..., 3) from three planes."""
     return jnp.stack(list(v), axis=-1)
+
+
+def light_or_none(light: Vec4) -> Vec4:
+    """Light itself, 0 where it is negative or NaN, and no more than BRIGHTEST.
+
+    Every path into a light encoder goes through this once, as normals go through `direction_or_forward`.
+    """
+    return Vec4(*(minimum(maximum(c, 0.0), BRIGHTEST) for c in light))

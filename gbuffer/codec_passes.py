@@ -12,9 +12,8 @@ import numpy as np
 from ..encodings import vec
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
-from ..encodings.storage import STORAGES, Storage
+from ..encodings.storage import R32F, STORAGES, Storage
 from .device import Device, bind, read_pixels
-from .formats import R32F
 from .shader import ShaderError, read_shader
 
 KINDS = ("unorm", "snorm", "float")
@@ -129,17 +128,11 @@ def exact_values(device: Device, encoding: Encoding, normals, views, given) -> t
     Returns:
         codes and decoded normals, float32 arrays of shape (count, 4).
     """
-    context, count = device.context, len(normals)
     with ExitStack() as stack:
         compute: Any = device.owned(
             stack, device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
         )
-        inputs = [context.buffer(np.ascontiguousarray(a, np.float32)) for a in (normals, views, given)]
-        outputs = [context.buffer(reserve=count * 16) for _ in range(2)]
-        for binding, buffer in enumerate([*inputs, *outputs]):
-            device.owned(stack, buffer).bind_to_storage_buffer(binding)
         tables = encoding.tables().items()
         bind(compute, {name: device.owned(stack, device.upload(table)) for name, table in tables})
-        compute.run(group_x=(count + 63) // 64)
-        codes, decoded = (np.frombuffer(b.read(), np.float32).reshape(count, 4) for b in outputs)
+        codes, decoded = device.computed(compute, [normals, views, given], 2)
     return codes, decoded

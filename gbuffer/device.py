@@ -14,10 +14,11 @@ import numpy as np
 
 from ..encodings.storage import ROUNDINGS, STORAGES, Storage, store_number
 from ..encodings.vec import jnp
+from .raw import DepthBuffer, samples_of
 from .shader import ShaderError, Source
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
-DITHER = 0x0BD0
+DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
 # More than any one frame uses: the one that was asked for longest ago is released.
 KEPT_PROGRAMS = 64
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
@@ -71,6 +72,8 @@ class Device:
         self.idle = self.context.simple_framebuffer((1, 1))
         # GL dithers by default, where it dithers at all: what is stored would not be what was written.
         self.context.disable_direct(DITHER)
+        # sRGB targets are written and blended in linear light; others take no notice.
+        self.context.enable_direct(FRAMEBUFFER_SRGB)
 
     def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         """A program that runs a fragment shader over a whole target, as a vertex array to render.
@@ -112,6 +115,17 @@ class Device:
         with explained(source):
             return self.context.compute_shader(source.text)
 
+    def computed(self, compute: moderngl.ComputeShader, inputs: Sequence[np.ndarray], outputs: int) -> list[np.ndarray]:
+        """What a compute shader, 64 to a group, fills of arrays like those that it is given, of shape (count, 4)."""
+        count = len(inputs[0])
+        with ExitStack() as stack:
+            given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
+            made = [self.context.buffer(reserve=count * 16) for _ in range(outputs)]
+            for binding, buffer in enumerate([*given, *made]):
+                self.owned(stack, buffer).bind_to_storage_buffer(binding)
+            compute.run(group_x=(count + 63) // 64)
+            return [np.frombuffer(buffer.read(), np.float32).reshape(count, 4) for buffer in made]
+
     def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
         """A texture of a storage format, to render to and to fetch from."""
         dtype = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
@@ -126,6 +140,14 @@ class Device:
             texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return texture
 
+    def given_samples(self, asked: int) -> int:
+        """The samples a pixel of a target of which so many are asked: a power of two or the next the device has."""
+        samples = 1 << (min(asked, self.max_samples).bit_length() - 1)
+        if samples == 1:
+            return 1
+        with ExitStack() as stack:
+            return samples_of(self.owned(stack, self.target((1, 1), STORAGES["rgba32f"], samples)))
+
     def upload(self, pixels: np.ndarray) -> moderngl.Texture:
         """A float32 texture from an array of shape (height, width, channels)."""
         height, width, channels = pixels.shape
@@ -134,25 +156,63 @@ class Device:
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return texture
 
-    def render(self, passed: moderngl.VertexArray, targets: list[moderngl.Texture], **textures: moderngl.Texture):
+    def render(
+        self,
+        passed: moderngl.VertexArray,
+        targets: list[moderngl.Texture],
+        depth: DepthBuffer | None = None,
+        /,
+        **textures: moderngl.Texture,
+    ):
         """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out.
+
+        Args:
+            depth: what the pass's `gl_FragDepth` is written to, without a test.
 
         Raises:
             FormatError: the device cannot render to one of the targets.
         """
+        framebuffer = self.framebuffer(targets)
         try:
-            framebuffer = self.context.framebuffer(targets)
-        except moderngl.Error as error:
-            raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
-        try:
+            self.blend(None)
+            if depth:
+                self._write_depth(framebuffer, depth)
             framebuffer.use()
-            # Whatever else has drawn before: no depth test, no blending.
-            self.context.enable_only(moderngl.NOTHING)
             bind(passed.program, textures)
             passed.render(moderngl.TRIANGLES, vertices=3)
         finally:
             self.idle.use()
             framebuffer.release()
+
+    def _write_depth(self, framebuffer: moderngl.Framebuffer, depth: DepthBuffer) -> None:
+        try:
+            depth.attach(framebuffer)
+        except moderngl.Error as error:
+            raise FormatError(f"{self.renderer} cannot render to this depth format: {error}") from error
+        framebuffer.depth_mask = True
+        # Without the test nothing would be written; it lets everything pass.
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        self.context.depth_func = "1"
+
+    def framebuffer(self, targets: list[moderngl.Texture]) -> moderngl.Framebuffer:
+        """Textures to draw into. Raises FormatError where the device cannot."""
+        try:
+            return self.context.framebuffer(targets)
+        except moderngl.Error as error:
+            raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
+
+    def blend(self, function: tuple[int, int] | None) -> None:
+        """Blend what is drawn next by source and destination factor, or not; no depth test, whatever drew before."""
+        self.context.enable_only(moderngl.BLEND if function else moderngl.NOTHING)
+        if function:
+            self.context.blend_func = function
+
+    def resolve(self, samples: moderngl.Texture, pixels: moderngl.Texture) -> None:
+        """A texture's samples averaged into one of a sample a pixel, as the hardware does. Raises FormatError."""
+        with ExitStack() as stack:
+            source, target = (self.owned(stack, self.framebuffer([texture])) for texture in (samples, pixels))
+            self.context.copy_framebuffer(target, source)
+            self.idle.use()
 
     def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
         """float32 values of shape (height, width, 4), written to a target of the format as they are and read back."""

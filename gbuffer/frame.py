@@ -12,14 +12,15 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ..encodings.storage import Storage
+from ..encodings.light_encoding import LightEncoding
+from ..encodings.storage import FORMATS, R32F, Storage
 from . import materials
 from .codec_passes import encoding_defines, storage_kind
+from .depth_passes import depth_defines
 from .device import Device, FormatError, bind
-from .formats import FORMATS, R32F
 from .layout import COMPONENTS, PACKINGS, Layout
-from .light_buffers import LightBuffer
-from .raw import DepthStencil
+from .light_passes import light_defines
+from .raw import DepthBuffer, depth_stencil
 from .scene_buffers import SceneBuffers, sun_matrix
 from .scenes.scene import Scene
 
@@ -43,7 +44,7 @@ class Plan:
     size: tuple[int, int]
     samples: int
     layout: Layout
-    light_buffer: LightBuffer
+    light_buffer: LightEncoding
     light_targets: int
     shadows: bool
     scale: float
@@ -109,6 +110,14 @@ class Frame:
 
     @cached_property
     def light(self) -> list[moderngl.Texture]:
+        return self._light_targets()
+
+    @cached_property
+    def next_light(self) -> list[moderngl.Texture]:
+        """The light buffer's second copy, for a code that is read while it is written."""
+        return self._light_targets()
+
+    def _light_targets(self) -> list[moderngl.Texture]:
         storage, targets = self.plan.light_buffer.storage, self.plan.light_targets
         return [self.texture(self.buffer_size, storage, self.buffer_samples) for _ in range(targets)]
 
@@ -121,18 +130,18 @@ class Frame:
         return self.texture(self.plan.size, FORMATS["rgba32f"], self.plan.samples)
 
     @cached_property
-    def depth(self) -> DepthStencil:
+    def depth(self) -> DepthBuffer:
         """Depth and stencil of the G-buffer."""
         return self._depth_stencil(self.buffer_size, self.buffer_samples)
 
     @cached_property
-    def final_depth(self) -> DepthStencil:
+    def final_depth(self) -> DepthBuffer:
         """Depth and stencil of the final image: the G-buffer's own where the two have one size."""
         same = (self.buffer_size, self.buffer_samples) == (self.plan.size, self.plan.samples)
         return self.depth if same else self._depth_stencil(self.plan.size, self.plan.samples)
 
-    def _depth_stencil(self, size: tuple[int, int], samples: int) -> DepthStencil:
-        made = DepthStencil(self.context, size, samples)
+    def _depth_stencil(self, size: tuple[int, int], samples: int) -> DepthBuffer:
+        made = depth_stencil(self.context, size, samples)
         self.stack.callback(made.release)
         return made
 
@@ -144,7 +153,7 @@ class Frame:
         return texture
 
     def framebuffer(
-        self, colours: Sequence[moderngl.Texture], depth: DepthStencil | None = None, writes_depth: bool = False
+        self, colours: Sequence[moderngl.Texture], depth: DepthBuffer | None = None, writes_depth: bool = False
     ) -> moderngl.Framebuffer:
         """Targets to draw into. Raises FormatError where the device cannot."""
         try:
@@ -162,16 +171,22 @@ class Frame:
         return {
             **materials.CONSTANTS,
             **encoding_defines(plan.layout.codec.encoding),
-            **layout_defines(self.device, plan.layout),
+            **depth_defines(plan.layout.depth_encoding),
+            **layout_defines(plan.layout, shader_roundings(self.device, plan.layout)),
             "SAMPLES": self.buffer_samples,
             "LIGHT_TARGETS": plan.light_targets,
-            "LIGHT_RANGE": plan.light_buffer.range,
+            **light_defines(plan.light_buffer),
             "SHADOWS": int(self.shadows),
         }
 
     def program(self, vertex: str, fragment: str, **defines: object) -> moderngl.Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
-        names: Mapping[str, Path] = {"ENCODING": self.plan.layout.codec.encoding.glsl}
+        plan = self.plan
+        names: Mapping[str, Path] = {
+            "ENCODING": plan.layout.codec.encoding.glsl,
+            "DEPTH_ENCODING": plan.layout.depth_encoding.glsl,
+            "LIGHT_ENCODING": plan.light_buffer.glsl,
+        }
         return self.device.shared_program(vertex, fragment, {**self._defines, **defines}, names)
 
     def fullscreen(self, program: moderngl.Program) -> moderngl.VertexArray:
@@ -188,6 +203,28 @@ class Frame:
     def geometry(self, program: moderngl.Program) -> Geometry:
         """A program to draw the scene's meshes with."""
         return Geometry(self, program)
+
+    def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
+        """Depth test, blending and culling of the draws that follow; everything else off."""
+        flags = moderngl.NOTHING
+        if depth:
+            self.context.depth_func = depth
+            flags |= moderngl.DEPTH_TEST
+        if blend:
+            self.context.blend_func = blend
+            flags |= moderngl.BLEND
+        if cull:
+            self.context.cull_face = cull
+            flags |= moderngl.CULL_FACE
+        self.context.enable_only(flags)
+
+    @property
+    def gbuffer_textures(self) -> dict[str, Any]:
+        """What a pass that reads the G-buffer binds."""
+        given: dict[str, Any] = {"gbuffer": self.gbuffer}
+        if "depth" not in self.plan.layout.components:
+            given["linear_depth"] = self.linear_depth
+        return given
 
     def prepare(self, program: moderngl.Program, size: tuple[int, int], **textures: Any) -> None:
         """Bind what shaders read before a draw into a target of this size: tables, textures, G-buffer, light."""
@@ -223,8 +260,8 @@ class Geometry:
             self._arrays[draw.mesh].render(moderngl.TRIANGLES, instances=draw.count)
 
 
-def layout_defines(device: Device, layout: Layout) -> dict[str, object]:
-    """The macros that make `gbuffer.glsl` speak of a layout."""
+def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]:
+    """The macros that make `gbuffer.glsl` speak of a layout; `rounds` is `shader_roundings`."""
     words = layout.words
     storages = [target.storage for target in layout.targets]
     first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
@@ -241,7 +278,7 @@ def layout_defines(device: Device, layout: Layout) -> dict[str, object]:
         "TARGETS": len(storages),
         "TARGET_KIND": tuple(storage_kind(storage) for storage in storages),
         "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
-        "TARGET_ROUNDS": tuple(_shader_rounding(device, layout, storage) for storage in storages),
+        "TARGET_ROUNDS": rounds,
         "PACK_WIDEN": widen,
         "PACK_BIAS": bias,
         "HAS_DEPTH": int("depth" in layout.components),
@@ -252,8 +289,7 @@ def layout_defines(device: Device, layout: Layout) -> dict[str, object]:
     }
 
 
-def _shader_rounding(device: Device, layout: Layout, storage: Storage) -> int:
-    """0 where the device rounds into a format as the layout asks; else what the shader does: 1 nearest, 2 truncate."""
-    if device.native_rounding(storage) == layout.rounding:
-        return 0
-    return 2 if layout.rounding == "truncate" else 1
+def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
+    """For each target 0 where the device rounds as asked, else what the shader does: 1 nearest, 2 truncate."""
+    asked = 2 if layout.rounding == "truncate" else 1
+    return tuple(0 if device.native_rounding(t.storage) == layout.rounding else asked for t in layout.targets)

@@ -17,10 +17,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ..encodings.catalogue import ENCODINGS
+from ..encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ..encodings.codec import Codec
-from ..encodings.storage import ROUNDINGS, Storage
-from .formats import FORMATS
+from ..encodings.depth_encoding import DepthEncoding
+from ..encodings.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (
@@ -74,6 +74,7 @@ class Layout:
         space: "view" or "world", what the normal's axes are.
         rounding: "nearest" or "truncate", how the normal's own format rounds.
         packing: how words with bits round, a key of PACKINGS.
+        depth: the encoding of the depth; the usual one, "", is the first of the catalogue that suits the normal.
 
     Raises:
         LayoutError: what it names does not exist, does not fit, or clashes.
@@ -87,6 +88,7 @@ class Layout:
     space: str = "view"
     rounding: str = "nearest"
     packing: str = "nearest"
+    depth: str = ""
 
     def __post_init__(self):
         self._check_names()
@@ -102,9 +104,24 @@ class Layout:
             raise LayoutError(
                 f"layout {self.name}: {self.encoding} keeps a sign in the depth's, but the layout keeps no depth"
             )
+        if self.depth and self.depth not in self._suitable_depths:
+            known = ", ".join(self._suitable_depths)
+            raise LayoutError(f"layout {self.name}: {self.depth} does not suit {self.encoding}, whose depth is {known}")
+
+    @property
+    def _suitable_depths(self) -> dict[str, DepthEncoding]:
+        """Depth encodings that keep the sign that the normal needs, or none."""
+        is_signed = ENCODINGS[self.encoding].sign_bits > 0
+        return {name: depth for name, depth in DEPTH_ENCODINGS.items() if depth.signed == is_signed}
+
+    @property
+    def depth_encoding(self) -> DepthEncoding:
+        """The encoding of its depth."""
+        return DEPTH_ENCODINGS[self.depth or next(iter(self._suitable_depths))]
 
     def _check_names(self) -> None:
         known = {"encoding": ENCODINGS, "space": SPACES, "rounding": ROUNDINGS, "packing": PACKINGS}
+        known |= {"depth": DEPTH_ENCODINGS} if self.depth else {}
         for field, names in known.items():
             if getattr(self, field) not in names:
                 raise LayoutError(
@@ -158,7 +175,8 @@ class Layout:
     def summary(self) -> str:
         """All that makes it what it is, in one line."""
         targets = "; ".join(f"{target.format}: {target.holds}" for target in self.targets)
-        return f"{targets}; {self.encoding}, {self.space} space, {self.rounding}, packed {self.packing}"
+        depth = f", {self.depth} depth" if self.depth else ""
+        return f"{targets}; {self.encoding}, {self.space} space, {self.rounding}, packed {self.packing}{depth}"
 
     @property
     def components(self) -> frozenset[str]:
@@ -217,8 +235,8 @@ def _without_normal(holds: str) -> list[str]:
 
 
 def read_layout(path: Path) -> Layout:
-    """A layout from a TOML file: `title`, `encoding`, `[[targets]]` of `format` and `holds`; `space`, `rounding` and
-    `packing` where they are not the usual.
+    """A layout from a TOML file: `title`, `encoding`, `[[targets]]` of `format` and `holds`; `space`, `rounding`,
+    `packing` and `depth` where they are not the usual.
 
     Raises:
         LayoutError: it cannot be read, or is no layout; one line.
@@ -233,6 +251,7 @@ def read_layout(path: Path) -> Layout:
 
 def _from_data(path: Path, data: dict[str, Any]) -> Layout:
     texts = {"title": path.stem, "source": str(path), "space": "view", "rounding": "nearest", "packing": "nearest"}
+    texts |= {"depth": ""}
     unknown = set(data) - {*texts, "encoding", "targets"}
     if unknown:
         known = ", ".join((*texts, "encoding", "targets"))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from ..encodings import chromaticity
 from .scenes.scene import KINDS, LIGHT_KINDS
 
 CONSTANTS: Mapping[str, Any] = MappingProxyType(
@@ -19,7 +20,7 @@ CONSTANTS: Mapping[str, Any] = MappingProxyType(
         "LIGHT_PASS_POWER": 32.0,  # the light pass's specular power where the G-buffer keeps none
         "CONE_COSINE": 0.17,  # of the half angle of the widest spot drawn as a cone; wider ones are drawn as balls
         "LOG2_POWER_MAX": 11.0,  # powers up to 2048 are stored by their logarithm in fixed-point formats
-        "LUMA": (0.2126, 0.7152, 0.0722),  # Rec. 709, linear (seed 002)
+        **chromaticity.CONSTANTS,
         "FILTER_DEPTH": 0.03,  # taps within this share of the depth are of the same surface
         "FILTER_COSINE": 0.7,  # and with normals no further apart than this cosine
     }

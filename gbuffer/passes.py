@@ -8,18 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import moderngl
-import numpy as np
 
+from ..encodings.storage import FORMATS
 from . import raw
-from .formats import FORMATS
 from .frame import SHADOW_SIZE, Frame
-from .materials import CONSTANTS
-from .scenes.mesh import Mesh, wound
-from .scenes.scene import Light
-from .volumes import ball, cone
+from .light_passes import ADD
+from .light_volumes import LightVolumes
 
 Run = Callable[[], None]
 
@@ -28,14 +24,11 @@ Run = Callable[[], None]
 SHADOW_OFFSET = (1.0, 4.0)
 # What has two sides shadows with both: as far away as the slope reaches over the texels that are compared, corners too.
 THIN_SHADOW_OFFSET = (8.0, 16.0)
-# What light.frag's ACCUMULATES counts.
-ACCUMULATES = ("light", "colour", "by_id")
 # Of surfaces that meet in one depth, as the two faces of a silhouette do, the first wins: passes that write the depth
 # keep it, passes over that depth change each sample once. Every pass leaves the stencil at 0.
 NEAREST, AGAIN = "<", "<="
 # Lights are told apart in eight bits of stencil: lamps by 1 to 254 in turn, the sun by 255.
 LAMP_NUMBERS = 254
-ADD = (moderngl.ONE, moderngl.ONE)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
 
 
@@ -45,22 +38,6 @@ class Stage:
 
     name: str
     build: Callable[[Frame], Run]
-
-
-def _state(frame: Frame, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
-    """Depth test, blending and culling of the draws that follow; everything else off."""
-    context = frame.context
-    flags = moderngl.NOTHING
-    if depth:
-        context.depth_func = depth
-        flags |= moderngl.DEPTH_TEST
-    if blend:
-        context.blend_func = blend
-        flags |= moderngl.BLEND
-    if cull:
-        context.cull_face = cull
-        flags |= moderngl.CULL_FACE
-    context.enable_only(flags)
 
 
 def shadow_map() -> Stage:
@@ -76,7 +53,7 @@ def shadow_map() -> Stage:
             target.use()
             target.viewport = (0, 0, SHADOW_SIZE, SHADOW_SIZE)
             target.clear(depth=1.0)
-            _state(frame, NEAREST)
+            frame.state(NEAREST)
             frame.prepare(casters.program, frame.plan.size)
             # The far sides of what is closed (Wang and Molnar 1994): no lit side can shadow itself.
             frame.context.polygon_offset = SHADOW_OFFSET
@@ -109,7 +86,7 @@ def geometry(stipple: bool = False, emissive: str | None = None) -> Stage:
             target.use()
             target.clear()
             raw.clear_depth_stencil()
-            _state(frame, NEAREST)
+            frame.state(NEAREST)
             frame.prepare(opaque.program, frame.buffer_size)
             opaque.draw("opaque")
             if glass:
@@ -132,21 +109,13 @@ def linear_depth() -> Stage:
 
         def run() -> None:
             target.use()
-            _state(frame, None)
+            frame.state(None)
             frame.prepare(resolve.program, frame.buffer_size, native_depth=frame.depth.texture)
             resolve.render(moderngl.TRIANGLES, vertices=3)
 
         return run
 
     return Stage("linear_depth", build)
-
-
-def gbuffer_textures(frame: Frame) -> dict[str, Any]:
-    """What a pass that reads the G-buffer binds."""
-    given: dict[str, Any] = {"gbuffer": frame.gbuffer}
-    if "depth" not in frame.plan.layout.components:
-        given["linear_depth"] = frame.linear_depth
-    return given
 
 
 def unpacked(frame: Frame) -> list[moderngl.Texture]:
@@ -160,80 +129,10 @@ def unpacked(frame: Frame) -> list[moderngl.Texture]:
     unpack = frame.fullscreen(frame.program("fullscreen.vert", "unpack.frag"))
     target.use()
     target.clear()
-    _state(frame, ">")
-    frame.prepare(unpack.program, frame.buffer_size, **gbuffer_textures(frame))
+    frame.state(">")
+    frame.prepare(unpack.program, frame.buffer_size, **frame.gbuffer_textures)
     unpack.render(moderngl.TRIANGLES, vertices=3)
     return textures
-
-
-class LightVolumes:
-    """Every light on what its bounds enclose: by the stencil for point and spot lights, the whole screen for a sun.
-
-    Attributes:
-        queries: where set, a query around the shading of each local light and not of its marking.
-    """
-
-    def __init__(self, frame: Frame, accumulates: str, clears: int):
-        self._frame = frame
-        self._target = frame.framebuffer(frame.light, frame.depth)
-        self._cleared = [frame.framebuffer([texture]) for texture in frame.light[clears:]]
-        kind = ACCUMULATES.index(accumulates)
-        self._mark = frame.program("volume.vert", "nothing.frag")
-        self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=0)
-        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=1))
-        self._ball, self._cone = self._upload(ball()), self._upload(cone())
-        self.queries: list[moderngl.Query] | None = None
-
-    def _upload(self, bounds: Mesh) -> tuple[moderngl.VertexArray, moderngl.VertexArray]:
-        corners = bounds.positions[wound(bounds)].astype(np.float32)
-        vertices = self._frame.context.buffer(corners.tobytes())
-        self._frame.device.owned(self._frame.stack, vertices)
-        mark, shade = (self._frame.array(p, [(vertices, "3f", "in_position")]) for p in (self._mark, self._shade))
-        return mark, shade
-
-    def __call__(self) -> None:
-        frame = self._frame
-        for target in self._cleared:
-            target.clear()
-        self._target.use()
-        textures = gbuffer_textures(frame)
-        lights, first = frame.scene_buffers.lights, frame.scene_buffers.first_lamp
-        if first:
-            self._sunlight(textures)
-        frame.context.enable_direct(raw.STENCIL_TEST)
-        frame.context.enable_direct(raw.DEPTH_CLAMP)
-        for program in (self._mark, self._shade):
-            frame.prepare(program, frame.buffer_size, **textures)
-        for index in range(first, len(lights)):
-            self._local(index, lights[index])
-        frame.context.disable_direct(raw.STENCIL_TEST)
-        frame.context.disable_direct(raw.DEPTH_CLAMP)
-
-    def _sunlight(self, textures: dict[str, Any]) -> None:
-        # The triangle lies at the far plane: it is in front of nothing but the background.
-        _state(self._frame, ">", ADD)
-        self._frame.prepare(self._sun.program, self._frame.buffer_size, **textures)
-        self._sun.render(moderngl.TRIANGLES, vertices=3)
-
-    def _local(self, index: int, light: Light) -> None:
-        # Shader and shape go by the same number.
-        narrow = light.kind == "spot" and np.float32(np.cos(np.radians(light.outer))) > CONSTANTS["CONE_COSINE"]
-        mark, shade = self._cone if narrow else self._ball
-        _state(self._frame, "<=")
-        raw.mark_volume()
-        self._mark["light"] = index
-        mark.render()
-        # Back faces only: they cover the volume once, and the eye may be inside.
-        _state(self._frame, None, ADD, "front")
-        raw.shade_marked()
-        self._shade["light"] = index
-        if self.queries is None:
-            shade.render()
-            return
-        query = self._frame.context.query(samples=True)
-        with query:
-            shade.render()
-        self.queries.append(query)
 
 
 def lights(accumulates: str) -> Stage:
@@ -261,8 +160,8 @@ def screen(special_apart: bool) -> Stage:
         def run() -> None:
             target.use()
             target.clear()
-            _state(frame, ">")
-            frame.prepare(program, frame.buffer_size, light_texels=frame.light, **gbuffer_textures(frame))
+            frame.state(">")
+            frame.prepare(program, frame.buffer_size, light_texels=frame.light, **frame.gbuffer_textures)
             covered.render(moderngl.TRIANGLES, vertices=3)
 
         return run
@@ -294,11 +193,11 @@ def material(draws: str, adds: bool = False, filters: bool = False, blends: bool
             if begins and filters:
                 raw.clear_depth_stencil()
             guarded = not (blends or filters)
-            _state(frame, AGAIN if guarded else NEAREST, ADD if adds else OVER if blends else None)
+            frame.state(AGAIN if guarded else NEAREST, ADD if adds else OVER if blends else None)
             if guarded:
                 frame.context.enable_direct(raw.STENCIL_TEST)
                 raw.once_a_pixel(1)
-            read = gbuffer_textures(frame) if filters else {}
+            read = frame.gbuffer_textures if filters else {}
             frame.prepare(program, frame.buffer_size, light_texels=frame.light, **read)
             if "full_size" in program:
                 program["full_size"] = frame.plan.size
@@ -323,7 +222,7 @@ def forward(lights: bool = True) -> Stage:
             target.use()
             target.clear()
             raw.clear_depth_stencil()
-            _state(frame, NEAREST)
+            frame.state(NEAREST)
             surfaces.prepare(base=1.0)
             surfaces.draw("opaque", *(surfaces.lamps if lights else (0, 0)))
 
@@ -341,7 +240,7 @@ def forward_lights() -> Stage:
 
         def run() -> None:
             target.use()
-            _state(frame, AGAIN, ADD)
+            frame.state(AGAIN, ADD)
             frame.context.enable_direct(raw.STENCIL_TEST)
             if frame.scene_buffers.first_lamp:
                 raw.once_a_pixel(LAMP_NUMBERS + 1)
@@ -371,7 +270,7 @@ def transparent() -> Stage:
 
         def run() -> None:
             target.use()
-            _state(frame, NEAREST, OVER)
+            frame.state(NEAREST, OVER)
             surfaces.prepare(base=1.0)
             surfaces.draw("transparent", *surfaces.lamps)
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import moderngl
 
-TEXTURE_2D, TEXTURE_2D_MULTISAMPLE = 0x0DE1, 0x9100
+TEXTURE_2D, TEXTURE_2D_MULTISAMPLE, TEXTURE_SAMPLES = 0x0DE1, 0x9100, 0x9106
 DEPTH32F_STENCIL8 = 0x8CAD
-DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x821A, 0x8D40, 0x8CD5
+DEPTH_ATTACHMENT, DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x8D00, 0x821A, 0x8D40, 0x8CD5
 FRAMEBUFFER_DEPTH_STENCIL, STENCIL = 0x84F9, 0x1802
 STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
 FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
@@ -23,6 +23,7 @@ _SIGNATURES = {
     "glDeleteTextures": "ip",
     "glBindTexture": "ui",
     "glTexStorage2D": "uiuii",
+    "glGetTexLevelParameteriv": "uiup",
     "glTexStorage2DMultisample": "uiuiib",
     "glFramebufferTexture2D": "uuuui",
     "glCheckFramebufferStatus": "u",
@@ -56,34 +57,53 @@ def function(name: str) -> Callable[..., Any]:
     return ctypes.CFUNCTYPE(ctypes.c_uint, *arguments)(address or 0)
 
 
-class DepthStencil:
-    """A depth and stencil texture, D32F S8, that passes draw against and shaders read the depth of.
+def samples_of(texture: moderngl.Texture) -> int:
+    """The samples a pixel that a texture of several has, which may be more than were asked for."""
+    found = ctypes.c_int()
+    function("glBindTexture")(TEXTURE_2D_MULTISAMPLE, texture.glo)
+    function("glGetTexLevelParameteriv")(TEXTURE_2D_MULTISAMPLE, 0, TEXTURE_SAMPLES, ctypes.byref(found))
+    function("glBindTexture")(TEXTURE_2D_MULTISAMPLE, 0)
+    return found.value
+
+
+class DepthBuffer:
+    """A depth texture that passes draw against, or write, and shaders read the depth of.
 
     Args:
         context: a GL context, current.
         size: width and height in pixels.
         samples: 1, or as many as the device has.
+        internal_format: the GL enum.
+        attachment: what it is to a framebuffer, DEPTH_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT.
     """
 
-    def __init__(self, context: moderngl.Context, size: tuple[int, int], samples: int):
+    def __init__(
+        self,
+        context: moderngl.Context,
+        size: tuple[int, int],
+        samples: int,
+        internal_format: int,
+        attachment: int = DEPTH_ATTACHMENT,
+    ):
         self._target = TEXTURE_2D_MULTISAMPLE if samples > 1 else TEXTURE_2D
+        self._attachment = attachment
         number = ctypes.c_uint()
         function("glGenTextures")(1, ctypes.byref(number))
         self._number = number.value
         function("glBindTexture")(self._target, self._number)
         if samples > 1:
-            function("glTexStorage2DMultisample")(self._target, samples, DEPTH32F_STENCIL8, *size, 1)
+            function("glTexStorage2DMultisample")(self._target, samples, internal_format, *size, 1)
         else:
-            function("glTexStorage2D")(self._target, 1, DEPTH32F_STENCIL8, *size)
+            function("glTexStorage2D")(self._target, 1, internal_format, *size)
         function("glBindTexture")(self._target, 0)
         self.texture = context.external_texture(self._number, size, 1, samples if samples > 1 else 0, "f4")
         if samples == 1:
             self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
 
     def attach(self, framebuffer: moderngl.Framebuffer) -> None:
-        """Make it a framebuffer's depth and stencil."""
+        """Make it a framebuffer's depth, and stencil if it has one. Raises moderngl.Error where that cannot be."""
         framebuffer.use()
-        function("glFramebufferTexture2D")(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, self._target, self._number, 0)
+        function("glFramebufferTexture2D")(FRAMEBUFFER, self._attachment, self._target, self._number, 0)
         status = function("glCheckFramebufferStatus")(FRAMEBUFFER)
         if status != COMPLETE:
             raise moderngl.Error(f"the framebuffer is not complete ({status:#x})")
@@ -91,6 +111,11 @@ class DepthStencil:
     def release(self) -> None:
         """Free it on the device."""
         function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(self._number)))
+
+
+def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int) -> DepthBuffer:
+    """Depth and stencil, D32F S8."""
+    return DepthBuffer(context, size, samples, DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT)
 
 
 def clear_depth_stencil() -> None:
@@ -107,11 +132,12 @@ def mark_volume() -> None:
     function("glStencilOpSeparate")(FRONT, KEEP, DECR_WRAP, KEEP)
 
 
-def shade_marked() -> None:
-    """Draws change colour where the stencil is not 0, and set it to 0."""
+def shade_marked(again: bool = False) -> None:
+    """Draws change colour where the stencil is not 0, and set it to 0; not if another draw comes `again`."""
     function("glColorMask")(1, 1, 1, 1)
     function("glStencilFunc")(NOTEQUAL, 0, 0xFF)
-    function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, ZERO, ZERO)
+    after = KEEP if again else ZERO
+    function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, after, after)
 
 
 def once_a_pixel(number: int) -> None:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
+from ..encodings.storage import FORMATS, R32F, SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
 from .device import Device, read_pixels
-from .formats import FORMATS, R32F
 from .frame import Frame, Plan
 from .layout import DEPTH_STENCIL_BYTES, LayoutError
 from .passes import Run, unpacked
@@ -23,10 +23,40 @@ WALL, QUERY = "wall clock after each pass", "GL timer query"
 
 @dataclass(frozen=True)
 class Timing:
-    """Milliseconds of repeated frames: the median, and how far apart the quartiles lie."""
+    """Milliseconds of repeated frames: the median, how far apart the quartiles lie, and each of them."""
 
     median: float
     spread: float
+    samples: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Clock:
+    """What times are taken by: its name, and what runs something and gives its milliseconds."""
+
+    name: str
+    measure: Callable[[Callable[[], object]], float]
+
+
+def clock_of(device: Device) -> Clock:
+    """A device's own timer queries, or a wall clock around what is finished.
+
+    Timer queries of a software rasteriser are not to be trusted.
+    """
+
+    def by_wall_clock(run: Callable[[], object]) -> float:
+        start = time.perf_counter()
+        run()
+        device.context.finish()
+        return (time.perf_counter() - start) * 1e3
+
+    def by_query(run: Callable[[], object]) -> float:
+        query = device.context.query(time=True)
+        with query:
+            run()
+        return query.elapsed * 1e-6
+
+    return Clock(WALL, by_wall_clock) if device.is_software else Clock(QUERY, by_query)
 
 
 class Rendering:
@@ -66,34 +96,19 @@ class Rendering:
         return [read_pixels(texture)[::-1] for texture in unpacked(self.frame)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
-        """Each pass, and the whole as "frame", over repeated frames after at least one; and which clock it was.
-
-        Timer queries of a software rasteriser are not to be trusted; there a wall clock waits for each pass.
-        """
-        clock = WALL if self._device.is_software else QUERY
-        measure = self._by_wall_clock if self._device.is_software else self._by_query
+        """Each pass, and the whole as "frame", over repeated frames after at least one; and which clock it was."""
+        clock = clock_of(self._device)
         if not self._is_warm:
             self.draw()
         self._device.context.finish()
         taken: dict[str, list[float]] = {name: [] for name in (*self.passes, "frame")}
         for _ in range(repeats):
             for name, run in self.passes.items():
-                taken[name].append(measure(run))
-            taken["frame"].append(measure(self.draw))
+                taken[name].append(clock.measure(run))
+            taken["frame"].append(clock.measure(self.draw))
         quartiles = {name: np.percentile(times, [25, 50, 75]) for name, times in taken.items()}
-        return {name: Timing(float(q[1]), float(q[2] - q[0])) for name, q in quartiles.items()}, clock
-
-    def _by_wall_clock(self, run: Run) -> float:
-        start = time.perf_counter()
-        run()
-        self._device.context.finish()
-        return (time.perf_counter() - start) * 1e3
-
-    def _by_query(self, run: Run) -> float:
-        query = self._device.context.query(time=True)
-        with query:
-            run()
-        return query.elapsed * 1e-6
+        found = {n: Timing(float(q[1]), float(q[2] - q[0]), tuple(taken[n])) for n, q in quartiles.items()}
+        return found, clock.name
 
     def triangles(self) -> dict[str, int]:
         """Triangles that each pass sends to the rasteriser, counted by the device."""
@@ -147,7 +162,7 @@ def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
     and the resolved linear depth where the layout keeps no depth of its own; not the image and the shadow map."""
     if not pipeline.has_gbuffer:
         return float(DEPTH_STENCIL_BYTES * plan.samples)
-    light = sum(plan.light_buffer.storage.bits) // 8 * plan.light_targets
+    light = plan.light_buffer.bytes_per_pixel * plan.light_targets
     resolved = 0 if "depth" in plan.layout.components else sum(R32F.bits) // 8
     kept = plan.layout.bytes_per_pixel + light + resolved
     if pipeline.scaled and (plan.scale < 1 or plan.samples > 1):
@@ -158,4 +173,5 @@ def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
 def displayed(linear: np.ndarray) -> np.ndarray:
     """Linear light as a display is sent it: clipped to [0, 1], by the sRGB curve (IEC 61966-2-1), not yet in 8 bits."""
     x = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
-    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 0.0031308) ** (1 / 2.4) - 0.055)
+    curved = (1 + SRGB_OFFSET) * np.maximum(x, SRGB_KNEE) ** (1 / SRGB_POWER) - SRGB_OFFSET
+    return np.where(x <= SRGB_KNEE, SRGB_SLOPE * x, curved)

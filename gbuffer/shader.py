@@ -8,8 +8,8 @@ from pathlib import Path
 
 SHADERS = Path(__file__).parent / "shaders"
 _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
-# "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's.
-_PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))")
+# "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's; "stdin:12:" or "0:12:" glslang's.
+_PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
 
 Line = tuple[str, Path, int]
 
@@ -33,7 +33,7 @@ class Source:
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         self._names: Mapping[str, Path] = names or {}
         self._seen: set[Path] = set()
-        main = (SHADERS / path).resolve()
+        self.place = main = (SHADERS / path).resolve()
         version, *rest = self._expand(main)
         head = [(f"#define {name} {glsl_value(value)}", main, 1) for name, value in (defines or {}).items()]
         self._lines: list[Line] = [version, *head, *rest]
@@ -58,7 +58,7 @@ class Source:
         """A compiler's message with file names and their line numbers in place of its own."""
 
         def place(match: re.Match[str]) -> str:
-            index = int(match[1] or match[2]) - 1
+            index = int(match[1] or match[2] or match[3]) - 1
             if not 0 <= index < len(self._lines):
                 return match[0]
             _, path, number = self._lines[index]

@@ -1,7 +1,8 @@
-"""The seeds' pictures of a codec: what is stored, what comes back, and how far off it is."""
+"""Pictures of what codecs do: what is stored, what comes back, and how far off it is."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,16 @@ CAPTIONS = {
     "decoded": "decoded",
     "error": f"|error| x {GAIN:.0f}",
     "power": f"1 - dot^{POWER:.0f}",
+    "position_error": "error",
+    "shaded": "surface",
 }
+# What the colours of a position's error stand for: powers of ten, in the scene's unit.
+DECADES = (-6, 1)
+COLOURS = "viridis"
+SCALE_HEIGHT = 24
+SLOPE = "the rebuilt surface, lit by its own slope"
+# Towards the light that rebuilt surfaces are lit by, view space.
+LIGHT = np.array([0.3, 0.5, 0.8]) / np.linalg.norm([0.3, 0.5, 0.8])
 
 
 def _bytes(values: np.ndarray) -> np.ndarray:
@@ -48,8 +58,73 @@ def render_pictures(image: np.ndarray, reference: np.ndarray) -> dict[str, np.nd
     Args:
         image, reference: as displayed, float arrays of shape (height, width, 3), in [0, 1].
     """
-    difference = np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN
-    return {"final": _bytes(image), "reference": _bytes(reference), "difference": _bytes(difference)}
+    return {"final": picture(image), "reference": picture(reference), "difference": difference(image, reference)}
+
+
+def picture(image: np.ndarray) -> np.ndarray:
+    """An image as displayed, floats in [0, 1], in bytes."""
+    return _bytes(image)
+
+
+def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """How far two images as displayed are apart, times RENDER_GAIN, in bytes; what is no number is as far as can be."""
+    return _bytes(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
+
+
+def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
+    """Lines of colours as displayed, (width, 3) each, one below the other, each so many pixels high; in bytes."""
+    return np.concatenate([np.repeat(_bytes(line)[None], height, axis=0) for line in lines])
+
+
+def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarray) -> dict[str, np.ndarray]:
+    """How far off rebuilt positions are, in colour, over a scale of powers of ten; and the surface that they make, lit
+    by its own slope, where steps of the depth show as terraces. uint8 of shape (height, width, 3).
+
+    Args:
+        errors: distances between true and rebuilt positions, (height, width).
+        positions: rebuilt, view space, row 0 on top, (height, width, 3).
+        covered: bool of shape (height, width).
+    """
+    with np.errstate(divide="ignore"):
+        powers = np.log10(errors)
+    coloured = _coloured(powers) * covered[..., None]
+    return {
+        "position_error": np.concatenate([_scale_of_colours(errors.shape[1]), coloured]),
+        "shaded": _caption(_bytes(_lit(positions)[..., None] * covered[..., None] * np.ones(3)), SLOPE, SCALE_HEIGHT),
+    }
+
+
+def _coloured(powers: np.ndarray) -> np.ndarray:
+    """Powers of ten as colours, uint8; what is outside DECADES has the colour of its end."""
+    import matplotlib
+
+    low, high = DECADES
+    share = np.clip((np.nan_to_num(powers, nan=high) - low) / (high - low), 0, 1)
+    return _bytes(matplotlib.colormaps[COLOURS](share)[..., :3])
+
+
+def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
+    """What the colours mean: a strip of them over their powers of ten."""
+    low, high = DECADES
+    strip = _coloured(np.broadcast_to(np.linspace(low, high, width), (height // 3, width)))
+    image = Image.new("RGB", (width, height), "white")
+    image.paste(Image.fromarray(strip), (0, height - len(strip)))
+    draw = ImageDraw.Draw(image)
+    for power in range(low, high + 1):
+        text = f"{10.0**power:g}"
+        at = (power - low) / (high - low) * (width - 1)
+        at = min(max(at - draw.textlength(text) / 2, 2), width - 2 - draw.textlength(text))
+        draw.text((at, 2), text, fill="black")
+    return np.asarray(image)
+
+
+def _lit(positions: np.ndarray) -> np.ndarray:
+    """How a light meets the surface between neighbouring positions, 0 to 1; the last row and column as those before."""
+    right, down = np.diff(positions, axis=1)[:-1], np.diff(positions, axis=0)[:, :-1]
+    normals = np.cross(down, right)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        light = np.sum(normals * LIGHT, axis=-1) / np.linalg.norm(normals, axis=-1)
+    return np.pad(np.maximum(np.nan_to_num(light), 0), ((0, 1), (0, 1)), mode="edge")
 
 
 def write_png(path: Path, pixels: np.ndarray) -> None:
@@ -57,13 +132,17 @@ def write_png(path: Path, pixels: np.ndarray) -> None:
     Image.fromarray(pixels).save(path, format="png")
 
 
-def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2) -> np.ndarray:
-    """One picture of many: a row for each name, its pictures side by side at 1/scale, captions in the margin."""
+def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2, columns: int = 1) -> np.ndarray:
+    """One picture of many: a row for each name, its pictures side by side at 1/scale, captions in the margin; the rows
+    one below the other, in so many columns."""
     lines = []
     for name, pictures in rows.items():
         small = [_caption(_shrunk(picture, scale), f"{name}: {CAPTIONS[kind]}") for kind, picture in pictures.items()]
         lines.append(np.concatenate(small, axis=1))
-    return np.concatenate(lines, axis=0)
+    high = -(-len(lines) // columns)
+    lines += [np.full_like(lines[0], 255)] * (high * columns - len(lines))
+    parts = [np.concatenate(lines[i * high : (i + 1) * high], axis=0) for i in range(columns)]
+    return np.concatenate(parts, axis=1)
 
 
 def _shrunk(pixels: np.ndarray, scale: int) -> np.ndarray:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 FORMATS = ("png", "svg", "pdf")
 # Okabe and Ito's colours, told apart by most people who do not see all of them.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999", "#8C564B")
 
 
 class PlotError(Exception):
@@ -75,6 +76,76 @@ def sweep_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
     pyplot.close(figure)
 
 
+MARKERS = "osD^v<>PX"
+
+
+def lights_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
+    """What is lost over the number of lights, a line for each light buffer: of equal lights, and of coloured ones.
+
+    Args:
+        rows: of `lights`, the experiments equal and random.
+        path, format: where to write it, and as which of FORMATS.
+    """
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    found = [_equal_lines(rows), _random_lines(rows)]
+    panels = [(title, lines) for title, lines in found if lines]
+    figure, axes = pyplot.subplots(
+        1, len(panels), figsize=(2.2 + 4.6 * len(panels), 4.6), squeeze=False, layout="constrained"
+    )
+    names = list(dict.fromkeys(row["light_buffer"] for row in rows))
+    for axis, (title, lines) in zip(axes[0], panels, strict=True):
+        for name, line in lines.items():
+            at = names.index(name)
+            counts, errors, bounds = zip(*sorted(line), strict=True)
+            # A logarithmic axis has no zero: what is exact is drawn at its foot.
+            style = {"color": COLOURS[at % len(COLOURS)], "marker": MARKERS[at % len(MARKERS)]}
+            axis.plot(counts, [max(e, LEAST_ERROR) for e in errors], label=name, linewidth=1.6, **style)
+            if any(bounds):
+                axis.plot(counts, bounds, color=style["color"], linewidth=1.0, linestyle=":", alpha=0.6)
+        axis.set_xscale("log", base=2)
+        axis.set_yscale("log")
+        axis.set_xlabel("lights")
+        axis.set_xticks(sorted({count for line in lines.values() for count, *_ in line}))
+        axis.xaxis.set_major_formatter("{x:.0f}")
+        axis.set_title(title, size=10)
+        axis.grid(alpha=0.3)
+    axes[0][0].set_ylabel("error in light, by the model")
+    figure.legend(*axes[0][-1].get_legend_handles_labels(), loc="outside right center")
+    figure.suptitle("dotted: blends times half a step; errors below 1e-6 are drawn at 1e-6", size=9)
+    figure.savefig(path, format=format, dpi=120)
+    pyplot.close(figure)
+
+
+LEAST_ERROR = 1e-6
+Lines = dict[str, list[tuple[int, float, float]]]
+
+
+def _equal_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
+    """Of equal lights of the least sum: each buffer's worst channel."""
+    equal = [row for row in rows if row["experiment"] == "equal"]
+    total = min((row["sum"] for row in equal), default=0.0)
+    lines: Lines = {}
+    for row in equal:
+        if row["sum"] == total:
+            lines.setdefault(row["light_buffer"], []).append((row["lights"], abs(row["error"]), row["bound"]))
+    worst = {name: [max(p for p in line if p[0] == n) for n in {p[0] for p in line}] for name, line in lines.items()}
+    return f"equal lights that sum to {total:g}, worst channel", worst
+
+
+def _random_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
+    """Of coloured lights: the largest error of the worst order."""
+    lines: Lines = {}
+    for row in rows:
+        if row["experiment"] == "random":
+            lines.setdefault(row["light_buffer"], []).append((row["lights"], row["model_max"], row["bound"]))
+    worst = {name: [max(p for p in line if p[0] == n) for n in {p[0] for p in line}] for name, line in lines.items()}
+    return "coloured lights with falloff, worst pixel and order", worst
+
+
 def _objects(row: dict[str, Any]) -> int:
     return row["objects"]
 
@@ -83,3 +154,86 @@ def _line_name(row: dict[str, Any], rows: Sequence[dict[str, Any]]) -> str:
     same = [other for other in rows if other["pipeline"] == row["pipeline"]]
     varied = [c for c in ("layout", "light_buffer", "light_targets") if len({other[c] for other in same}) > 1]
     return " ".join([row["pipeline"], *(str(row[column]) for column in varied)])
+
+
+# How lines of one colour are told apart, and how close to each other their names may stand, in points.
+DASHES = ("-", "--", ":", "-.", (0, (1, 3)), (0, (7, 2, 1, 2, 1, 2)), (0, (9, 3)))
+LABEL_SIZE, LABEL_GAP = 8, 9.5
+
+
+def depth_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
+    """The worst position error over the distance, a line for each depth code in its storage, its name at its end, a
+    panel for each near and far plane.
+
+    Args:
+        rows: of depth codes: depth, storage, rebuilt, near, far, distance, error_max, fov, backend, device.
+        path, format: where to write it, and as which of FORMATS.
+    """
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    ranges = list(dict.fromkeys((row["near"], row["far"]) for row in rows))
+    figure, panels = pyplot.subplots(
+        1, len(ranges), figsize=(0.5 + 6.6 * len(ranges), 5.6), sharey=True, squeeze=False, layout="constrained"
+    )
+    depths, storages = (list(dict.fromkeys(row[column] for row in rows)) for column in ("depth", "storage"))
+    for panel, (near, far) in zip(panels[0], ranges, strict=True):
+        ends = []
+        for name, line in _depth_lines([row for row in rows if (row["near"], row["far"]) == (near, far)]).items():
+            colour = COLOURS[depths.index(line[0]["depth"]) % len(COLOURS)]
+            dash = DASHES[storages.index(line[0]["storage"]) % len(DASHES)]
+            errors = [row["error_max"] for row in line]
+            panel.plot([row["distance"] for row in line], errors, color=colour, linestyle=dash, linewidth=1.6)
+            ends.append((errors[-1], name, colour))
+        panel.set_title(f"near {near:g}, far {far:g}")
+        panel.set_xlabel("distance")
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        panel.set_xlim(near, far)
+        panel.grid(alpha=0.3)
+        figure.draw_without_rendering()
+        _name_at_ends(panel, ends)
+    panels[0][0].set_ylabel("worst position error, same unit")
+    first = rows[0]
+    figure.suptitle(f"field of view {first['fov']:g} degrees; {first['backend']}, {first['device']}", size=9)
+    figure.savefig(path, format=format, dpi=120)
+    pyplot.close(figure)
+
+
+def _depth_lines(rows: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """The rows of each line by its name, in order of the distance; rows whose error is no number are left out."""
+    several = len({(row["depth"], row["rebuilt"]) for row in rows}) > len({row["depth"] for row in rows})
+    lines: dict[str, list[dict[str, Any]]] = {}
+    for row in sorted(rows, key=lambda row: row["distance"]):
+        if math.isfinite(row["error_max"]) and row["error_max"] > 0:
+            words = (row["depth"], row["storage"], row["rebuilt"] if several else "")
+            lines.setdefault(" ".join(filter(None, words)).replace("_", " "), []).append(row)
+    return lines
+
+
+def _name_at_ends(panel: Any, ends: Sequence[tuple[float, str, str]]) -> None:
+    """Names beside the right ends of lines, moved apart where they would lie upon each other."""
+    height = panel.get_window_extent().height * 72 / panel.figure.dpi
+    low, high = (math.log(limit) for limit in panel.get_ylim())
+    wanted = sorted(((math.log(value) - low) / (high - low) * height, name, colour) for value, name, colour in ends)
+    placed = [at for at, _, _ in wanted]
+    for _ in range(len(placed) ** 2):
+        for i in range(len(placed) - 1):
+            overlap = LABEL_GAP - (placed[i + 1] - placed[i])
+            if overlap > 1e-3:
+                placed[i], placed[i + 1] = placed[i] - overlap / 2, placed[i + 1] + overlap / 2
+    for at, (end, name, colour) in zip(placed, wanted, strict=True):
+        panel.annotate(
+            name,
+            (1, end / height),
+            xycoords="axes fraction",
+            xytext=(14, at - end),
+            textcoords="offset points",
+            va="center",
+            size=LABEL_SIZE,
+            color=colour,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "relpos": (0, 0.5), "shrinkB": 0},
+            annotation_clip=False,
+        )

@@ -120,10 +120,25 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
 
 
-def written(rows: Sequence[dict[str, Any]], format: str, width: int = 200, expendable: Sequence[str] = ()) -> str:
-    """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON."""
+def written(
+    rows: Sequence[dict[str, Any]],
+    format: str,
+    width: int = 200,
+    expendable: Sequence[str] = (),
+    by: str | None = None,
+) -> str:
+    """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
+
+    Tables for people are one for each value of column `by`, where it is given.
+    """
     if format == "json":
         return to_json(rows)
     if format == "csv":
         return to_csv(rows)
-    return to_markdown(rows) if format == "markdown" else to_terminal(rows, width, expendable)
+    groups: dict[Any, list[dict[str, Any]]] = {}
+    for row in rows:
+        groups.setdefault(row[by] if by else None, []).append(row)
+    return "\n".join(
+        to_markdown(group) if format == "markdown" else to_terminal(group, width, expendable)
+        for group in groups.values()
+    )

@@ -1,12 +1,14 @@
 """Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
 
 import os
+import shutil
 import sys
 
 import jax
 import pytest
 
-from normalbench.bench import cli
+from normalbench.bench import cli, isa, spirv
+from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.gbuffer.device import NoDeviceError, device
 
 jax.config.update("jax_numpy_rank_promotion", "raise")
@@ -33,3 +35,31 @@ def run(monkeypatch, capsys):
         return status, *capsys.readouterr()
 
     return command
+
+
+@pytest.fixture(scope="session")
+def radv():
+    """The compilers; where CI is set, a machine without them fails the tests that need them."""
+    missing = [isa.NO_DRIVER] * (isa.driver_file() is None) + [
+        said
+        for tool, said in ((spirv.COMPILER, spirv.NO_COMPILER), (spirv.OPTIMISER, spirv.NO_OPTIMISER))
+        if not shutil.which(tool)
+    ]
+    if missing and not os.environ.get("CI"):
+        pytest.skip(missing[0])
+    assert not missing
+
+
+@pytest.fixture
+def own_cache(monkeypatch, tmp_path):
+    """An empty cache folder."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.fixture(autouse=True)
+def catalogue():
+    """What a user's file adds to the catalogue is gone after the test."""
+    yield
+    for name in set(ENCODINGS) - set(NAMES):
+        del ENCODINGS[name]

@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
 from normalbench.gbuffer.device import read_pixels
 from normalbench.gbuffer.frame import SHADOW_SIZE, Plan
 from normalbench.gbuffer.layouts import LAYOUTS
-from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import displayed, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -35,7 +35,7 @@ class Drawn:
 def draw(gl, pipeline: str, scene: Scene, layout=FP32, shadows=False, targets=2, scale=1.0) -> Drawn:
     chosen = PIPELINES[pipeline]
     targets = min(targets, max(chosen.light_targets, default=1))
-    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, shadows, scale)
+    plan = Plan(SIZE, 1, layout, LIGHT_ENCODINGS["rgba32f"], targets, shadows, scale)
     with rendering(gl, chosen, scene, plan) as r:
         r.draw()
         deferred = chosen.has_gbuffer

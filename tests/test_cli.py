@@ -32,7 +32,8 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["list"], ["quality", "--help"], ["render", "--help"], ["sweep", "--help"]]
+    "arguments",
+    [["--help"], ["list"], ["quality", "--help"], ["render", "--help"], ["sweep", "--help"], ["depth", "--help"]],
 )
 def test_help_and_list_import_nothing_heavy(arguments):
     """JAX, pandas and matplotlib take a second each; `--help` and `list` answer without them."""
@@ -113,7 +114,7 @@ def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run") / "results"
-    done = in_a_process("run", "--count", "300000", "-o", str(folder))
+    done = in_a_process("run", "--tables", "quality", "--count", "300000", "-o", str(folder))
     assert done.returncode == 0, done.stderr
     return folder, done
 
@@ -137,8 +138,9 @@ def test_run_leaves_a_results_folder(results):
     assert {row["normals"] for row in rows} == {"playground", "hemisphere"}
     assert all(row["skipped"] is None and row["count"] for row in rows)
     assert len(list(csv.DictReader(io.StringIO((folder / "quality.csv").read_text())))) == len(rows)
-    machine = json.loads((folder / "machine.json").read_text())
-    assert machine["jax"] and machine["GL"] and machine["command"] == ["run", "--count", "300000", "-o", str(folder)]
+    facts = json.loads((folder / "run.json").read_text())
+    assert facts["machine"]["jax"] and facts["machine"]["GL"] and facts["finished"] and facts["sources"]
+    assert facts["command"] == ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
     assert len(list((folder / "images").iterdir())) == codecs * 4
     with Image.open(folder / "playground-rgba8.png") as sheet:
         assert sheet.size == (4 * 320, 7 * (240 + 16))
@@ -181,22 +183,30 @@ def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
-def test_a_run_that_fails_leaves_nothing(run, tmp_path, monkeypatch):
-    """A full disk in the middle of writing: one line, no half-written folder."""
+def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, tmp_path, monkeypatch):
+    """A full disk where the tables are written: one line; run again, nothing is measured a second time."""
+    folder = tmp_path / "results"
+    command = ("run", "--tables", "depth", "-o", str(folder))
 
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(tables, "to_csv", full)
-    status, _, err = run("run", "--count", "1000", "-o", str(tmp_path / "results"))
+    with monkeypatch.context() as patched:
+        patched.setattr(tables, "to_csv", full)
+        status, _, err = run(*command)
     assert status == 2 and "No space left on device" in err and err.count("\n") == 1
-    assert not list(tmp_path.iterdir())
+    assert {path.name for path in folder.iterdir()} == {"rows.jsonl", "run.json", "depth.json"}
+    steps = (folder / "rows.jsonl").read_bytes().count(b"\n")
+    status, _, err = run(*command)
+    assert status == 0 and f"{steps} of {steps} steps are there" in err
 
 
 def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
     path = tmp_path / "rows.csv"
     path.write_text("precious")
-    monkeypatch.setattr(tables, "written", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    monkeypatch.setattr(
+        tables, "written", lambda *_, **__: (_ for _ in ()).throw(OSError(28, "No space left on device"))
+    )
     status, _, err = run(*QUICK, "--backend", "jax", "--format", "csv", "-o", str(path))
     assert status == 2 and "No space left" in err
     assert [p.name for p in tmp_path.iterdir()] == ["rows.csv"] and path.read_text() == "precious"
@@ -217,27 +227,24 @@ def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
 
 
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM])
-def test_an_ended_run_leaves_nothing(tmp_path, ended):
-    command = [
-        sys.executable,
-        "-m",
-        "normalbench.bench",
-        "run",
-        "--count",
-        "100000000",
-        "-o",
-        str(tmp_path / "results"),
-    ]
+def test_an_ended_run_keeps_its_rows_and_says_how_to_go_on(tmp_path, ended):
+    folder = tmp_path / "results"
+    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth,quality", "-o", str(folder)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + 60
-        while not list(tmp_path.iterdir()) and time.monotonic() < deadline:
+        while not (folder / "rows.jsonl").exists() or (folder / "rows.jsonl").read_bytes().count(b"\n") < 3:
+            assert time.monotonic() < deadline, "it never began to write"
             time.sleep(0.05)
-        assert list(tmp_path.iterdir()), "it never began to write"
         process.send_signal(ended)
         _, err = process.communicate(timeout=60)
     assert process.returncode == (130 if ended == signal.SIGINT else 143)
-    assert not list(tmp_path.iterdir())
-    assert err == ("normalbench: interrupted\n" if ended == signal.SIGINT else "")
+    kept = (folder / "rows.jsonl").read_bytes().count(b"\n")
+    said, *rest = err.splitlines()
+    assert said.startswith(f"normalbench: {kept} of ") and said.endswith("steps are kept; the same command goes on"), (
+        err
+    )
+    assert rest == (["normalbench: interrupted"] if ended == signal.SIGINT else [])
+    assert {path.name for path in folder.iterdir()} == {"rows.jsonl", "run.json"}
 
 
 def test_output_that_cannot_be_written_is_one_line():
@@ -304,8 +311,11 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
     assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are no number\n"
 
 
-def test_a_platform_jax_does_not_know_is_one_line():
-    done = in_a_process(*QUICK, JAX_PLATFORMS="bogus")
+@pytest.mark.parametrize(
+    "command", [QUICK, ("lights",), ("depth",), ("render",), ("sweep",), ("run",)], ids=lambda c: c[0]
+)
+def test_a_platform_jax_does_not_know_is_one_line(command):
+    done = in_a_process(*command, JAX_PLATFORMS="bogus")
     assert done.returncode == 3 and done.stderr.count("\n") == 1 and "JAX_PLATFORMS" in done.stderr
 
 

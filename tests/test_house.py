@@ -11,10 +11,9 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench import listing, normal_sets, quality
-from normalbench.encodings.catalogue import ENCODINGS, NAMES
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, DEPTH_NAMES, ENCODINGS, LIGHT_ENCODINGS, NAMES
+from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
 from normalbench.gbuffer.layouts import LAYOUTS
-from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
 
@@ -53,7 +52,7 @@ def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
         assert tops - sys.stdlib_module_names <= {"encodings", "jax", "numpy"}, path.name
-        others = [m for m in imported(path) if m.startswith("encodings.normals.")]
+        others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth)\.", m)]
         assert not others, f"{path.name} imports {others}"
 
 
@@ -79,6 +78,8 @@ def test_python_starts_with_the_checkout_on_its_path():
 def test_the_catalogue_and_the_files_are_the_same():
     files = {suffix: {p.stem for p in (ROOT / "encodings/normals").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
     assert files[".py"] == files[".glsl"] == set(NAMES) == set(ENCODINGS)
+    files = {suffix: {p.stem for p in (ROOT / "encodings/depth").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
+    assert files[".py"] == files[".glsl"] == set(DEPTH_NAMES) == set(DEPTH_ENCODINGS)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -96,12 +97,28 @@ def test_an_encoding_is_complete(name):
     assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_twins_carry_the_same_formula(name):
+@pytest.mark.parametrize("name", DEPTH_NAMES)
+def test_a_depth_encoding_is_complete(name):
+    encoding = DEPTH_ENCODINGS[name]
+    assert encoding.name == name
+    assert encoding.title and encoding.citation and encoding.ulps_reason
+    assert encoding.storages and set(encoding.storages) <= set(DEPTH_STORAGES)
+    assert all(storage.is_signed or not encoding.signed for storage in map(DEPTH_STORAGES.get, encoding.storages))
+    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "special cases are said"
+    glsl = encoding.glsl.read_text()
+    for function in ("encode_depth(float depth", "decode_depth(float number"):
+        assert f"float {name}_{function}, float near, float far)" in glsl
+    assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
+
+
+TWINS = [*(e.glsl for e in (*ENCODINGS.values(), *DEPTH_ENCODINGS.values())), ROOT / "encodings/position.glsl"]
+
+
+@pytest.mark.parametrize("path", TWINS, ids=lambda path: path.stem)
+def test_the_twins_carry_the_same_formula(path):
     """The formula stands above the line in both languages, in the same symbols."""
-    encoding = ENCODINGS[name]
-    python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
-    glsl = set(re.findall(r"^    // (.+)$", encoding.glsl.read_text(), re.M))
+    python = set(re.findall(r"^    # (.+)$", path.with_suffix(".py").read_text(), re.M))
+    glsl = set(re.findall(r"^    // (.+)$", path.read_text(), re.M))
     assert python == glsl
 
 
@@ -117,7 +134,8 @@ def test_no_number_is_typed_in_both_languages():
 def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
-    assert listed == {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
+    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_ENCODINGS}
+    assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
 
 
 def test_rows_have_the_columns_of_the_table():
@@ -130,6 +148,7 @@ def test_rows_have_the_columns_of_the_table():
 def test_no_runner_asks_for_a_variants_name():
     """A variant's special need is a field on it."""
     for path in SOURCES:
-        if path.parts[-2] != "normals":
-            for name in (*NAMES, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_BUFFERS, *SCENES):
+        if path.parts[-2] not in ("normals", "light", "depth"):
+            depths = (*DEPTH_NAMES, *DEPTH_STORAGES)
+            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_ENCODINGS, *SCENES):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"

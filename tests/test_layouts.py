@@ -7,15 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
 from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.depth_codec import DepthCodec
+from normalbench.encodings.position import Camera
+from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
 from normalbench.gbuffer.device import device
 from normalbench.gbuffer.frame import Plan
 from normalbench.gbuffer.layout import PACKINGS, Layout, LayoutError, Target, read_layout
 from normalbench.gbuffer.layouts import LAYOUTS
-from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -27,7 +28,7 @@ HAIR = KINDS.index("hair")
 
 
 def plan(layout: Layout, **changes) -> Plan:
-    return replace(Plan((160, 120), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0), **changes)
+    return replace(Plan((160, 120), 1, layout, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0), **changes)
 
 
 @cache
@@ -81,6 +82,13 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
         ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
         ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
         ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
+        ([("rg16f", "normal.x normal.y")], {"depth": "deep"}, "unknown depth 'deep'; known: linear"),
+        ([("rg16f", "normal.x normal.y"), ("r32f", "depth")], {"depth": "linear_sign"}, "does not suit octahedral"),
+        (
+            [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
+            {"encoding": "xy_sign", "depth": "logarithmic"},
+            "does not suit xy_sign, whose depth is linear_sign",
+        ),
     ],
 )
 def test_a_layout_that_clashes_is_one_line(targets, more, said):
@@ -114,9 +122,10 @@ def test_a_file_that_is_no_layout_is_one_line(tmp_path, text, said):
 def test_a_layout_is_read_from_a_file(tmp_path):
     path = tmp_path / "mine.toml"
     targets = "[[targets]]\nformat = 'rgba8'\nholds = 'normal.x:12 normal.y:12 power'\n"
-    path.write_text(f"encoding = 'octahedral'\nspace = 'world'\npacking = 'truncate'\n{targets}")
+    path.write_text(f"encoding = 'octahedral'\nspace = 'world'\npacking = 'truncate'\ndepth = 'logarithmic'\n{targets}")
     read = read_layout(path)
     assert (read.name, read.space, read.packing, read.normal_bits) == ("mine", "world", "truncate", 24)
+    assert read.depth == "logarithmic" and "logarithmic depth" in read.summary
     assert read.normal_storage == "rgba8 12:12"
 
 
@@ -144,7 +153,7 @@ def test_a_pipeline_says_what_a_layout_lacks(gl):
     with pytest.raises(LayoutError, match=r"deferred needs albedo.b, .*, which layout normal_depth does not keep"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
-        light = LIGHT_BUFFERS["r11g11b10f"]
+        light = LIGHT_ENCODINGS["r11g11b10f"]
         check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"], light_targets=1, light_buffer=light))
 
 
@@ -177,6 +186,29 @@ def test_depth_comes_back_to_half_a_code(name):
     bound = HALF * step * ROOM.view.far + native + abs(exact) * 2.0**-20
     worst = np.max(abs(got - exact) / bound)
     assert worst <= 1, f"{worst:.3f} times the bound"
+
+
+@pytest.mark.parametrize("holds", ["depth:16 power", "depth:24", "depth"])
+@pytest.mark.parametrize("name", DEPTH_ENCODINGS)
+def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
+    """The room through a layout that names its depth's code: packed in 16 and 24 bits, and in a float of its own."""
+    normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
+    home = Target("r32f" if holds == "depth" else "rgba8", holds)
+    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=name)
+    storage = {"depth:16 power": "packed16", "depth:24": "packed24", "depth": "r32f"}[holds]
+    exact = -kept("fp32")[0][..., 2][covered()].astype(np.float64)
+    with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as made:
+        made.draw()
+        got = -made.gbuffer()[0][..., 2][covered()].astype(np.float64)
+    camera = Camera(ROOM.view.near, ROOM.view.far, ROOM.view.fov, 4 / 3)
+    bounds = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES[storage]).furthest(exact, camera)
+    worst = int(np.argmax(abs(got - exact) / bounds))
+    assert abs(got - exact)[worst] <= bounds[worst], f"{exact[worst]} came back as {got[worst]}, bound {bounds[worst]}"
+
+
+def test_a_layout_keeps_the_depth_that_suits_its_normal():
+    assert LAYOUTS["normal_depth"].depth_encoding.name == "linear"
+    assert LAYOUTS["xy_depth_sign"].depth_encoding.name == "linear_sign"
 
 
 @pytest.mark.parametrize("name", LAYOUTS)

@@ -1,7 +1,6 @@
 """The two languages agree: before storage to a few units in the last place, after it code for code."""
 
 import itertools
-import re
 from functools import cache
 
 import jax
@@ -9,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from directions import NOT_DIRECTIONS, hard_directions, random_directions, view_positions
+from mutants import part_of, swapped_calls
 
 from normalbench.bench import quality
 from normalbench.bench.normal_sets import hemisphere, playground, sphere
@@ -199,8 +199,6 @@ def test_every_direction_comes_back_finite(name, storage):
     assert not bad.any(), f"{codec.name}: {n[bad][0]!r} comes back as {decoded[bad][0]!r}"
 
 
-COMMUTATIVE = {"dot", "max", "min"}
-CALL = re.compile(r"\b([A-Za-z_]\w*)\(")
 # Which encoding's harness sees the shared functions that no other encoding of this list would notice.
 SHARED = {
     "spherical": ["elementary.glsl"],
@@ -208,56 +206,6 @@ SHARED = {
     "cryengine3": ["vec.glsl:unit(vec2"],
     "per_pixel_view": ["vec.glsl:unit(vec3"],
 }
-
-
-def split_arguments(text: str, start: int) -> tuple[list[str], int]:
-    """The arguments of a call whose parenthesis opens just before `start`, and where it closes."""
-    depth, begin, arguments = 0, start, []
-    for i in range(start, len(text)):
-        if text[i] in "([":
-            depth += 1
-        elif text[i] in ")]" and depth:
-            depth -= 1
-        elif text[i] in ",)" and not depth:
-            arguments.append(text[begin:i].strip())
-            begin = i + 1
-            if text[i] == ")":
-                return arguments, i
-    return arguments, len(text)
-
-
-def exchanged(arguments: list[str], i: int, j: int) -> list[str]:
-    """Two change places; in a definition their names do, and the types stay."""
-    swapped = list(arguments)
-    first, second = arguments[i].split(" "), arguments[j].split(" ")
-    if len(first) == len(second) == 2 and first[0] in ("float", "vec2", "vec3"):
-        swapped[i], swapped[j] = f"{first[0]} {second[1]}", f"{second[0]} {first[1]}"
-    else:
-        swapped[i], swapped[j] = arguments[j], arguments[i]
-    return swapped
-
-
-def swapped_calls(text: str) -> list[tuple[str, str]]:
-    """(what, text) for each call or definition in a GLSL text, and each two of its arguments exchanged."""
-    found = []
-    text = re.sub(r"//[^\n]*", lambda comment: " " * len(comment[0]), text)
-    for match in CALL.finditer(text):
-        arguments, end = split_arguments(text, match.end())
-        if match[1] in COMMUTATIVE or match[1] in ("if", "for"):
-            continue
-        for i, j in itertools.combinations(range(len(arguments)), 2):
-            if arguments[i] != arguments[j]:
-                swapped = ", ".join(exchanged(arguments, i, j))
-                found.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
-    return found
-
-
-def part_of(text: str, function: str) -> tuple[int, int]:
-    """Where the definition that holds `function` starts and ends; the whole text for none."""
-    if not function:
-        return 0, len(text)
-    start = text.index(function)
-    return start, text.find("\n", start)
 
 
 def mutants() -> list:

@@ -1,25 +1,49 @@
 """What the README says is so: its commands run, its table is measured, its example passes."""
 
 import json
+import os
 import re
 import shlex
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench import cli, quality, seeds
+from normalbench.bench.light_sums import Adder, equal_lights
 from normalbench.bench.normal_sets import playground
-from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
 from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.scenes.mesh import sphere
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text()
-(LAYOUT,) = re.findall(r"```toml\n(.*?)```", TEXT, re.S)
+(ENCODING,) = re.findall(r"```glsl\n(.*?)```", TEXT, re.S)
+LAYOUT, GATES = re.findall(r"```toml\n(.*?)```", TEXT, re.S)
 COMMANDS = re.findall(r"^    ((?:normalbench|python -m) [^#\n]+?) *(?:#.*)?$", TEXT, re.M)
+
+
+def cli_main(monkeypatch, *words: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["normalbench", *words])
+    return cli.main()
+
+
+def users_files(folder: Path) -> None:
+    """A frame in every format, its mask, a matrix, and a scene, as the commands name them."""
+    pytest.importorskip("OpenEXR")
+    n = some_normals()
+    for name in ("frame.exr", "world.exr"):
+        write_exr(folder / name, planes_of(n))
+    np.save(folder / "list.npy", n)
+    (folder / "frame.png").write_bytes(png_bytes(packed(n, np.uint16)))
+    (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
+    np.savetxt(folder / "view.txt", np.eye(4))
+    as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
 
 
 def test_there_are_commands_to_run():
@@ -30,6 +54,12 @@ def test_there_are_commands_to_run():
 def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.toml").write_text(LAYOUT)
+    (tmp_path / "gates.toml").write_text(GATES)
+    (tmp_path / "mine.glsl").write_text(ENCODING)
+    for name in ("before", "after") if "compare" in command else ():
+        assert cli_main(monkeypatch, "run", "--tables", "depth", "-o", name) == 0
+    if re.search(r"\.(glb|exr|png|npy)\b", command):
+        users_files(tmp_path)
     words = shlex.split(command)
     if words[0] == "python":
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
@@ -77,6 +107,72 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
         assert float(image) == pytest.approx(row["psnr_db"], abs=0.1), name
         assert float(normals) == pytest.approx(row["normal_psnr_db"], abs=0.1), name
         assert (int(rank), int(normal_rank)) == (row["rank"], row["normal_rank"]), name
+
+
+def test_the_light_table_is_what_is_measured():
+    """By the model, which needs no device."""
+    table = TEXT[TEXT.index("<!-- normalbench lights -->") : TEXT.index("<!-- normalbench lights image -->")]
+    lines = re.findall(r"^\| `(\w+)`[ \w()]*\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", table, re.M)
+    assert len(lines) == 7
+    for name, *figures in lines:
+        rows = equal_lights(Adder(LIGHT_ENCODINGS[name], None), [1.0], [8, 64, 256])
+        # Of channels that differ the table shows colours that lose most: not sRGB's alpha.
+        found = {row["lights"]: row["model"] for row in rows if row["channel"] != "a"}
+        for count, figure in zip((8, 64, 256), figures, strict=True):
+            assert float(figure) == pytest.approx(found[count], abs=0.0005), f"{name}, {count} lights"
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_light_image_table_is_what_is_measured(run):
+    table = TEXT[TEXT.index("<!-- normalbench lights image -->") :]
+    lines = re.findall(r"^\| `(\w+)` +\| +([\d.]+) \| +([\d.]*) \|$", table, re.M)
+    assert len(lines) == 4
+    (command,) = [command for command in COMMANDS if "--experiment image" in command]
+    status, out, _ = run(*shlex.split(command)[1:], "--format", "json")
+    assert status == 0
+    rows = {(row["light_buffer"], row["light_targets"]): row["held_psnr_db"] for row in json.loads(out)}
+    for name, two, one in lines:
+        assert float(two) == pytest.approx(rows[name, 2], abs=0.1), name
+        assert (float(one) == pytest.approx(rows[name, 1], abs=0.1)) if one else (name, 1) not in rows
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_depth_table_is_what_is_measured(run):
+    """By JAX to the two digits shown; by GLSL where a division may be another one, to an eighth."""
+    table = TEXT[TEXT.index("<!-- normalbench depth -->") : TEXT.index("## Commands")]
+    lines = re.findall(r"^\| `(\w+)` +\| `(\w+)` +\|([^|]+)\|([^|]+)\|([^|]+)\|([^|]+)\|$", table, re.M)
+    assert len(lines) == 10
+    (command,) = re.findall(r"^    normalbench (depth --near 0.1 --far 1000 --distance .*)$", TEXT, re.M)
+    status, out, _ = run(*command.split(), "--format", "json")
+    rows = [row for row in json.loads(out) if row["distance"]]
+    assert status == 0
+    for name, storage, *shown in lines:
+        for backend, tolerance in (("jax", 0.06), ("glsl", 0.125)):
+            asked = (name, storage, backend)
+            measured = [r["error_max"] for r in rows if (r["depth"], r["storage"], r["backend"]) == asked]
+            assert [float(text) for text in shown] == pytest.approx(measured, rel=tolerance), asked
+
+
+def test_the_cost_table_is_what_is_measured(run):
+    table = TEXT[TEXT.index("<!-- normalbench cost -->") :].split("\n\n")[0]
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", table)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d*)" * 6 + r" \|$", table, re.M)
+    assert len(lines) == 8
+    names = ",".join(line[0] for line in lines)
+    words = ["--isa", "--family", "polaris10,navi31", "--stage", "fragment", "--seeds", "--format", "json"]
+    status, out, err = run("cost", "--encoding", names, *words)
+    if status == 3 and not os.environ.get("CI"):
+        pytest.skip(err)
+    rows = json.loads(out)
+    if {row["driver"] for row in rows if row["family"]} != {mesa}:
+        pytest.skip(f"this machine's compiler is not {mesa}")
+    found = {(row["encoding"], row["operation"], row["family"] or row["compiler"]): row["instructions"] for row in rows}
+    found |= {key[:2]: found[key] for key in found if key[2] == seeds.SLOTS_BY and found[key] is not None}
+    for name, *figures in lines:
+        for operation, (article, polaris, navi) in zip(("encode", "decode"), (figures[:3], figures[3:]), strict=True):
+            key = (name, operation)
+            assert (int(article) if article else None) == found.get(key), key
+            assert [int(polaris), int(navi)] == [found[*key, "polaris10"], found[*key, "navi31"]], key
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

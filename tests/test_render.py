@@ -1,25 +1,19 @@
-"""`normalbench render` and `normalbench sweep`: rows, pictures, plots, and what they say of bad input."""
+"""`normalbench render`: rows, pictures, and what it says of bad input."""
 
-import csv
 import json
-import os
-import signal
-import subprocess
 import sys
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench import image_metrics, rendering, sweep
-from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.bench import image_metrics, rendering
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
 from normalbench.gbuffer.frame import Plan
 from normalbench.gbuffer.layouts import LAYOUTS
-from normalbench.gbuffer.light_buffers import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import WALL, displayed
 from normalbench.gbuffer.render import rendering as render
@@ -29,7 +23,6 @@ from normalbench.gbuffer.scenes.setting import Setting
 pytestmark = pytest.mark.usefixtures("gl")
 SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
 QUICK = ["render", *SMALL, "--scene", "room", "--encoding", "octahedral,xy", "--format", "json"]
-SWEEP = ["sweep", *SMALL, "--objects", "3,5", "--pipeline", "prepass,hybrid"]
 CODECS = [Codec(e, s) for e in ENCODINGS.values() for s in STORAGES.values() if e.components <= s.channels]
 
 
@@ -74,12 +67,15 @@ def test_layouts_are_measured_as_they_are(run):
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
 
-def test_bytes_per_pixel_count_what_a_frame_keeps(run):
-    """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; at two samples twice that."""
+def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
+    """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; all of it for each sample."""
     arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
     figures = [json.loads(run(*QUICK[:-4], *arguments, "--format", "json", "--samples", n)[1]) for n in ("1", "2")]
     assert [row["bytes_per_pixel"] for row in figures[0]] == [17 + 4 + 16, 21 + 16]
-    assert [row["bytes_per_pixel"] for row in figures[1]] == [2 * 37, 2 * 37]
+    given = gl.given_samples(2)
+    assert [row["bytes_per_pixel"] for row in figures[1]] == [given * 37, given * 37]
+    read = json.loads(run(*QUICK[:-4], *arguments[:-1], "rgbm", "--format", "json")[1])
+    assert read[0]["bytes_per_pixel"] == 17 + 4 + 2 * 2 * 4, "what is read while it is written has two copies"
 
 
 def test_codecs_are_ranked_among_their_like(run):
@@ -146,7 +142,7 @@ def test_samples_smooth_edges(gl, pipeline):
     """At 4 samples the picture is nearer to one of 4 times the pixels than at 1 sample."""
     chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
     targets = max(chosen.light_targets, default=1)
-    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], targets, False, 1.0)
+    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], targets, False, 1.0)
 
     def image(plan: Plan) -> np.ndarray:
         with render(gl, chosen, scene, plan) as made:
@@ -165,7 +161,7 @@ def test_every_codec_gives_a_finite_image(gl, pipeline):
     """Every encoding in every storage it fits, one small frame each."""
     scene = SCENES["room"].make(Setting(lights=2))
     chosen = PIPELINES[pipeline]
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(chosen.light_targets), False, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], max(chosen.light_targets), False, 1.0)
     worst = {}
     with render(gl, chosen, scene, plan) as made:
         made.draw()
@@ -214,7 +210,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--layout", "clash.toml"], "normal.x lies in two places"),
         (["--layout", "hybrid", "--encoding", "xy_sign"], "keeps no depth"),
         (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs albedo.b"),
-        (["--light-buffer", "rgb9e5"], "unknown light buffer 'rgb9e5'"),
+        (["--light-buffer", "rgba8"], "unknown light buffer 'rgba8'"),
         (["--light-buffer", "r11g11b10f", "--light-targets", "1"], "one light target needs an alpha channel"),
         (["--light-targets", "3"], "unknown number of light targets '3'; known: all, 1, 2"),
         (["--scene", "sponza"], "unknown scene 'sponza'; known: all, playground"),
@@ -236,180 +232,11 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
     assert {path.name for path in tmp_path.iterdir()} == {"clash.toml", "hybrid.toml"}
 
 
-def test_a_sweep_counts_what_each_pass_draws(run):
-    """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
-    status, out, _ = run(*SWEEP, "--format", "json")
-    rows = json.loads(out)
-    assert status == 0 and all(tuple(row) == sweep.COLUMNS for row in rows)
-    assert [(r["shadow"], r["objects"], r["pipeline"]) for r in rows] == [
-        (shadow, objects, pipeline)
-        for shadow in (True, False)
-        for objects in (3, 5)
-        for pipeline in ("prepass", "hybrid")
-    ]
-    for row in rows:
-        scene = SCENES["objects"].make(Setting(row["objects"], 4))
-        general, special = (
-            sum(len(p.mesh.triangles) * np.sum([(scene.materials[m].kind != "general") == s for m in p.materials])
-                for p in scene.parts)
-            for s in (False, True)
-        )  # fmt: skip
-        assert row["triangles_geometry"] == general + special
-        assert row["triangles_material"] == special + (general if row["pipeline"] == "prepass" else 0)
-        assert (row["triangles_shadow_map"] > 0) == row["shadow"]
-
-
-def test_a_sweep_writes_its_rows_and_its_plot(run, tmp_path):
-    rows, plot = tmp_path / "rows.csv", tmp_path / "plot.png"
-    status, out, _ = run(*SWEEP, "--format", "csv", "-o", str(rows), "--plot", str(plot))
-    assert (status, out) == (0, "") and len(list(csv.DictReader(rows.read_text().splitlines()))) == 8
-    pixels = np.asarray(Image.open(plot).convert("RGB"))
-    assert pixels.shape[1] > 800 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 50
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["plot.png", "rows.csv"], "the journal is gone"
-
-
-def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
-    """Rows that were measured before are kept to the last digit, a line that was cut off is measured again."""
-    output = tmp_path / "rows.json"
-    measure, measured = sweep.measure, []
-
-    def stopping(device, point):
-        if len(measured) == 3:
-            raise KeyboardInterrupt
-        measured.append(point)
-        return measure(device, point)
-
-    monkeypatch.setattr(sweep, "measure", stopping)
-    status, out, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert (status, out) == (130, "") and "3 of 8 rows are kept; the same command goes on" in err
-    journal = tmp_path / ".rows.json.rows"
-    kept = [json.loads(line) for line in journal.read_text().splitlines()]
-    with journal.open("a") as file:
-        file.write('{"pipeline": "pre')
-    monkeypatch.setattr(sweep, "measure", lambda device, point: measured.append(point) or measure(device, point))
-    status, _, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert status == 0 and "3 of 8 rows were measured before" in err and len(measured) == 8
-    rows = json.loads(output.read_text())
-    assert rows[:3] == kept and len(rows) == 8 and not journal.exists()
-
-
-def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, monkeypatch):
-    """A layout that changed behind its name is another sweep."""
-    monkeypatch.chdir(tmp_path)
-    layout = "encoding = 'octahedral'\n[[targets]]\nformat = '{}'\nholds = 'normal.x normal.y'\n"
-    measure, rows = sweep.measure, []
-
-    def stopping(device, point):
-        if rows:
-            raise SystemExit(143)
-        rows.append(measure(device, point))
-        return rows[0]
-
-    command = (
-        "sweep",
-        *SMALL,
-        "--pipeline",
-        "prepass",
-        "--objects",
-        "3,5",
-        "--layout",
-        "mine.toml",
-        "-o",
-        "new/rows.csv",
-    )
-    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
-    monkeypatch.setattr(sweep, "measure", stopping)
-    with pytest.raises(SystemExit):
-        run(*command)
-    journal = tmp_path / "new" / ".rows.csv.rows"
-    kept = journal.read_text()
-    (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
-    status, _, err = run(*command)
-    assert status == 2 and "keeps 1 rows of another sweep" in err and journal.read_text() == kept
-    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
-    monkeypatch.setattr(sweep, "measure", measure)
-    assert run(*command)[0] == 0 and not journal.exists()
-
-
-def test_a_sweep_goes_through_a_pipe(run, tmp_path):
-    """What is no file has no journal beside it."""
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
-    status, *_ = run(*SWEEP, "--format", "csv", "-o", str(pipe))
-    assert status == 0 and reader.communicate(timeout=20)[0].count("\n") == 9
-    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
-
-
-def test_two_sweeps_do_not_share_an_output(run, tmp_path):
-    with sweep.journal(tmp_path / "rows.csv"):
-        status, _, err = run(*SWEEP, "-o", str(tmp_path / "rows.csv"))
-    assert status == 2 and "another sweep is writing" in err and err.count("\n") == 1
-
-
-def test_an_interrupted_process_leaves_its_journal(tmp_path):
-    output = tmp_path / "rows.csv"
-    command = [sys.executable, "-m", "normalbench.bench", "sweep", *SMALL, "--objects", "2000", "--repeats", "50"]
-    command += ["--pipeline", "all", "-o", str(output)]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"})
-    deadline = time.monotonic() + 60
-    while not (tmp_path / ".rows.csv.rows").exists() and time.monotonic() < deadline:
-        time.sleep(0.1)
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=60)
-    # Python ends itself by the signal where that came in the middle of an import; to a shell that is 130 as well.
-    assert process.returncode in (130, -signal.SIGINT) and "rows are kept" in err and "Traceback" not in err
-    assert not output.exists()
-
-
-@pytest.mark.parametrize(
-    "arguments, said",
-    [
-        (["--objects", "100,x"], "comma-separated"),
-        (["--objects", "0"], "numbers from 1"),
-        (["--objects", "9" * 5000], "numbers from 1"),
-        (["--samples", "0"], "--samples 0: from 1 to 64"),
-        (["--scale", "2"], "a scale is 0.05 to 1"),
-        (["--layout", ""], "no layout named"),
-        (["--objects", ""], "numbers from 1"),
-        (["--size", "0x0"], "WIDTHxHEIGHT"),
-        (["--plot", "plot.jpg"], "a plot's name ends in .png, .svg, .pdf"),
-        (["--plot", "."], "is a folder"),
-        (["--pipeline", "none"], "unknown pipeline 'none'"),
-        (["-o", "."], "is a folder"),
-        (["--layout", "normal_depth", "--pipeline", "hybrid"], "hybrid needs"),
-    ],
-)
-def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
-    monkeypatch.chdir(tmp_path)
-    status, out, err = run("sweep", *arguments)
-    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
     """Values through a float target come back as they were, after a frame that blends and tests depth."""
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
     with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
         made.draw()
     values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)
     assert np.array_equal(gl.through(values, STORAGES["rgba32f"]), values)
     assert gl.context.error == "GL_NO_ERROR"
-
-
-def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
-    """As JAX's does in the garbage collector: no traceback, and the next step ends."""
-    program = (
-        "import gc, os, signal, sys\n"
-        "from normalbench.bench import cli\n"
-        "def callback(*_):\n"
-        "    if 'normalbench.bench.sweep' in sys.modules and not sent:\n"
-        "        sent.append(os.kill(os.getpid(), signal.SIGINT))\n"
-        "sent = []\n"
-        "gc.callbacks.append(callback)\n"
-        "sys.exit(cli.main())\n"
-    )
-    command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode in (130, -signal.SIGINT), done.stderr
-    assert "rows are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr

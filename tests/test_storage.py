@@ -6,6 +6,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from neighbours import around
 
 from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_snorm, store_unorm
 from normalbench.gbuffer.codec_passes import storage_defines
@@ -13,17 +14,6 @@ from normalbench.gbuffer.device import read_pixels
 
 INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float"]
 HALVES = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] == 16]
-
-
-def around(values: np.ndarray, ulps: int = 3) -> np.ndarray:
-    """float32 values and their neighbours, `ulps` to each side."""
-    found = [values.astype(np.float32)]
-    for towards in (np.float32(-np.inf), np.float32(np.inf)):
-        step = found[0]
-        for _ in range(ulps):
-            step = np.nextafter(step, towards)
-            found.append(step)
-    return np.concatenate(found)
 
 
 OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.inf, -np.inf], np.float32)

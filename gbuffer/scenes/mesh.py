@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+# Vertices are in one place where they fall into one of so many cells along a mesh's extent: float32's, or nearly.
+WELD = 1 << 22
 
 
 @dataclass(frozen=True)
@@ -16,21 +20,30 @@ class Mesh:
         normals: (vertices, 3), unit, pointing out, float64.
         triangles: (triangles, 3) vertex indices; no order of corners is promised, the normals say which side is out.
         uv: (vertices, 2), where a vertex lies on its surface; a normal map's tangents follow from it.
+        authored: (vertices, 4), tangents and their bitangents' signs as a file has them, where it has any.
     """
 
     positions: np.ndarray
     normals: np.ndarray
     triangles: np.ndarray
     uv: np.ndarray
+    authored: np.ndarray | None = None
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
         """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""
-        normals = self.normals @ np.linalg.inv(linear).T
-        return Mesh(self.positions @ linear + np.asarray(translation), _unit(normals), self.triangles, self.uv)
+        normals = _unit(self.normals @ np.linalg.inv(linear).T)
+        authored = None if self.authored is None else _tangents_placed(self.authored, linear)
+        return Mesh(self.positions @ linear + np.asarray(translation), normals, self.triangles, self.uv, authored)
 
 
-def joined(meshes: list[Mesh]) -> Mesh:
-    """One mesh of several."""
+def _tangents_placed(authored: np.ndarray, linear: np.ndarray) -> np.ndarray:
+    """Tangents lie in the surface and go as positions do; a mirror turns the bitangent's sign around."""
+    sign = authored[:, 3:] * np.sign(np.linalg.det(linear))
+    return np.concatenate([_unit(authored[:, :3] @ linear), sign], axis=1)
+
+
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """One mesh of several, without authored tangents."""
     starts = np.cumsum([0, *(len(m.positions) for m in meshes[:-1])])
     return Mesh(
         np.concatenate([m.positions for m in meshes]),
@@ -69,6 +82,31 @@ def wound(mesh: Mesh) -> np.ndarray:
     return triangles
 
 
+def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Vertex normals of a mesh that has none, (vertices, 3): the mean of the triangles around, weighed by their angles
+    (Thuermer and Wuethrich 1998). Vertices in one place, but for rounding, share theirs; zero where no triangle has an
+    area.
+
+    Out is where a triangle's corners go counter-clockwise.
+    """
+    corners = positions[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(across, axis=1)
+    triangles, corners = triangles[area > 0], corners[area > 0]
+    across = across[area > 0] / area[area > 0, None]
+    extent = float(np.ptp(positions, axis=0).max()) or 1.0
+    cells = np.round((positions - positions.min(axis=0)) / extent * WELD).astype(np.int64)
+    _, place = np.unique(cells, axis=0, return_inverse=True)
+    total = np.zeros((len(positions), 3))
+    for corner in range(3):
+        a, b = (corners[:, (corner + step) % 3] - corners[:, corner] for step in (1, 2))
+        angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.sum(a * b, axis=1))
+        np.add.at(total, place.ravel()[triangles[:, corner]], across * angle[:, None])
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    normals = np.divide(total, length, out=np.zeros_like(total), where=length > 1e-9)
+    return normals[place.ravel()]
+
+
 def grid_uv(rows: int, columns: int) -> np.ndarray:
     """(u, v) of a (rows + 1) x (columns + 1) grid of vertices, u along the columns, each from 0 to 1."""
     v, u = np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
@@ -79,7 +117,10 @@ def tangents(mesh: Mesh) -> np.ndarray:
     """The direction in which u grows, (vertices, 4): unit, at right angles to the normal, and the bitangent's sign.
 
     The bitangent is sign x (normal x tangent). Where u grows nowhere, as at a pole, the tangent is any direction.
+    Authored ones are given as they are.
     """
+    if mesh.authored is not None:
+        return mesh.authored
     corners, uv = mesh.positions[mesh.triangles], mesh.uv[mesh.triangles]
     (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
     # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.

@@ -110,8 +110,10 @@ def _resolve(corners, normals, inverse, boxes, camera: Camera) -> Rendered:
         depth[pixel[first]] = w[first]
         normal[pixel[first]] = np.einsum("nc,nck->nk", weights, normals[triangle[first]])
         position[pixel[first]] = np.einsum("nc,nck->nk", weights, corners[triangle[first]])
-    covered = np.isfinite(depth)
-    normal[covered] /= np.linalg.norm(normal[covered], axis=1, keepdims=True)
+    length = np.linalg.norm(normal, axis=1)
+    # Normals that cancel each other within a triangle leave none: nothing to be measured there.
+    covered = np.isfinite(depth) & (length > 0)
+    normal[covered] /= length[covered, None]
     shape = (camera.height, camera.width)
     return Rendered(
         normal.reshape(*shape, 3).astype(np.float32),

@@ -88,6 +88,7 @@ class View:
         eye, target: where it is and what it looks at.
         fov: vertical field of view in degrees.
         near, far: distances along the line of sight.
+        up: what is up in the picture, at any angle but 0 to the line of sight.
     """
 
     eye: Colour
@@ -95,12 +96,13 @@ class View:
     fov: float
     near: float
     far: float
+    up: Colour = (0.0, 1.0, 0.0)
 
     def matrix(self) -> np.ndarray:
         """World to view space, (4, 4), for column vectors: x right, y up, looking down -z."""
         back = np.subtract(self.eye, self.target)
         back = back / np.linalg.norm(back)
-        right = np.cross([0.0, 1.0, 0.0], back)
+        right = np.cross(self.up, back)
         right = right / np.linalg.norm(right)
         axes = np.stack([right, np.cross(back, right), back])
         matrix = np.eye(4)

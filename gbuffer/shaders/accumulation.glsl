@@ -1,37 +1,32 @@
 // The light buffer: what light passes add up and later passes read. Of one or two targets: two hold diffuse and
-// specular light; one holds the diffuse light, and in its alpha the luminance of the specular (seed 002). A format that
-// ends at 1 keeps light divided by LIGHT_RANGE.
+// specular light; one holds the diffuse light, and in its fourth number the luminance of the specular (seed 002).
 #include "sample.glsl"
-
-float luminance(vec3 c) {
-    const float luma[] = LUMA;
-    return dot(c, vec3(luma[0], luma[1], luma[2]));
-}
-
-// The colour of light, at luminance 1; white where there is none.
-vec3 chromaticity(vec3 c) {
-    float l = luminance(c);
-    return l > TINY ? c / l : vec3(1.0);
-}
+#include "light_code.glsl"
+#include "../../encodings/chromaticity.glsl"
 
 #ifdef WRITES_LIGHT
 layout(location = 0) out vec4 light_texels[LIGHT_TARGETS];
 
-// Finished colour, of a pixel that needs no second geometry pass.
-void add_colour(vec3 colour) {
-    light_texels[0] = vec4(colour / LIGHT_RANGE, 0.0);
+#if LIGHT_READS
+uniform SAMPLER light_before[LIGHT_TARGETS];
+#define BEFORE(target) LIGHT_DECODE(texelFetch(light_before[target], ivec2(gl_FragCoord.xy), SAMPLE))
+#else
+#define BEFORE(target) vec4(0.0)
+#endif
+
+void add_light(vec4 first, vec4 second) {
+    light_texels[0] = LIGHT_ENCODE(light_or_none(first + BEFORE(0)));
 #if LIGHT_TARGETS > 1
-    light_texels[1] = vec4(0.0);
+    light_texels[1] = LIGHT_ENCODE(light_or_none(second + BEFORE(1)));
 #endif
 }
 
-void add_light(vec3 diffuse, vec3 specular) {
-#if LIGHT_TARGETS > 1
-    light_texels[0] = vec4(diffuse / LIGHT_RANGE, 0.0);
-    light_texels[1] = vec4(specular / LIGHT_RANGE, 0.0);
-#else
-    light_texels[0] = vec4(diffuse, luminance(specular)) / LIGHT_RANGE;
-#endif
+// Finished colour, of a pixel that needs no second geometry pass.
+void add_colour(vec3 colour) { add_light(vec4(colour, 0.0), vec4(0.0)); }
+
+void add_terms(vec3 diffuse, vec3 specular) {
+    bool apart = LIGHT_TARGETS > 1;
+    add_light(vec4(diffuse, apart ? 0.0 : luminance(specular)), vec4(specular, 0.0));
 }
 #else
 uniform SAMPLER light_texels[LIGHT_TARGETS];
@@ -41,9 +36,9 @@ struct Accumulated {
 };
 
 Accumulated fetch_light(ivec2 pixel) {
-    vec4 first = texelFetch(light_texels[0], pixel, SAMPLE) * LIGHT_RANGE;
+    vec4 first = LIGHT_DECODE(texelFetch(light_texels[0], pixel, SAMPLE));
 #if LIGHT_TARGETS > 1
-    return Accumulated(first, texelFetch(light_texels[1], pixel, SAMPLE) * LIGHT_RANGE);
+    return Accumulated(first, LIGHT_DECODE(texelFetch(light_texels[1], pixel, SAMPLE)));
 #else
     return Accumulated(first, vec4(0.0));
 #endif
@@ -59,7 +54,7 @@ vec3 at_power(vec3 specular, float diffuse, int kind, float power) {
 // Specular light for a material of this kind and power; `material.glsl` is included before.
 vec3 specular_light(Accumulated a, int kind, float power) {
     vec3 diffuse = a.first.rgb;
-    vec3 specular = LIGHT_TARGETS > 1 ? a.second.rgb : chromaticity(diffuse) * a.first.a;
+    vec3 specular = LIGHT_TARGETS > 1 ? a.second.rgb : coloured(diffuse, a.first.a);
     return HAS_POWER != 0 ? specular : at_power(specular, luminance(diffuse), kind, power);
 }
 #endif

@@ -14,8 +14,7 @@ void main() {
     stored = from_texel(texelFetch(texels, pixel, 0));
 #if SIGN_BITS
     // The sign bit, and not a comparison: a depth of zero has a sign too.
-    uint bits = floatBitsToUint(texelFetch(signed_depths, pixel, 0).x);
-    stored[COMPONENTS] = bits >> 31 != 0u ? -1.0 : 1.0;
+    stored[COMPONENTS] = sign_bit(texelFetch(signed_depths, pixel, 0).x) ? -1.0 : 1.0;
 #endif
     normal = vec4(DECODE(CODE(stored), texelFetch(views, pixel, 0).xyz), 0.0);
 }

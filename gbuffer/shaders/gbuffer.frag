@@ -5,6 +5,7 @@
 #include "gbuffer.glsl"
 
 #if WRITES_EMISSIVE
+#include "light_code.glsl"
 layout(location = TARGETS) out vec4 emissive;
 #endif
 
@@ -20,6 +21,7 @@ void main() {
 #endif
     write_gbuffer(s);
 #if WRITES_EMISSIVE
-    emissive = vec4(s.kind == GENERAL || !SPECIAL_APART ? s.emissive / LIGHT_RANGE : vec3(0.0), 0.0);
+    vec3 begins = s.kind == GENERAL || !SPECIAL_APART ? s.emissive : vec3(0.0);
+    emissive = LIGHT_ENCODE(light_or_none(vec4(begins, 0.0)));
 #endif
 }

@@ -21,6 +21,6 @@ void main() {
     if (ACCUMULATES == 1 || (ACCUMULATES == 2 && s.kind == GENERAL)) {
         add_colour(compose(s, colour * t.diffuse, colour * t.specular));
     } else {
-        add_light(colour * t.diffuse, colour * t.specular);
+        add_terms(colour * t.diffuse, colour * t.specular);
     }
 }

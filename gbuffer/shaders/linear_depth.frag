@@ -7,5 +7,6 @@ out float linear;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    linear = -position_from_window_depth(screen_place(pixel), texelFetch(native_depth, pixel, SAMPLE).x).z;
+    float depth = texelFetch(native_depth, pixel, SAMPLE).x;
+    linear = -position_from_window_depth(screen_place(pixel), depth, vec2(2.0, -1.0), inverse_projection).z;
 }

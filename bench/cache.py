@@ -1,0 +1,57 @@
+"""What was computed once and holds for good, kept in the user's cache folder: one file for each key."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+
+def folder() -> Path:
+    """Where the cache lies: under XDG_CACHE_HOME, or ~/.cache."""
+    home = os.environ.get("XDG_CACHE_HOME", "")
+    # The XDG specification has relative paths ignored.
+    return (Path(home) if Path(home).is_absolute() else Path("~/.cache").expanduser()) / "normalbench"
+
+
+def key_of(*parts: str | bytes) -> str:
+    """A key that differs wherever one of the parts does."""
+    digest = hashlib.sha256()
+    for part in parts:
+        data = part.encode() if isinstance(part, str) else part
+        digest.update(f"{len(data)}:".encode() + data)
+    return digest.hexdigest()
+
+
+def read(key: str, columns: set[str]) -> dict[str, Any] | None:
+    """The value of a key, or None where there is none or it is damaged: no mapping with exactly these columns."""
+    try:
+        kept = json.loads(_path(key).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not isinstance(kept, dict) or kept.get("key") != key or not isinstance(kept.get("value"), dict):
+        return None
+    return kept["value"] if set(kept["value"]) == columns else None
+
+
+def write(key: str, value: dict[str, Any]) -> None:
+    """Keep a value. Readers see the old file or the new one; a folder that cannot be written is no error."""
+    path = _path(key)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
+            try:
+                json.dump({"key": key, "value": value}, file)
+                file.close()
+                Path(file.name).replace(path)
+            finally:
+                Path(file.name).unlink(missing_ok=True)
+    except OSError:
+        return
+
+
+def _path(key: str) -> Path:
+    return folder() / key[:2] / f"{key}.json"

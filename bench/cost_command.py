@@ -1,0 +1,260 @@
+"""What `cost` does."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from ..encodings.codec import Codec
+from ..encodings.encoding import Encoding
+from ..encodings.storage import STORAGES
+from ..gbuffer.kernels import PACKINGS, STAGES, Packing
+from ..reports import pareto, plots
+from . import cost, cost_clocks, cost_sheets, isa, quality
+from .cost import Case, Row
+from .counts import checked_count
+from .errors import MissingError, UsageError, pick
+from .normal_sets import NORMAL_SETS, NormalSet
+from .output import check_folder, check_writable, say, whole_file, without, write
+from .progress import progress
+from .render_commands import MAX_REPEATS, checked_target, in_range
+from .user_encodings import encodings_named
+
+MEASURES = ("isa", "time", "jax")
+# What the plot draws: of each measure a column, and what it counts.
+UNITS = {"isa": ("instructions", "instructions"), "time": ("ns_per_megapixel", "ns a megapixel")}
+ERRORS = {"psnr": "psnr_db", "mean": "angle_mean_deg", "max": "angle_max_deg"}
+# What a narrow terminal goes without, the first first.
+EXPENDABLE = (
+    *("compiler", "driver", "device", "code_bytes", "kernel_sgprs", "sgprs", "spills", "waiting", "kernel_vgprs"),
+    *("wide_product", "scalar", "latency", "memory", "clock", "vgprs"),
+    *(name for name in ("GeForce 7800GT", "Radeon HD 3870", "GeForce 6200")),
+)
+
+
+@dataclass(frozen=True)
+class CostRequest:
+    """What to measure, as typed: names are comma-separated."""
+
+    encoding: str
+    isa: bool
+    time: bool
+    jax: bool
+    family: str
+    stage: str
+    operation: str
+    storage: str
+    size: str
+    repeats: int
+    count: int
+    seed: int
+    normals: str
+    error: str
+
+    @property
+    def measures(self) -> list[str]:
+        """The measures asked for by name, or all of them."""
+        asked = [name for name in MEASURES if getattr(self, name)]
+        return asked or list(MEASURES)
+
+    @cached_property
+    def encodings(self) -> list[Encoding]:
+        """Raises UsageError, as the others do."""
+        return encodings_named(self.encoding)
+
+    @cached_property
+    def operations(self) -> list[str]:
+        return pick("operation", self.operation, {name: name for name in cost.OPERATIONS})
+
+    @cached_property
+    def stages(self) -> list[str]:
+        return pick("stage", self.stage, {name: name for name in STAGES})
+
+    @cached_property
+    def families(self) -> list[str]:
+        return pick("family", self.family, {name: name for name in isa.FAMILIES})
+
+    @cached_property
+    def packings(self) -> list[Packing]:
+        return [packing for several in pick("storage", self.storage, PACKINGS) for packing in several]
+
+    def normal_sets(self) -> list[NormalSet]:
+        return [make(self.count, self.seed) for make in self._makers]
+
+    @cached_property
+    def _makers(self) -> list[Callable[[int, int], NormalSet]]:
+        return pick("normal set", self.normals, NORMAL_SETS)
+
+    def cases(self) -> list[Case]:
+        """What is compiled: encodings, and what packings add."""
+        return cost.cases(self.encodings, self.packings, self.operations)
+
+    def check(self) -> None:
+        """Raises UsageError for what is unknown or out of range."""
+        in_range("--repeats", self.repeats, 2, MAX_REPEATS)
+        checked_count(self.count)
+        if self.seed < 0:
+            raise UsageError(f"--seed {self.seed}: a seed is 0 or more")
+        pick("error", self.error, ERRORS)
+        _ = self.cases(), self.stages, self.families, self._makers
+        for encoding in self.encodings if "jax" in self.measures or "time" in self.measures else ():
+            quality.check_twin(encoding)
+
+
+class Measured:
+    """Rows as they are measured, the disassembly beside those that have one, and what this machine lacks."""
+
+    def __init__(self, request: CostRequest):
+        self.listed: list[tuple[Row, str]] = []
+        self.missing: list[str] = []
+        for measure in request.measures:
+            try:
+                self.listed += getattr(self, f"_{measure}")(request)
+            except MissingError as error:
+                self.missing.append(str(error))
+                row = dict.fromkeys(cost.COLUMNS) | {"measure": measure, "skipped": str(error)}
+                self.listed.append((row, ""))
+
+    @property
+    def rows(self) -> list[Row]:
+        return [row for row, _ in self.listed]
+
+    def _isa(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
+        with progress(len(request.families)) as tick:
+            yield from cost.isa_rows(request.cases(), request.stages, request.families, self.missing, tick)
+
+    def _time(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
+        device = quality.require_device()
+        size, _ = checked_target(request.size, 1, 1, device)
+        chosen = cost.cases(request.encodings, (), request.operations)
+        with progress(len(chosen) + request.repeats) as tick:
+            for row in cost_clocks.time_rows(device, chosen, size, request.repeats, tick):
+                yield row, ""
+
+    def _jax(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
+        quality.require_jax()
+        chosen = cost.cases(request.encodings, (), request.operations)
+        with progress(len(chosen)) as tick:
+            for row in cost_clocks.jax_rows(chosen, request.count, request.repeats, tick):
+                yield row, ""
+
+
+def cost_command(
+    request: CostRequest, seeds: bool, disassembly: Path | None, plot: Path | None, format: str, output: Path | None
+) -> None:
+    """Measure, write disassembly and plot if asked for, then the rows; raises MissingError in the end where this
+    machine lacks something of what was asked for."""
+    request.check()
+    _check_outputs(request, disassembly, plot, output)
+    measured = Measured(request)
+    _say_reasons(measured)
+    if disassembly:
+        write_listings(disassembly, measured.listed)
+    if plot:
+        _plot(request, measured.rows, plot)
+    article = cost_sheets.article_rows((e.name for e in request.encodings), request.operations) if seeds else []
+    if format == "table" and output is None:
+        _show(measured, article)
+    else:
+        write([*measured.rows, *article], format, output, EXPENDABLE, by="measure")
+    if measured.missing:
+        raise MissingError("; ".join(dict.fromkeys(measured.missing)))
+
+
+def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
+    """Each row's disassembly as a file, what it costs at its head, in a folder for each family."""
+    for path, text in (cost.listing(row, text) for row, text in listed if text):
+        with whole_file(folder / path) as partial:
+            partial.write_text(text, encoding="utf-8")
+
+
+def _check_outputs(request: CostRequest, disassembly: Path | None, plot: Path | None, output: Path | None) -> None:
+    """Raises UsageError for what cannot be written, before anything is measured."""
+    for path in filter(None, (plot, output)):
+        check_writable(path)
+    if disassembly:
+        check_folder(disassembly)
+        if "isa" not in request.measures:
+            raise UsageError("--disassembly is of what compilers make; ask for --isa")
+    if plot:
+        plots.check_format(plot)
+        if set(request.measures) == {"jax"}:
+            raise UsageError("--plot draws instructions or time; ask for --isa or --time")
+        _codecs(request)
+
+
+def _say_reasons(measured: Measured) -> None:
+    """Why rows have no figures, each reason once, to standard error; not what the command ends with."""
+    reasons = dict.fromkeys(row["skipped"] for row in measured.rows if row["skipped"])
+    for reason in reasons:
+        if not any(missing in reason for missing in measured.missing):
+            print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+
+
+def _show(measured: Measured, article: Sequence[Row]) -> None:
+    """The tables for people: families side by side where there are several."""
+    by_measure = {name: [r for r in measured.rows if r["measure"] == name and r["operation"]] for name in MEASURES}
+    families = {row["family"] for row in by_measure["isa"]}
+    if len(families) > 1:
+        write(cost_sheets.isa_sheet(by_measure["isa"], article), "table", None, EXPENDABLE, by="stage")
+    elif by_measure["isa"]:
+        write(without(by_measure["isa"], ("skipped",)), "table", None, EXPENDABLE, by="stage")
+    if families and article:
+        say("\n" + "".join(f"{note}\n" for note in cost_sheets.order_notes(measured.listed, article)))
+    for rows in (by_measure["time"], by_measure["jax"], cost_sheets.article_sheet(article)):
+        if rows:
+            say("\n")
+            write(without(rows, ("skipped",)), "table", None, EXPENDABLE)
+
+
+def _codecs(request: CostRequest) -> list[Codec]:
+    """What the plot compares: the encodings in the first storage whose error is measured. Raises UsageError."""
+    named = ",".join(STORAGES) if "all" in request.storage else request.storage
+    chosen = next((STORAGES[n.strip()] for n in named.split(",") if n.strip() in STORAGES), None)
+    if chosen is None:
+        raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
+    return quality.fitting(Codec(encoding, chosen) for encoding in request.encodings)[0]
+
+
+def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> None:
+    """Cost against error, a panel for each normal set, measure and operation."""
+    panels, error = [], ERRORS[request.error]
+    for normals in request.normal_sets():
+        codecs = _codecs(request)
+        errors = {codec: quality.measure(quality.Case(codec, normals, "jax"))[error] for codec in codecs}
+        title = f"{codecs[0].storage.title}, {normals.name}"
+        for measure, (column, unit) in UNITS.items():
+            chosen = _one_kind([r for r in rows if r["measure"] == measure and r[column] is not None])
+            for operation in request.operations if chosen else ():
+                points = list(_points(chosen, column, operation, errors))
+                panels.append((f"{operation}, {title}\n{_where(chosen[0])}", unit, points))
+    if not panels:
+        raise UsageError("--plot: there is nothing to draw; see why above")
+    with whole_file(path) as partial:
+        pareto.pareto_plot(panels, error, partial, path.suffix[1:])
+
+
+def _one_kind(rows: list[Row]) -> list[Row]:
+    """The rows of the first stage and family."""
+    return [r for r in rows if (r["stage"], r["family"]) == (rows[0]["stage"], rows[0]["family"])]
+
+
+def _where(row: Row) -> str:
+    return ", ".join(row[column] for column in ("family", "stage", "driver") if row["family"]) or row["device"]
+
+
+def _points(
+    rows: Sequence[Row], column: str, operation: str, errors: dict[Codec, float | None]
+) -> Iterator[pareto.Point]:
+    """Each codec: what its encoding and its storage take together, as far as both are known."""
+    costs = {(row["encoding"], row["storage"], row["operation"]): row[column] for row in rows}
+    for codec, error in errors.items():
+        bits = ":".join(map(str, codec.storage.bits[: max(codec.encoding.components, 2)]))
+        packing = (None, f"{codec.storage.name} {bits}", cost.PACKING_OPERATIONS[operation])
+        own = costs.get((codec.encoding.name, None, operation))
+        if own is not None and error is not None and math.isfinite(error):
+            yield codec.encoding.name, own + (costs.get(packing) or 0), error, codec.bits

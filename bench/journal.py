@@ -1,0 +1,88 @@
+"""Lines of JSON that are kept for good as they come, so that what was stopped goes on where it was."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import FileIO
+from pathlib import Path
+from typing import Any
+
+from .errors import UsageError
+
+Line = dict[str, Any]
+
+
+class Journal:
+    """A file of lines, open to this process alone; make it with `journal`.
+
+    Attributes:
+        path: the file.
+        lines: everything that is kept.
+    """
+
+    def __init__(self, path: Path, file: FileIO):
+        self.path, self._file = path, file
+        file.seek(0)
+        content = file.read()
+        # A line that was cut off in the middle would swallow the next one.
+        file.truncate(content.rfind(b"\n") + 1)
+        self.lines = list(_readable(content))
+
+    def add(self, line: Line) -> None:
+        """Keep a line for good: at once, so that it is whole or cut off at its end, and on the disk.
+
+        Raises:
+            UsageError: it cannot be written; what was kept before stays.
+        """
+        start, rest = self._file.seek(0, os.SEEK_END), json.dumps(line).encode() + b"\n"
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            os.truncate(self._file.fileno(), start)
+            kept = f"{len(self.lines)} finished steps are kept"
+            raise UsageError(f"cannot write {self.path}: {error.strerror or error}; {kept}") from error
+        self.lines.append(line)
+
+
+@contextmanager
+def journal(path: Path) -> Iterator[Journal]:
+    """The journal in a file, made if it is not there.
+
+    Raises:
+        UsageError: another process writes it, or it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.open("a+b", buffering=0)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise UsageError(f"another process writes {path}; wait for it, or name another place") from error
+        yield Journal(path, file)
+
+
+def read_lines(path: Path) -> list[Line]:
+    """The whole lines of a journal; nothing is written, and a missing file has none. Raises UsageError."""
+    try:
+        return list(_readable(path.read_bytes() if path.exists() else b""))
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def _readable(content: bytes) -> Iterator[Line]:
+    for line in content[: content.rfind(b"\n") + 1].splitlines():
+        try:
+            found = json.loads(line)
+        except ValueError:
+            continue
+        if isinstance(found, dict):
+            yield found

@@ -1,0 +1,207 @@
+"""RADV, Mesa's Vulkan driver for Radeons, asked what its compiler makes of a shader.
+
+No GPU is needed: for a family named by RADV_FORCE_FAMILY it offers a null device. Runs in a child process
+(`isa_child`), because drivers crash.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
+
+EXTENSION = "VK_KHR_pipeline_executable_properties"
+VULKAN_1_3 = 1 << 22 | 3 << 12
+# What kernel.frag writes.
+TARGETS = 3
+
+
+class DriverError(Exception):
+    """What the driver cannot do; one line."""
+
+
+class MissingDriverError(DriverError):
+    """What is not installed; one line that names the package."""
+
+
+def _vulkan() -> Any:
+    try:
+        return import_module("vulkan")
+    except ImportError as error:
+        raise MissingDriverError(f"no Vulkan bindings: {error}; install them (python -m pip install vulkan)") from error
+    except OSError as error:
+        raise MissingDriverError(
+            "no Vulkan loader: libvulkan.so.1 cannot be loaded; install it (Debian: apt-get install libvulkan1)"
+        ) from error
+
+
+class Radv:
+    """A logical device that compiles, and tells what it made.
+
+    Attributes:
+        device: what the driver calls it.
+        version: Mesa's.
+
+    Raises:
+        MissingDriverError: there is no Vulkan loader, or no driver.
+        DriverError: the driver lacks what is needed.
+    """
+
+    def __init__(self):
+        self._vk = vk = _vulkan()
+        physical = self._physical_device()
+        properties = vk.vkGetPhysicalDeviceProperties(physical)
+        self.device = str(properties.deviceName)
+        number = properties.driverVersion
+        self.version = f"{number >> 22}.{number >> 12 & 0x3FF}.{number & 0xFFF}"
+        extensions = {e.extensionName for e in vk.vkEnumerateDeviceExtensionProperties(physical, None)}
+        if EXTENSION not in extensions:
+            raise DriverError(f"{self.device} (Mesa {self.version}) lacks {EXTENSION}")
+        self._device = self._logical_device(physical)
+        self._layout = None
+
+    def _physical_device(self) -> Any:
+        vk = self._vk
+        try:
+            application = vk.VkApplicationInfo(apiVersion=VULKAN_1_3)
+            info = vk.VkInstanceCreateInfo(pApplicationInfo=application)
+            return vk.vkEnumeratePhysicalDevices(vk.vkCreateInstance(info, None))[0]
+        except (vk.VkError, IndexError) as error:
+            raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
+
+    def _logical_device(self, physical: Any) -> Any:
+        vk = self._vk
+        tells = vk.VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR(pipelineExecutableInfo=1)
+        renders = vk.VkPhysicalDeviceDynamicRenderingFeatures(dynamicRendering=1, pNext=tells)
+        queue = vk.VkDeviceQueueCreateInfo(queueFamilyIndex=0, pQueuePriorities=[1.0])
+        info = vk.VkDeviceCreateInfo(pNext=renders, pQueueCreateInfos=[queue], ppEnabledExtensionNames=[EXTENSION])
+        try:
+            return vk.vkCreateDevice(physical, info, None)
+        except vk.VkError as error:
+            raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
+
+    def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> tuple[dict[str, float], str]:
+        """What the compiler makes of a shader.
+
+        Args:
+            stage: "compute" or "fragment".
+            code: the shader, and `vertex` the one before a fragment shader, as SPIR-V.
+            planes: the binding of the storage buffer; those below are look-up tables.
+
+        Returns:
+            the driver's statistics by its own names, and the disassembly, empty where there is none.
+
+        Raises:
+            DriverError: it does not compile.
+        """
+        vk = self._vk
+        self._layout = self._layout or self._pipeline_layout(planes)
+        try:
+            made = self._compute(code) if stage == "compute" else self._graphics(code, vertex)
+            bit = vk.VK_SHADER_STAGE_COMPUTE_BIT if stage == "compute" else vk.VK_SHADER_STAGE_FRAGMENT_BIT
+            index = next(i for i, stages in self._executables(made) if stages & bit)
+        except (vk.VkError, StopIteration) as error:
+            raise DriverError(f"{self.device} does not compile it: {type(error).__name__}") from error
+        executable = vk.VkPipelineExecutableInfoKHR(pipeline=made, executableIndex=index)
+        return dict(self._statistics(executable)), self._disassembly(executable)
+
+    def _pipeline_layout(self, planes: int) -> Any:
+        vk = self._vk
+        kinds = [vk.VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER] * planes + [vk.VK_DESCRIPTOR_TYPE_STORAGE_BUFFER]
+        bindings = [
+            vk.VkDescriptorSetLayoutBinding(
+                binding=i, descriptorType=kind, descriptorCount=1, stageFlags=vk.VK_SHADER_STAGE_ALL
+            )
+            for i, kind in enumerate(kinds)
+        ]
+        chosen = vk.vkCreateDescriptorSetLayout(
+            self._device, vk.VkDescriptorSetLayoutCreateInfo(pBindings=bindings), None
+        )
+        return vk.vkCreatePipelineLayout(self._device, vk.VkPipelineLayoutCreateInfo(pSetLayouts=[chosen]), None)
+
+    def _stage(self, bit: int, code: bytes) -> Any:
+        vk = self._vk
+        module = vk.vkCreateShaderModule(
+            self._device, vk.VkShaderModuleCreateInfo(codeSize=len(code), pCode=code), None
+        )
+        return vk.VkPipelineShaderStageCreateInfo(stage=bit, module=module, pName="main")
+
+    @property
+    def _capture(self) -> int:
+        vk = self._vk
+        representations = vk.VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR
+        return vk.VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR | representations
+
+    def _compute(self, code: bytes) -> Any:
+        vk = self._vk
+        stage = self._stage(vk.VK_SHADER_STAGE_COMPUTE_BIT, code)
+        info = vk.VkComputePipelineCreateInfo(flags=self._capture, stage=stage, layout=self._layout)
+        return vk.vkCreateComputePipelines(self._device, None, 1, [info], None)[0]
+
+    def _graphics(self, code: bytes, vertex: bytes) -> Any:
+        """A pipeline into float targets, which numbers reach as they are: a conversion is the storage's own cost.
+
+        Each part has a name for as long as the call lasts: the bindings do not hold what a structure points to.
+        """
+        vk = self._vk
+        stages = [self._stage(vk.VK_SHADER_STAGE_VERTEX_BIT, vertex)]
+        stages += [self._stage(vk.VK_SHADER_STAGE_FRAGMENT_BIT, code)]
+        formats = [vk.VK_FORMAT_R32G32B32A32_SFLOAT] * TARGETS
+        targets = vk.VkPipelineRenderingCreateInfo(colorAttachmentCount=TARGETS, pColorAttachmentFormats=formats)
+        attributes = vk.VkPipelineVertexInputStateCreateInfo()
+        assembly = vk.VkPipelineInputAssemblyStateCreateInfo(topology=vk.VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
+        ports, areas = [vk.VkViewport(0, 0, 1, 1, 0, 1)], [vk.VkRect2D(vk.VkOffset2D(0, 0), vk.VkExtent2D(1, 1))]
+        viewport = vk.VkPipelineViewportStateCreateInfo(
+            viewportCount=1, pViewports=ports, scissorCount=1, pScissors=areas
+        )
+        raster = vk.VkPipelineRasterizationStateCreateInfo(lineWidth=1.0)
+        samples = vk.VkPipelineMultisampleStateCreateInfo(rasterizationSamples=1)
+        blends = [vk.VkPipelineColorBlendAttachmentState(colorWriteMask=15)] * TARGETS
+        blend = vk.VkPipelineColorBlendStateCreateInfo(
+            attachmentCount=TARGETS, pAttachments=blends, blendConstants=[0, 0, 0, 0]
+        )
+        info = vk.VkGraphicsPipelineCreateInfo(
+            pNext=targets,
+            flags=self._capture,
+            pStages=stages,
+            pVertexInputState=attributes,
+            pInputAssemblyState=assembly,
+            pViewportState=viewport,
+            pRasterizationState=raster,
+            pMultisampleState=samples,
+            pColorBlendState=blend,
+            layout=self._layout,
+        )
+        return vk.vkCreateGraphicsPipelines(self._device, None, 1, [info], None)[0]
+
+    def _executables(self, pipeline: Any) -> Iterator[tuple[int, int]]:
+        """(index, stages) of each part of a pipeline."""
+        ask = self._vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutablePropertiesKHR")
+        found = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
+        return ((i, executable.stages) for i, executable in enumerate(found))
+
+    def _statistics(self, executable: Any) -> Iterator[tuple[str, float]]:
+        vk = self._vk
+        fields = ("b32", "i64", "u64", "f64")  # in the order of VkPipelineExecutableStatisticFormatKHR
+        for statistic in vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutableStatisticsKHR")(
+            self._device, executable
+        ):
+            yield str(statistic.name), getattr(statistic.value, fields[statistic.format])
+
+    def _disassembly(self, executable: Any) -> str:
+        """Asked of the driver itself: the bindings have no way to hand over where the text shall go."""
+        vk, ffi = self._vk, self._vk.ffi
+        name = "vkGetPipelineExecutableInternalRepresentationsKHR"
+        ask = ffi.cast(f"PFN_{name}", vk.lib.vkGetDeviceProcAddr(self._device, name.encode()))
+        count, which = ffi.new("uint32_t*"), ffi.addressof(executable)
+        ask(self._device, which, count, ffi.NULL)
+        found = ffi.new("VkPipelineExecutableInternalRepresentationKHR[]", count[0])
+        for one in found:
+            one.sType = vk.VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR
+        ask(self._device, which, count, found)
+        texts = [ffi.new("char[]", max(one.dataSize, 1)) for one in found]
+        for one, text in zip(found, texts, strict=True):
+            one.pData = text
+        ask(self._device, which, count, found)
+        named = {ffi.string(one.name).decode(): text for one, text in zip(found, texts, strict=True)}
+        return ffi.string(named["Assembly"]).decode(errors="replace") if "Assembly" in named else ""

@@ -1,0 +1,164 @@
+"""The default suite: what `run` measures, a step at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from ..encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
+from ..encodings.light_encoding import LightEncoding
+from ..gbuffer.device import Device
+from ..gbuffer.frame import Plan
+from ..gbuffer.kernels import PACKINGS, STAGES
+from ..gbuffer.layouts import LAYOUTS
+from ..gbuffer.pipelines import PIPELINES
+from ..gbuffer.scenes.setting import Setting
+from . import cost, depth, isa, lights, quality, spirv, sweep
+from .commands import Request
+from .depth_command import DepthRequest
+from .errors import UsageError, pick
+from .lights_command import LightsRequest
+from .render_commands import RenderRequest
+from .rendering import Bench, Case, described
+from .runs import Row, Step
+
+# Of render and passes.
+SIZE, LIGHTS, OBJECTS, REPEATS = "640x480", 64, 200, 9
+# Of cost.
+PACKED = ("rgba8", "rg16f", "12:12", "16:16", "11:10:11", "depth16", "depth24")
+# A scene under few lights, as in seed 003, at one specular power.
+FRAME = ("prepass", "gloss", "47", "320x240")
+
+
+@dataclass(frozen=True)
+class SuiteRequest:
+    """What to measure: tables, comma-separated; normals in a uniform set; and a seed."""
+
+    tables: str
+    count: int
+    seed: int
+
+    def steps(self) -> list[Step]:
+        """Every step, in the order of the tables.
+
+        Raises:
+            UsageError: an unknown table or count, or nothing that can be measured without a GL device.
+        """
+        names = pick("table", self.tables, {name: name for name in TABLES})
+        gl, _ = quality.found_device()
+        steps = [step for name in names for step in TABLES[name](self, gl)]
+        if not steps:
+            raise UsageError(f"{', '.join(names)}: nothing of it can be measured without a GL device")
+        return steps
+
+    def quality_cases(self) -> list[quality.Case]:
+        """Every encoding in RGBA8, and in RG16F those of two components, on the seeds' scene and on half the sphere."""
+        wide = Request("all", "rgba8", "nearest", "playground,hemisphere", "jax,glsl", self.count, self.seed)
+        two = ",".join(name for name, encoding in ENCODINGS.items() if encoding.components == 2)
+        half = Request(two, "rg16f", *("nearest", "playground,hemisphere", "jax,glsl"), self.count, self.seed)
+        return [*wide.cases(), *half.cases()]
+
+
+def _quality(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
+    for case in request.quality_cases():
+        codec, chosen = case.codec, case.normal_set
+        key: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
+        key |= {"normals": chosen.name, "backend": case.backend, "count": chosen.count, "seed": chosen.seed}
+        yield Step("quality", key, lambda case=case: [quality.measure(case)])
+
+
+def _render(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
+    """Every encoding in RGBA8 in an otherwise exact frame; times are the passes' affair."""
+    if not gl:
+        return
+    asked = RenderRequest(
+        *("hybrid", None, "all", None, None, "rgba32f", "2", "gloss", "on", SIZE),
+        *(1, 1.0, OBJECTS, LIGHTS, 0, 1, request.seed),
+    )
+    bench = Bench(gl, 0, False)
+    for case in asked.cases(gl):
+        yield Step("render", _render_key(case), lambda case=case: [bench.measure(case)[0]])
+
+
+def _render_key(case: Case) -> Row:
+    codec = case.plan.layout.codec
+    key = described(case.pipeline, case.plan, case.setting, case.asked)
+    return key | {"scene": case.maker.name, "codec": codec.name, "frames": case.frames}
+
+
+def _passes(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
+    """Each pipeline in the layout that it is published with."""
+    if not gl:
+        return
+    width, height = map(int, SIZE.split("x"))
+    for pipeline in PIPELINES.values():
+        targets = max(pipeline.light_targets, default=1)
+        layout, light = LAYOUTS[pipeline.usual_layout], LIGHT_ENCODINGS["rgba16f"]
+        plan = Plan((width, height), 1, layout, light, targets, True, 1.0)
+        point = sweep.Point(pipeline, plan, Setting(OBJECTS, LIGHTS, request.seed), REPEATS, 1)
+        yield Step("passes", point.key(gl), lambda point=point: [sweep.measure(gl, point)])
+
+
+def _lights(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
+    """Each light buffer added up, and lighting a frame under six lamps."""
+    pipeline, scene, power, size = FRAME
+    asked = LightsRequest(
+        *("all", "all", "all", "1,4", "8,64,256", "0.1,1", "1", pipeline, scene, power, size),
+        *(OBJECTS, 6, request.seed),
+    )
+    names, added = list(lights.SUM_EXPERIMENTS), asked.added()
+    for encoding in asked.encodings():
+        key: Row = {"light_buffer": encoding.name, "experiments": ",".join(names), "seed": request.seed}
+        key |= {"device": gl.renderer if gl else None}
+        yield Step("lights", key, partial(_summed, names, encoding, added, gl))
+    if gl:
+        key = {"experiments": "image", "pipeline": pipeline, "scene": scene, "power": power, "size": size}
+        key |= {"lights": asked.lights, "seed": request.seed, "device": gl.renderer}
+        yield Step("lights", key, partial(_lit, asked, gl))
+
+
+def _summed(names: list[str], encoding: LightEncoding, added: lights.Sums, gl: Device | None) -> list[Row]:
+    return list(lights.sum_rows(names, encoding, added, gl))
+
+
+def _lit(asked: LightsRequest, gl: Device) -> list[Row]:
+    (shot,), (pipeline,), (power,) = asked.shots(gl), asked.pipelines(), asked.powers()
+    return list(lights.image_rows(gl, pipeline, shot, power, asked.encodings(), asked.targets(), lambda *_: None))
+
+
+def _depth(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
+    asked = DepthRequest("all", None, None, "0.1", "1000", None, 60.0, "jax,glsl", 2**14, request.seed)
+    for case in asked.cases():
+        key: Row = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "seed": case.seed}
+        key |= {"near": case.camera.near, "far": case.camera.far, "fov": case.camera.fov, "count": case.count}
+        yield Step("depth", key, lambda case=case: depth.measure(case))
+
+
+def cost_cases() -> list[cost.Case]:
+    """Every encoding, and what the storages of the suite and packed words add."""
+    packings = [packing for name in PACKED for packing in PACKINGS[name]]
+    return cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
+
+
+def listed_costs(family: str) -> list[tuple[Row, str]]:
+    """A family's rows with their disassembly; from the cache once they were measured."""
+    return list(cost.isa_rows(cost_cases(), list(STAGES), [family], [], lambda _: None))
+
+
+def _cost(_: SuiteRequest, __: Device | None) -> Iterator[Step]:
+    """What each family's compiler makes of it; a machine without compilers has none."""
+    if isa.driver_file() is None or spirv.version(spirv.COMPILER) is None:
+        return
+    for family in isa.FAMILIES:
+        yield Step("cost", {"family": family}, lambda family=family: [row for row, _ in listed_costs(family)])
+
+
+TABLES: dict[str, Callable[[SuiteRequest, Device | None], Iterator[Step]]] = {
+    "quality": _quality,
+    "render": _render,
+    "cost": _cost,
+    "lights": _lights,
+    "depth": _depth,
+    "passes": _passes,
+}

@@ -1,0 +1,29 @@
+"""The colour of light apart from how much there is: what one light target rebuilds the highlights' colour from.
+
+The GLSL twin is `chromaticity.glsl`, which takes the weights from here.
+"""
+
+from __future__ import annotations
+
+from .vec import TINY, Vec3, dot, select
+
+# Rec. 709, linear (seed 002).
+LUMA = (0.2126, 0.7152, 0.0722)
+
+CONSTANTS = {"LUMA": LUMA}
+
+
+def luminance(c: Vec3):
+    """How bright linear light is: one array."""
+    return dot(c, Vec3(*LUMA))
+
+
+def chromaticity(c: Vec3) -> Vec3:
+    """The colour of light at luminance 1; white where there is none."""
+    total = luminance(c)
+    return select(total > TINY, c / select(total > TINY, total, 1.0), Vec3(1.0, 1.0, 1.0))
+
+
+def coloured(diffuse: Vec3, specular) -> Vec3:
+    """Specular light of the colour of the diffuse, from its luminance: chroma(D) A."""
+    return chromaticity(diffuse) * specular

@@ -1,0 +1,32 @@
+"""Linear depth: the share of the far plane's distance, or in floats the depth itself."""
+
+from pathlib import Path
+
+from ..depth_encoding import DepthEncoding
+from ..vec import maximum
+
+
+def encode(depth, near, far):
+    """Depth to its share of `far`; what is behind the eye gets 0."""
+    # l = d / far
+    return maximum(depth, 0.0) / far
+
+
+def decode(number, near, far):
+    """The depth of a share."""
+    # d = l far
+    return number * far
+
+
+ENCODING = DepthEncoding(
+    name="linear",
+    title="linear",
+    encode=encode,
+    decode=decode,
+    own_units=True,
+    storages=("packed16", "packed24", "r16f", "r32f"),
+    citation="seed 002, slides 54-57: planar view depth, for the eye's ray",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(1, 1),
+    ulps_reason="one division, which a GPU makes of a reciprocal; one product",
+)

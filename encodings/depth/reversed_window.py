@@ -1,0 +1,39 @@
+"""Reversed z/w: 1 at the near plane and 0 at the far one, where floats have their finest steps."""
+
+from pathlib import Path
+
+from ..depth_encoding import DepthEncoding
+from ..position import Projection
+from ..vec import maximum
+
+
+def encode(depth, near, far):
+    """Depth to reversed window depth, not as 1 - z/w, which would cancel; what is nearer than `near` gets 1."""
+    # r = near (far - d) / (d (far - near))
+    d = maximum(depth, near)
+    return near * (far - d) / (d * (far - near))
+
+
+def decode(number, near, far):
+    """The depth of a reversed window depth."""
+    # d = near far / (near + r (far - near))
+    return near * far / (near + number * (far - near))
+
+
+def clip_row(near, far):
+    """(a z + b) / -z is 1 at z = -near and 0 at z = -far."""
+    return near / (far - near), near * far / (far - near)
+
+
+ENCODING = DepthEncoding(
+    name="reversed_window",
+    title="reversed z/w",
+    encode=encode,
+    decode=decode,
+    projection=Projection(clip_row, (1.0, 0.0)),
+    storages=("depth16", "depth24", "depth32f"),
+    citation="E. Lapidous and G. Jiao, Optimal Depth Buffer for Low-Cost Graphics Hardware, Graphics Hardware 1999",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(3, 2),
+    ulps_reason="two differences, two products, a division by a reciprocal: half a unit each; likewise back",
+)

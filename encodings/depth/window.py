@@ -1,0 +1,39 @@
+"""z/w of the usual projection: what GL's depth buffer holds, 0 at the near plane and 1 at the far one."""
+
+from pathlib import Path
+
+from ..depth_encoding import DepthEncoding
+from ..position import Projection
+from ..vec import maximum
+
+
+def encode(depth, near, far):
+    """Depth to window depth; what is nearer than `near` gets 0."""
+    # w = (d - near) far / (d (far - near))
+    d = maximum(depth, near)
+    return (d - near) * far / (d * (far - near))
+
+
+def decode(number, near, far):
+    """The depth of a window depth; 1 - w is exact where it matters, far - w (far - near) would cancel."""
+    # d = near far / (near + (1 - w) (far - near))
+    return near * far / (near + (1.0 - number) * (far - near))
+
+
+def clip_row(near, far):
+    """(a z + b) / -z is -1 at z = -near and 1 at z = -far."""
+    return (near + far) / (near - far), 2 * near * far / (near - far)
+
+
+ENCODING = DepthEncoding(
+    name="window",
+    title="z/w",
+    encode=encode,
+    decode=decode,
+    projection=Projection(clip_row, (2.0, -1.0)),
+    storages=("depth16", "depth24", "depth32f"),
+    citation="OpenGL 4.6, section 13.8; seed 002, slides 48-53",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(3, 2),
+    ulps_reason="two differences, two products, a division by a reciprocal: half a unit each; likewise back",
+)

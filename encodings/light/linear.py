@@ -1,0 +1,54 @@
+"""Light over a range, in fixed point: seed 003's RGBA8 scaled to [0, 2]."""
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from ..light_encoding import LightEncoding
+from ..storage import STORAGES
+from ..vec import Vec4
+
+RANGE = 2.0
+
+
+def encode(light: Vec4, limit: float = RANGE) -> Vec4:
+    """Light to [0, 1]; more than the range is cut off by the format."""
+    # e = L / range
+    return light * (1.0 / limit)
+
+
+def decode(e: Vec4, limit: float = RANGE) -> Vec4:
+    """A texel's light."""
+    # L = e range
+    return e * limit
+
+
+def ranged(limit: float) -> LightEncoding:
+    """The encoding over another range, in both languages."""
+    return replace(
+        ENCODING,
+        name=f"linear:{limit:g}",
+        title=f"RGBA8, linear, scaled to [0, {limit:g}]",
+        encode=partial(encode, limit=limit),
+        decode=partial(decode, limit=limit),
+        limit=limit,
+        constants={"LINEAR_RANGE": limit},
+    )
+
+
+ENCODING = LightEncoding(
+    name="linear",
+    title="RGBA8, linear, scaled to [0, 2]",
+    encode=encode,
+    decode=decode,
+    storage=STORAGES["rgba8"],
+    blend="add",
+    has_alpha=True,
+    limit=RANGE,
+    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010 (seed 003)",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 1),
+    ulps_reason="a reciprocal and a product; exact for a range that is a power of two",
+    constants={"LINEAR_RANGE": RANGE},
+    ranged=ranged,
+)

@@ -1,0 +1,43 @@
+"""Logarithmic light: codes multiply where light adds, so that blending by DST_COLOR, ZERO adds it up.
+
+No light is 1, exactly. The last code before 0 is log2(255) = 7.994, a whole 1.0 of light after the one before it; 0 is
+taken for that code.
+"""
+
+import math
+from pathlib import Path
+
+from ..light_encoding import LightEncoding
+from ..storage import STORAGES
+from ..vec import Vec4, exp2, log2, maximum
+
+LEAST = 1.0 / 255.0
+
+
+def encode(light: Vec4) -> Vec4:
+    """Light to (0, 1]."""
+    # e = 2^-L
+    return Vec4(*(exp2(-c) for c in light))
+
+
+def decode(e: Vec4) -> Vec4:
+    """A texel's light."""
+    # L = -log2(e), e at least 1/255
+    return Vec4(*(-log2(maximum(c, LEAST)) for c in e))
+
+
+ENCODING = LightEncoding(
+    name="log",
+    title="RGBA8, exp2(-L), blended by multiplication",
+    encode=encode,
+    decode=decode,
+    storage=STORAGES["rgba8"],
+    blend="multiply",
+    has_alpha=True,
+    limit=-math.log2(LEAST),
+    citation="drillian, Light Prepass HDR; J. Ols, Prelighting & Log-Lights, 2009 (seed 003)",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(3, 64),
+    ulps_reason="exp2 and log2 within 3 units of 1; the dimmest code stands for 1/177 of light, so of that it is more",
+    constants={"LOG_LEAST": LEAST},
+)

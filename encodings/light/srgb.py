@@ -1,0 +1,57 @@
+"""Light over a range, in a target that keeps colours by the sRGB curve and adds them in linear light.
+
+The curve is the hardware's: what the shader writes and reads is linear. The fourth channel has no curve.
+"""
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from ..light_encoding import LightEncoding
+from ..storage import SRGB8_A8
+from ..vec import Vec4
+
+RANGE = 2.0
+
+
+def encode(light: Vec4, limit: float = RANGE) -> Vec4:
+    """Light to [0, 1], linear; more than the range is cut off by the format."""
+    # e = L / range
+    return light * (1.0 / limit)
+
+
+def decode(e: Vec4, limit: float = RANGE) -> Vec4:
+    """A texel's light."""
+    # L = e range
+    return e * limit
+
+
+def ranged(limit: float) -> LightEncoding:
+    """The encoding over another range, in both languages."""
+    return replace(
+        ENCODING,
+        name=f"srgb:{limit:g}",
+        title=f"sRGB RGBA8, scaled to [0, {limit:g}]",
+        encode=partial(encode, limit=limit),
+        decode=partial(decode, limit=limit),
+        limit=limit,
+        constants={"SRGB_RANGE": limit},
+    )
+
+
+ENCODING = LightEncoding(
+    name="srgb",
+    title="sRGB RGBA8, scaled to [0, 2]",
+    encode=encode,
+    decode=decode,
+    storage=SRGB8_A8,
+    blend="add",
+    has_alpha=True,
+    limit=RANGE,
+    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010 (seed 003)",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 1),
+    ulps_reason="a reciprocal and a product; exact for a range that is a power of two",
+    constants={"SRGB_RANGE": RANGE},
+    ranged=ranged,
+)

@@ -1,0 +1,97 @@
+"""View-space positions from stored depths: by the inverse projection, and by the eye's ray.
+
+Both take the place on the screen, from -1 to 1 to the right and up. The GLSL twin of this file is `position.glsl`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .vec import Vec2, Vec3, jnp
+
+
+class Seen(NamedTuple):
+    """What a shader knows of a camera and a projection, in float32: scalars, and `clip_to_view` of shape (4, 4)."""
+
+    near: Any
+    far: Any
+    rays: Vec2
+    clip: Vec2
+    clip_to_view: Any
+
+
+@dataclass(frozen=True)
+class Projection:
+    """How clip space counts depth.
+
+    Attributes:
+        row: (near, far) -> a, b: clip-space z is a z + b, with w = -z.
+        clip: a, b: z / w is a depth + b for the depth buffer's depth from 0 to 1. (2, -1) is GL's own choice; (1, 0)
+            needs glClipControl, and no sum that would round away a float's fine steps near 0.
+    """
+
+    row: Callable[[float, float], tuple[float, float]]
+    clip: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera at the origin of view space, looking down -z.
+
+    Attributes:
+        near, far: distances along -z.
+        fov: vertical field of view in degrees.
+        aspect: width of the image over its height.
+    """
+
+    near: float
+    far: float
+    fov: float
+    aspect: float
+
+    @property
+    def rays(self) -> tuple[float, float]:
+        """Where the ray through the screen's upper right corner is at depth 1."""
+        up = float(np.tan(np.radians(self.fov) / 2))
+        return up * self.aspect, up
+
+    def clip_to_view(self, projection: Projection | None) -> np.ndarray:
+        """The inverse of a projection, float64 of shape (4, 4), for column vectors; of none the identity."""
+        if projection is None:
+            return np.eye(4)
+        right, up = self.rays
+        matrix = np.zeros((4, 4))
+        matrix[0, 0], matrix[1, 1], matrix[3, 2] = 1 / right, 1 / up, -1.0
+        matrix[2, 2:] = projection.row(self.near, self.far)
+        return np.linalg.inv(matrix)
+
+    def seen(self, projection: Projection | None) -> Seen:
+        """The camera as a shader knows it."""
+        near, far, *rays = map(jnp.float32, (self.near, self.far, *self.rays))
+        clip = Vec2(*map(jnp.float32, projection.clip if projection else (1.0, 0.0)))
+        return Seen(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32))
+
+
+def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> Vec3:
+    """The position of a depth buffer's depth, from 0 to 1, by the inverse projection.
+
+    Args:
+        place: on the screen, arrays of one shape with `depth`.
+        clip: how clip space counts depth, see `Projection`.
+        clip_to_view: float32 of shape (4, 4), the inverse projection.
+    """
+    # p = clip_to_view (place, clip.x depth + clip.y, 1), position = p.xyz / p.w
+    m, z = clip_to_view, clip.x * depth + clip.y
+    p = [m[i, 0] * place.x + m[i, 1] * place.y + m[i, 2] * z + m[i, 3] for i in range(4)]
+    return Vec3(*p[:3]) / p[3]
+
+
+def position_from_linear_depth(place: Vec2, depth, rays: Vec2) -> Vec3:
+    """The position of a linear depth, which is planar (-z): the eye's ray times the depth."""
+    # position = (place rays, -1) depth
+    ray = place * rays
+    return Vec3(ray.x * depth, ray.y * depth, -depth)

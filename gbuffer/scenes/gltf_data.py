@@ -1,0 +1,265 @@
+"""What lies in a glTF 2.0 file: its JSON, checked as it is asked for, and the numbers of its accessors.
+
+Nothing in a file is believed: every index, length and type is checked before it is used, and nothing is allocated for a
+count that is too large.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .source import MAX_VERTICES, SceneFileError, checked_address, file_bytes, resource
+
+GLB_MAGIC, GLB_JSON, GLB_BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942
+COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+INDEX_TYPES = ("<u1", "<u2", "<u4")
+# Indices of a triangle list: each vertex may be in several triangles.
+MAX_COUNT = 6 * MAX_VERTICES
+# Extensions that change nothing of what is read here; required ones beside them are refused.
+HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization", "KHR_animation_")
+
+Object = dict[str, Any]
+
+
+class Gltf:
+    """A glTF or GLB file.
+
+    Attributes:
+        path: where it lies; what it names lies beside it.
+        json: its document.
+    """
+
+    def __init__(self, path: Path):
+        self.path = path
+        data = file_bytes(path)
+        self._binary: bytes | None = None
+        text = self._chunks(data) if data[:4] == struct.pack("<I", GLB_MAGIC) else data
+        try:
+            self.json = json.loads(text.decode("utf-8-sig"), parse_constant=_no_constant)
+        except (ValueError, RecursionError) as error:
+            raise self.error("its JSON", f"cannot be read ({error})") from error
+        if not isinstance(self.json, dict):
+            raise self.error("its JSON", "is no object")
+        self._buffers: dict[int, bytes] = {}
+        self._check_version()
+        for index in range(len(self.list_of(self.json, "images", "the file"))):
+            image = self.entry("images", index, f"images[{index}]")
+            # Textures are not read, but a file that would fetch them is refused all the same.
+            if "uri" in image:
+                checked_address(path, image["uri"], f"images[{index}]")
+
+    def error(self, place: str, what: str, remedy: str = "export it again") -> SceneFileError:
+        """An error in one line."""
+        return SceneFileError(f"{self.path}: {place} {what}; {remedy}")
+
+    def _chunks(self, data: bytes) -> bytes:
+        """The JSON of a GLB file; its binary chunk is kept."""
+        if len(data) < 20:
+            raise self.error("its header", "is cut off")
+        _, version, length = struct.unpack_from("<III", data)
+        if version != 2 or not 20 <= length <= len(data):
+            raise self.error("its header", f"says version {version}, {length} bytes; the file has {len(data)}")
+        chunks: dict[int, bytes] = {}
+        at = 12
+        while at + 8 <= length:
+            size, kind = struct.unpack_from("<II", data, at)
+            if at + 8 + size > length:
+                raise self.error(f"the chunk at byte {at}", "is cut off")
+            chunks.setdefault(kind, data[at + 8 : at + 8 + size])
+            at += 8 + size + -size % 4
+        self._binary = chunks.get(GLB_BINARY)
+        if GLB_JSON not in chunks:
+            raise self.error("the file", "has no JSON chunk")
+        return chunks[GLB_JSON]
+
+    def _check_version(self) -> None:
+        asset = self.json.get("asset")
+        version = asset.get("version") if isinstance(asset, dict) else None
+        if not isinstance(version, str) or not version.startswith("2."):
+            raise self.error("asset.version", f"is {version!r}", "glTF 2.0 is read")
+        for name in self.list_of(self.json, "extensionsRequired", "the file"):
+            if not isinstance(name, str) or not name.startswith(HARMLESS):
+                raise self.error("extensionsRequired", f"names {name!r}, which is not read", "export without it")
+
+    # The document, checked as it is asked for.
+
+    def list_of(self, holder: Object, key: str, place: str) -> list[Any]:
+        """A list that may be missing."""
+        found = holder.get(key, [])
+        if not isinstance(found, list):
+            raise self.error(f"{place}.{key}", "is no list")
+        return found
+
+    def entry(self, kind: str, index: object, place: str) -> Object:
+        """An object of one of the document's lists. Raises SceneFileError where there is none of that index."""
+        known = self.list_of(self.json, kind, "the file")
+        if type(index) is not int or not 0 <= index < len(known):
+            raise self.error(place, f"names {kind}[{_shown(index)}], of which there are {len(known)}")
+        if not isinstance(known[index], dict):
+            raise self.error(f"{kind}[{index}]", "is no object")
+        return known[index]
+
+    def child(self, holder: Object, key: str, place: str) -> Object:
+        """An object within another, empty where it is missing."""
+        found = holder.get(key, {})
+        if not isinstance(found, dict):
+            raise self.error(f"{place}.{key}", "is no object")
+        return found
+
+    def whole(self, holder: Object, key: str, place: str, default: int | None = None) -> int:
+        """A whole number from 0 up."""
+        value = holder.get(key, default)
+        if type(value) is not int or not 0 <= value < 2**40:
+            raise self.error(f"{place}.{key}", f"is {_shown(value)}, no whole number")
+        return value
+
+    def number(self, holder: Object, key: str, place: str, default: float) -> float:
+        return self.numbers({key: [holder.get(key, default)]}, key, place, (default,))[0]
+
+    def numbers(self, holder: Object, key: str, place: str, default: tuple[float, ...]) -> tuple[float, ...]:
+        """As many finite numbers as the default has."""
+        values = holder.get(key, list(default))
+        if not isinstance(values, list) or len(values) != len(default) or not all(map(_is_number, values)):
+            raise self.error(f"{place}.{key}", f"is {_shown(values)}, not {len(default)} numbers below 1e15")
+        return tuple(map(float, values))
+
+    # Numbers in buffers.
+
+    def accessor(self, index: object, width: int, place: str) -> np.ndarray:
+        """An accessor's numbers as they are meant, float64 of shape (count, width).
+
+        Raises:
+            SceneFileError: it is not of that width, or leaves its buffer.
+        """
+        return self._accessor(index, width, place)
+
+    def indices(self, index: object, place: str) -> np.ndarray:
+        """An index accessor's numbers, int64 of shape (count,)."""
+        accessor = self.entry("accessors", index, place)
+        if COMPONENTS.get(_hashable(accessor.get("componentType"))) not in INDEX_TYPES:
+            raise self.error(place, "are no unsigned whole numbers")
+        return self._accessor(index, 1, place)[:, 0].astype(np.int64)
+
+    def count(self, index: object, place: str) -> int:
+        """How many numbers an accessor has, from its header alone."""
+        return self.whole(self.entry("accessors", index, place), "count", place)
+
+    def _accessor(self, index: object, width: int, place: str) -> np.ndarray:
+        accessor = self.entry("accessors", index, place)
+        kind = COMPONENTS.get(_hashable(accessor.get("componentType")))
+        count = self.whole(accessor, "count", place)
+        if kind is None or WIDTHS.get(_hashable(accessor.get("type"))) != width:
+            raise self.error(place, f"are of type {_shown(accessor.get('type'))}, which is not read there")
+        if count > MAX_COUNT:
+            raise self.error(place, f"are {count}; the most is {MAX_COUNT}", "export fewer objects")
+        if "bufferView" in accessor:
+            start = self.whole(accessor, "byteOffset", place, 0)
+            found = self._view(accessor["bufferView"], start, kind, count, width, place)
+        else:
+            found = np.zeros((count, width), kind)
+        if "sparse" in accessor:
+            found = self._sparse(self.child(accessor, "sparse", place), found, place)
+        return _meant(found, kind, accessor.get("normalized") is True)
+
+    def _sparse(self, sparse: Object, found: np.ndarray, place: str) -> np.ndarray:
+        """Some of an accessor's elements replaced."""
+        count = self.whole(sparse, "count", f"{place} (sparse)")
+        where, what = (self.child(sparse, key, place) for key in ("indices", "values"))
+        kind = COMPONENTS.get(_hashable(where.get("componentType")))
+        if kind not in INDEX_TYPES or count > len(found):
+            raise self.error(f"{place} (sparse)", "is damaged")
+        starts = [self.whole(part, "byteOffset", f"{place} (sparse)", 0) for part in (where, what)]
+        index = self._view(where.get("bufferView"), starts[0], kind, count, 1, place)[:, 0].astype(np.int64)
+        values = self._view(what.get("bufferView"), starts[1], found.dtype.str, count, found.shape[1], place)
+        if np.any(index >= len(found)):
+            raise self.error(f"{place} (sparse)", f"names element {index.max()} of {len(found)}")
+        found = found.copy()
+        found[index] = values
+        return found
+
+    def _view(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
+        """Elements of a buffer view, (count, width), as they lie there."""
+        view = self.entry("bufferViews", index, place)
+        where = f"{place}, bufferViews[{index}]"
+        offset, length = (
+            self.whole(view, key, where, default) for key, default in (("byteOffset", 0), ("byteLength", None))
+        )
+        size = np.dtype(kind).itemsize
+        stride = self.whole(view, "byteStride", where, 0) or size * width
+        end = start + (stride * (count - 1) + size * width if count else 0)
+        data = self._buffer(view.get("buffer"), where)
+        if stride < size * width or end > length or offset + length > len(data):
+            raise self.error(
+                where,
+                f"holds {min(length, max(len(data) - offset, 0))} bytes, but {end} are needed",
+                "it is cut off: export it again",
+            )
+        if not count:
+            return np.zeros((0, width), kind)
+        return np.ndarray((count, width), kind, data, offset + start, (stride, size))
+
+    def _buffer(self, index: object, place: str) -> bytes:
+        buffer = self.entry("buffers", index, place)
+        assert isinstance(index, int)
+        if index not in self._buffers:
+            if "uri" in buffer:
+                data = resource(self.path, buffer["uri"], f"buffers[{index}]")
+            elif index == 0 and self._binary is not None:
+                data = self._binary
+            else:
+                raise self.error(f"buffers[{index}]", "has no address and no binary chunk")
+            self._buffers[index] = data
+        return self._buffers[index]
+
+    @cached_property
+    def notes(self) -> list[str]:
+        """What the file has that is not drawn."""
+        found = []
+        meshes = _dicts(self.json.get("meshes"))
+        primitives = [primitive for mesh in meshes for primitive in _dicts(mesh.get("primitives"))]
+        if self.json.get("skins"):
+            found.append("skins are not applied: meshes stand as they were bound")
+        if any("targets" in p for p in primitives):
+            found.append("morph targets are not applied")
+        if self.json.get("images"):
+            found.append("textures are not read: colours and vertex normals alone")
+        return found
+
+
+def _dicts(value: object) -> list[Object]:
+    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
+
+
+def _meant(stored: np.ndarray, kind: str, normalised: bool) -> np.ndarray:
+    """Whole numbers that stand for [0, 1] or [-1, 1] as such; others as they are."""
+    # A NaN of the signalling kind is one all the same, and is found where numbers are checked.
+    with np.errstate(invalid="ignore"):
+        found = stored.astype(np.float64)
+    if not normalised or kind == "<f4":
+        return found
+    return np.maximum(found / np.iinfo(kind).max, -1.0)
+
+
+def _is_number(value: object) -> bool:
+    return type(value) in (int, float) and math.isfinite(min(max(value, -1e300), 1e300)) and abs(value) < 1e15  # pyright: ignore
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is no JSON")
+
+
+def _hashable(value: object) -> Any:
+    return value if isinstance(value, int | str) else None
+
+
+def _shown(value: object) -> str:
+    text = repr(value) if not isinstance(value, list | dict) else f"a list or object of {len(value)}"
+    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -1,0 +1,120 @@
+"""Bytes of users' scene files: bounded, never from the network, never from outside a file's own folder."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+import numpy as np
+
+# Read before anything in them is believed.
+MAX_BYTES = 2**30
+# Text takes many times its size while it is taken apart.
+MAX_TEXT_BYTES = 2**28
+# Of all meshes in all the places they stand in.
+MAX_VERTICES = MAX_TRIANGLES = 2**22
+
+
+class SceneFileError(ValueError):
+    """A file that cannot be read as a scene: one line with the file, the place in it and the remedy."""
+
+
+def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
+    """What a file of at most so many bytes holds.
+
+    Raises:
+        SceneFileError: it is no plain file (a pipe would never end), too large, or cannot be read.
+    """
+    try:
+        if not path.is_file():
+            raise SceneFileError(f"{path}: {'not a plain file' if path.exists() else 'there is no such file'}")
+        size = path.stat().st_size
+        if size > most:
+            raise SceneFileError(f"{path}: {size} bytes; the most is {most}: export fewer objects, or in binary")
+        return path.read_bytes()
+    except (OSError, ValueError) as error:
+        if isinstance(error, SceneFileError):
+            raise
+        # ValueError is a name with a zero byte in it.
+        raise SceneFileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+
+
+def checked_address(path: Path, address: object, place: str) -> Path | None:
+    """The file that an address in the file `path` names, or None for a data: address; reads nothing.
+
+    Raises:
+        SceneFileError: it is no address, is on the network, or leaves the file's folder, by a link if need be.
+    """
+    if not isinstance(address, str):
+        raise SceneFileError(f"{path}: {place}: an address is text")
+    if address.startswith("data:"):
+        return None
+    shown = address if len(address) <= 60 else f"{address[:57]}..."
+    if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", address) or address.startswith("//"):
+        raise SceneFileError(
+            f"{path}: {place}: {shown!r} is elsewhere, and nothing is fetched; save it beside the file"
+        )
+    outside = SceneFileError(f"{path}: {place}: {shown!r} leaves the file's folder; save it beside the file")
+    words = re.split(r"[/\\]", unquote(address))
+    if ".." in words or not words[0] or "\0" in address:
+        raise outside
+    try:
+        folder = path.parent.resolve()
+        named = folder.joinpath(*words).resolve()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise outside from error
+    if not named.is_relative_to(folder):
+        raise outside
+    return named
+
+
+def resource(path: Path, address: object, place: str) -> bytes:
+    """What an address in the file `path` stands for: base64 after data:, or a file in its folder.
+
+    Raises:
+        SceneFileError: see `checked_address` and `file_bytes`; or the base64 is none.
+    """
+    named = checked_address(path, address, place)
+    if named is not None:
+        try:
+            return file_bytes(named)
+        except SceneFileError as error:
+            raise SceneFileError(f"{path}: {place}: {error}") from error
+    head, _, data = str(address).partition(",")
+    try:
+        if not head.endswith(";base64"):
+            raise ValueError("not base64")
+        return base64.b64decode(unquote(data), validate=True)
+    except (ValueError, binascii.Error) as error:
+        raise SceneFileError(f"{path}: {place}: its data: address is damaged ({error}); export it again") from error
+
+
+def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> np.ndarray:
+    """Vertex indices as they are. Raises SceneFileError where one is beyond `count` vertices."""
+    bad = np.flatnonzero((indices < 0) | (indices >= count))
+    if len(bad):
+        worst = indices.ravel()[bad[0]] if indices.ndim == 1 else indices.reshape(-1)[bad[0]]
+        raise SceneFileError(
+            f"{path}: {place}: index {bad[0]} names vertex {worst}, but there are {count}; export it again"
+        )
+    return indices
+
+
+def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
+    """Vertex data as they are. Raises SceneFileError where one is NaN, infinite, or too large to be squared."""
+    bad = np.flatnonzero(~(np.abs(numbers) < 1e15).all(axis=1))
+    if len(bad):
+        raise SceneFileError(
+            f"{path}: {place} of vertex {bad[0]}: {numbers[bad[0]].tolist()}; numbers below 1e15 are read"
+        )
+    return numbers
+
+
+def checked_size(path: Path, vertices: int, triangles: int, place: str) -> None:
+    """Raises SceneFileError where there is more than is read at once; asked before anything is allocated."""
+    for count, most, what in ((vertices, MAX_VERTICES, "vertices"), (triangles, MAX_TRIANGLES, "triangles")):
+        if count > most:
+            raise SceneFileError(f"{path}: {place}: {count} {what}; the most is {most} (2^22): export fewer objects")
