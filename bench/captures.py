@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from .errors import UsageError, pick
 from .normal_sets import NormalSet, from_arrays
+from .options import Reading
 from .pixel_files import READERS, Pixels, read_pixels, refused
 
 # Shorter is no direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
@@ -30,36 +30,6 @@ NORMAL_WORDS = re.compile(r"n|nrm.*|.*norm.*", re.IGNORECASE)
 SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
     {"view": np.eye(3), "view-left-handed": np.diag([1.0, 1.0, -1.0]), "world": None}
 )
-
-
-@dataclass(frozen=True)
-class Reading:
-    """How files of normals are read, as typed.
-
-    Attributes:
-        channels: a layer, or three channels by name; None for what looks like normals.
-        unpack: whether [0, 1] stands for [-1, 1]; None: in files of whole numbers, which have nothing else.
-        normalise: whether any length will do.
-        space: one of SPACES.
-        view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
-        mask: a file or a channel, 0 where there is background; None for normals of no length.
-        nan_share: of the normals, how many may be NaN or infinite; these are masked and counted.
-        fov: vertical, in degrees, of the camera; None for parallel rays.
-        size: of the picture of a mesh, WxH.
-    """
-
-    channels: str | None = None
-    unpack: bool | None = None
-    normalise: bool = False
-    space: str = "view"
-    view_matrix: str | None = None
-    mask: str | None = None
-    nan_share: float = 0.0
-    fov: float | None = None
-    size: str = "640x480"
-
-
-AS_USUAL = Reading()
 
 
 def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:

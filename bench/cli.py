@@ -17,17 +17,26 @@ from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
 from ..reports.plots import PlotError
-from .counts import DEFAULT_COUNT
 from .errors import MissingError, UsageError
+from .options import (
+    CostOptions,
+    DepthOptions,
+    LightsOptions,
+    QualityOptions,
+    Reading,
+    RenderOptions,
+    SuiteOptions,
+    SweepOptions,
+)
 from .output import abandon_output, write
 from .progress import ending
+from .signatures import with_options
 
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does.",
 )
-
 
 INTERRUPTED = 130
 
@@ -39,28 +48,8 @@ class Format(StrEnum):
     markdown = "markdown"
 
 
-Names = "comma-separated, or all; `normalbench list` shows them"
 FormatOption = Annotated[Format, typer.Option("--format", help="How to write the rows.")]
 OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
-EncodingOption = Annotated[str, typer.Option("--encoding", help=f"Encodings, {Names}.")]
-StorageOption = Annotated[str, typer.Option("--storage", help=f"Storages, {Names}.")]
-RoundingOption = Annotated[str, typer.Option("--rounding", help="nearest, truncate; comma-separated, or all.")]
-NormalsOption = Annotated[str, typer.Option("--normals", help=f"Normal sets or files, {Names}.")]
-BackendOption = Annotated[str, typer.Option("--backend", help="jax, glsl; comma-separated, or all.")]
-CountOption = Annotated[int, typer.Option("--count", help="Normals in a uniform set.")]
-SeedOption = Annotated[int, typer.Option("--seed", help="What uniform sets are made with.")]
-
-
-PipelineOption = Annotated[str, typer.Option("--pipeline", help=f"Pipelines, {Names}.")]
-LightBufferOption = Annotated[str, typer.Option("--light-buffer", help=f"Light buffers, {Names}.")]
-LightTargetsOption = Annotated[str, typer.Option("--light-targets", help="1, 2; comma-separated, or all.")]
-ShadowOption = Annotated[str, typer.Option("--shadow", help="on, off; comma-separated, or all.")]
-SizeOption = Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT of the image.")]
-SamplesOption = Annotated[int, typer.Option("--samples", help="Samples a pixel; as many as the device has.")]
-ScaleOption = Annotated[float, typer.Option("--scale", help="Size of inferred's buffers to the image's, up to 1.")]
-LightsOption = Annotated[int, typer.Option("--lights", help="Point lights.")]
-RepeatsOption = Annotated[int, typer.Option("--repeats", help="Frames that times are taken over.")]
-SWEEP_OBJECTS = "100,200,500,1000,2000"
 
 
 @app.command("list")
@@ -86,38 +75,13 @@ def doctor(format: FormatOption = Format.table, output: OutputOption = None) -> 
 
 
 @app.command()
+@with_options
 def quality(
-    encoding: EncodingOption = "all",
-    storage: StorageOption = "rgba8",
-    rounding: RoundingOption = "nearest",
-    normals: NormalsOption = "playground",
-    backend: BackendOption = "jax,glsl",
-    count: CountOption = DEFAULT_COUNT,
-    seed: SeedOption = 0,
+    options: QualityOptions,
+    reading: Reading,
     images: Annotated[
         Path | None, typer.Option("--images", help="Write the seeds' pictures of each codec here (image sets).")
     ] = None,
-    channels: Annotated[
-        str | None, typer.Option("--channels", help="Of a capture: a layer, or the channels of x,y,z by name.")
-    ] = None,
-    unpack: Annotated[
-        bool | None, typer.Option("--unpack/--no-unpack", help="Of a capture: [0,1] stands for [-1,1]. PNG: always.")
-    ] = None,
-    normalise: Annotated[bool, typer.Option("--normalise", help="Of a capture: take normals of any length.")] = False,
-    space: Annotated[str, typer.Option("--space", help="Of a capture: view, view-left-handed, world.")] = "view",
-    view_matrix: Annotated[
-        str | None, typer.Option("--view-matrix", help="World to view space: 9 or 16 numbers by rows, or a file.")
-    ] = None,
-    mask: Annotated[
-        str | None, typer.Option("--mask", help="Of a capture: a file or a channel that is 0 on the background.")
-    ] = None,
-    nan_share: Annotated[
-        float, typer.Option("--nan-share", help="Of a capture: the share of NaN that is masked and counted.")
-    ] = 0.0,
-    fov: Annotated[
-        float | None, typer.Option("--fov", help="Of a capture: vertical degrees, for per-pixel view space.")
-    ] = None,
-    size: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT of the picture of a mesh.")] = "640x480",
     format: FormatOption = Format.table,
     output: OutputOption = None,
 ) -> None:
@@ -125,40 +89,15 @@ def quality(
 
     A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).
     """
-    from .captures import Reading
     from .commands import Request, quality_command
 
-    reading = Reading(channels, unpack, normalise, space, view_matrix, mask, nan_share, fov, size)
-    request = Request(encoding, storage, rounding, normals, backend, count, seed, reading)
-    quality_command(request, images, format, output)
+    quality_command(Request(**vars(options), reading=reading), images, format, output)
 
 
 @app.command()
+@with_options
 def render(
-    pipeline: PipelineOption = "hybrid",
-    layout: Annotated[
-        str | None, typer.Option("--layout", help="Layouts, names or TOML files, comma-separated. Default: fp32.")
-    ] = None,
-    encoding: Annotated[
-        str | None, typer.Option("--encoding", help="Encodings to put into each layout, comma-separated, or all.")
-    ] = None,
-    storage: Annotated[str | None, typer.Option("--storage", help="And their storages. Default: rgba8.")] = None,
-    rounding: Annotated[str | None, typer.Option("--rounding", help="And how those round. Default: nearest.")] = None,
-    light_buffer: LightBufferOption = "rgba32f",
-    light_targets: LightTargetsOption = "2",
-    scene: Annotated[str, typer.Option("--scene", help=f"Scenes or mesh files, {Names}.")] = "gloss",
-    shadow: ShadowOption = "on",
-    size: SizeOption = "640x480",
-    samples: SamplesOption = 1,
-    scale: ScaleOption = 1.0,
-    objects: Annotated[int, typer.Option("--objects", help="Objects in the scene `objects`.")] = 200,
-    lights: LightsOption = 64,
-    frames: Annotated[int, typer.Option("--frames", help="Moments to average over. 0: as the scene has it.")] = 0,
-    repeats: RepeatsOption = 3,
-    seed: Annotated[int, typer.Option("--seed", help="What scenes are made with.")] = 0,
-    flip: Annotated[
-        bool, typer.Option("--flip", help="FLIP as well, a perceptual difference; a second a row.")
-    ] = False,
+    options: RenderOptions,
     images: Annotated[
         Path | None, typer.Option("--images", help="Write final, reference and difference pictures here.")
     ] = None,
@@ -172,29 +111,13 @@ def render(
     """
     from .render_commands import RenderRequest, render_command
 
-    request = RenderRequest(
-        *(pipeline, layout, encoding, storage, rounding, light_buffer, light_targets, scene, shadow, size),
-        *(samples, scale, objects, lights, frames, repeats, seed),
-    )
-    render_command(request, flip, images, format, output)
+    render_command(RenderRequest(**vars(options)), images, format, output)
 
 
 @app.command()
+@with_options
 def sweep(
-    pipeline: PipelineOption = "prepass,hybrid,deferred,inferred,forward",
-    objects: Annotated[str, typer.Option("--objects", help="Numbers of objects, comma-separated.")] = SWEEP_OBJECTS,
-    shadow: ShadowOption = "on,off",
-    layout: Annotated[
-        str | None, typer.Option("--layout", help="Layouts. Default: the one that each pipeline is published with.")
-    ] = None,
-    light_buffer: LightBufferOption = "rgba16f",
-    light_targets: LightTargetsOption = "2",
-    size: SizeOption = "1024x768",
-    samples: SamplesOption = 1,
-    scale: ScaleOption = 0.5,
-    lights: LightsOption = 64,
-    repeats: RepeatsOption = 5,
-    seed: Annotated[int, typer.Option("--seed", help="What the scene is made with.")] = 0,
+    options: SweepOptions,
     plot: Annotated[Path | None, typer.Option("--plot", help="Draw it into this PNG, SVG or PDF file.")] = None,
     format: FormatOption = Format.table,
     output: OutputOption = None,
@@ -205,33 +128,13 @@ def sweep(
     """
     from .sweep_command import SweepRequest, sweep_command
 
-    request = SweepRequest(
-        *(pipeline, objects, shadow, layout, light_buffer, light_targets, size, samples, scale),
-        *(lights, repeats, seed),
-    )
-    sweep_command(request, plot, format, output)
+    sweep_command(SweepRequest(**vars(options)), plot, format, output)
 
 
 @app.command()
+@with_options
 def lights(
-    experiment: Annotated[
-        str, typer.Option("--experiment", help="equal, random, banding, chromaticity, resolve, image; or all.")
-    ] = "all",
-    light_buffer: LightBufferOption = "all",
-    light_targets: LightTargetsOption = "all",
-    sums: Annotated[str, typer.Option("--sum", help="equal: what the lights sum to; random: the least.")] = "1,4",
-    counts: Annotated[str, typer.Option("--counts", help="equal, random: how many they are.")] = "8,64,256",
-    peaks: Annotated[str, typer.Option("--peak", help="banding: the light at a lamp's centre.")] = "0.1,1,2,3",
-    samples: Annotated[str, typer.Option("--samples", help="resolve: samples a pixel.")] = "1,2,4,8",
-    pipeline: PipelineOption = "prepass",
-    scene: Annotated[
-        str, typer.Option("--scene", help=f"resolve, image: scenes or mesh files, {Names}.")
-    ] = "objects,gloss",
-    power: Annotated[str, typer.Option("--power", help="image: specular powers.")] = "1,47,256",
-    size: SizeOption = "320x240",
-    objects: Annotated[int, typer.Option("--objects", help="Objects in the scene `objects`.")] = 200,
-    lights: LightsOption = 64,
-    seed: Annotated[int, typer.Option("--seed", help="What lights and scenes are made with.")] = 0,
+    options: LightsOptions,
     images: Annotated[
         Path | None, typer.Option("--images", help="Write falloffs, resolves, final and difference pictures here.")
     ] = None,
@@ -247,34 +150,13 @@ def lights(
     """
     from .lights_command import LightsRequest, lights_command
 
-    request = LightsRequest(
-        *(experiment, light_buffer, light_targets, sums, counts, peaks, samples, pipeline, scene, power, size),
-        *(objects, lights, seed),
-    )
-    lights_command(request, images, plot, format, output)
+    lights_command(LightsRequest(**vars(options)), images, plot, format, output)
 
 
 @app.command()
+@with_options
 def depth(
-    depth: Annotated[str, typer.Option("--depth", help=f"Depth codes, {Names}.")] = "all",
-    storage: Annotated[
-        str | None, typer.Option("--storage", help=f"Depth storages, {Names}. Default: where each code usually lies.")
-    ] = None,
-    rebuild: Annotated[
-        str | None,
-        typer.Option(
-            "--rebuild", help="inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual."
-        ),
-    ] = None,
-    near: Annotated[str, typer.Option("--near", help="Near planes, comma-separated.")] = "0.1,1",
-    far: Annotated[str, typer.Option("--far", help="Far planes, comma-separated.")] = "1000",
-    distance: Annotated[
-        str | None, typer.Option("--distance", help="Distances, comma-separated. Default: every power of ten.")
-    ] = None,
-    fov: Annotated[float, typer.Option("--fov", help="Vertical field of view in degrees, of a 16:9 image.")] = 60.0,
-    backend: BackendOption = "jax,glsl",
-    count: Annotated[int, typer.Option("--count", help="Points at each distance.")] = 2**14,
-    seed: Annotated[int, typer.Option("--seed", help="What points are made with.")] = 0,
+    options: DepthOptions,
     images: Annotated[
         Path | None, typer.Option("--images", help="Write pictures of each code's error in a scene here.")
     ] = None,
@@ -291,34 +173,13 @@ def depth(
     """
     from .depth_command import DepthRequest, depth_command
 
-    request = DepthRequest(depth, storage, rebuild, near, far, distance, fov, backend, count, seed)
-    depth_command(request, images, plot, format, output)
+    depth_command(DepthRequest(**vars(options)), images, plot, format, output)
 
 
 @app.command()
+@with_options
 def cost(
-    encoding: EncodingOption = "all",
-    isa: Annotated[bool, typer.Option("--isa", help="What compilers make of the GLSL; needs no GPU.")] = False,
-    time: Annotated[bool, typer.Option("--time", help="Nanoseconds a megapixel on the GL device.")] = False,
-    jax: Annotated[bool, typer.Option("--jax", help="Million normals a second in JAX.")] = False,
-    family: Annotated[
-        str, typer.Option("--family", help="GPUs: polaris10, vega10, navi10, navi21, navi31; comma-separated, or all.")
-    ] = "all",
-    stage: Annotated[
-        str, typer.Option("--stage", help="fragment, compute; comma-separated, or all.")
-    ] = "fragment,compute",
-    operation: Annotated[
-        str, typer.Option("--operation", help="encode, decode; comma-separated, or all.")
-    ] = "encode,decode",
-    storage: Annotated[
-        str, typer.Option("--storage", help="Storages and packings whose own cost is shown, comma-separated, or all.")
-    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24",
-    size: Annotated[str, typer.Option("--size", help="WIDTHxHEIGHT of the target that is timed.")] = "256x256",
-    repeats: Annotated[int, typer.Option("--repeats", help="Repetitions that medians are taken over.")] = 9,
-    count: Annotated[int, typer.Option("--count", help="Normals, for JAX and in uniform sets.")] = 2**20,
-    seed: SeedOption = 0,
-    normals: Annotated[str, typer.Option("--normals", help=f"--plot: normal sets, {Names}.")] = "playground",
-    error: Annotated[str, typer.Option("--error", help="--plot: psnr, mean or max, the largest angle.")] = "psnr",
+    options: CostOptions,
     seeds: Annotated[bool, typer.Option("--seeds", help="The article's figures beside them.")] = False,
     disassembly: Annotated[
         Path | None, typer.Option("--disassembly", help="Write what each family's compiler made here.")
@@ -335,19 +196,13 @@ def cost(
     """
     from .cost_command import CostRequest, cost_command
 
-    request = CostRequest(
-        *(encoding, isa, time, jax, family, stage, operation, storage, size, repeats, count, seed, normals, error),
-    )
-    cost_command(request, seeds, disassembly, plot, format, output)
+    cost_command(CostRequest(**vars(options)), seeds, disassembly, plot, format, output)
 
 
 @app.command()
+@with_options
 def run(
-    tables: Annotated[
-        str, typer.Option("--tables", help="quality, render, lights, depth, passes; comma-separated, or all.")
-    ] = "all",
-    count: CountOption = DEFAULT_COUNT,
-    seed: SeedOption = 0,
+    options: SuiteOptions,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -362,7 +217,7 @@ def run(
     from .run_command import run_command
     from .suite import SuiteRequest
 
-    run_command(SuiteRequest(tables, count, seed), output)
+    run_command(SuiteRequest(**vars(options)), output)
 
 
 @app.command()

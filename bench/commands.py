@@ -13,10 +13,10 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..reports import pictures
 from . import quality, seeds
-from .captures import AS_USUAL, Reading
 from .counts import checked_count
 from .errors import UsageError, pick
 from .normal_names import normal_sets_named
+from .options import AS_USUAL, QualityOptions, Reading
 from .output import check_folder, check_writable, say_skipped, whole_file, without, write
 from .progress import progress
 
@@ -28,17 +28,10 @@ SHEET = (*seeds.PSNR_DB, "octahedral")
 Pictures = dict[tuple[str, Codec], dict[str, np.ndarray]]
 
 
-@dataclass(frozen=True)
-class Request:
+@dataclass(frozen=True, kw_only=True)
+class Request(QualityOptions):
     """What to measure, as typed: comma-separated names."""
 
-    encoding: str
-    storage: str
-    rounding: str
-    normals: str
-    backend: str
-    count: int
-    seed: int
     reading: Reading = AS_USUAL
 
     def cases(self) -> list[quality.Case]:

@@ -19,6 +19,7 @@ from .cost import Case, Row
 from .counts import checked_count
 from .errors import MissingError, UsageError, pick
 from .normal_sets import NORMAL_SETS, NormalSet
+from .options import CostOptions
 from .output import check_folder, check_writable, say, whole_file, without, write
 from .progress import progress
 from .render_commands import MAX_REPEATS, checked_target, in_range
@@ -36,24 +37,9 @@ EXPENDABLE = (
 )
 
 
-@dataclass(frozen=True)
-class CostRequest:
+@dataclass(frozen=True, kw_only=True)
+class CostRequest(CostOptions):
     """What to measure, as typed: names are comma-separated."""
-
-    encoding: str
-    isa: bool
-    time: bool
-    jax: bool
-    family: str
-    stage: str
-    operation: str
-    storage: str
-    size: str
-    repeats: int
-    count: int
-    seed: int
-    normals: str
-    error: str
 
     @property
     def measures(self) -> list[str]:

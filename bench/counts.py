@@ -1,11 +1,14 @@
-"""How many normals a uniform set has, and how large an image may be. Imports nothing heavy: the command line's defaults
-stand here."""
+"""How many normals a uniform set has, how large an image may be, and numbers in a row. Imports nothing heavy."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import TypeVar
 
 from .errors import UsageError
+
+N = TypeVar("N", int, float)
 
 DEFAULT_COUNT = 2**22
 MAX_COUNT = 2**32
@@ -24,3 +27,16 @@ def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
     if not match or not all(1 <= int(side) <= most for side in match.groups()):
         raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")
     return int(match[1]), int(match[2])
+
+
+def checked_numbers(option: str, text: str, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
+    """Comma-separated numbers, each once. Raises UsageError for none, or one that is none or out of range."""
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    try:
+        found = tuple(dict.fromkeys(map(kind, words)))
+    except ValueError:
+        found = ()
+    if not found or not all(least <= number <= most for number in found):
+        what = "whole numbers" if kind is int else "numbers"
+        raise UsageError(f"{option} {text}: {what} from {least:g} to {most:g}, comma-separated")
+    return found

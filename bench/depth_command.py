@@ -21,7 +21,9 @@ from ..gbuffer.scenes.catalogue import SCENES
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures, plots
 from . import depth
+from .counts import checked_numbers
 from .errors import UsageError, pick
+from .options import DepthOptions
 from .output import check_folder, check_writable, say_skipped, whole_file, write
 from .progress import progress
 from .quality import require_device, require_jax
@@ -39,20 +41,9 @@ SCENE, SIZE = SCENES["room"], (640, 480)
 EXPENDABLE = ("device", "rounded_by", "signs_lost", "bits", "mean_even", "rebuilt", "far")
 
 
-@dataclass(frozen=True)
-class DepthRequest:
+@dataclass(frozen=True, kw_only=True)
+class DepthRequest(DepthOptions):
     """What to measure, as typed: names and numbers are comma-separated; None is what is usual."""
-
-    depth: str
-    storage: str | None
-    rebuild: str | None
-    near: str
-    far: str
-    distance: str | None
-    fov: float
-    backend: str
-    count: int
-    seed: int
 
     def cases(self) -> list[depth.Case]:
         """One case for each code, way to the position, near and far plane, and back end.
@@ -121,16 +112,8 @@ class DepthRequest:
         in_range("--count", self.count, 2, MAX_POINTS // distances)
 
 
-def _numbers(option: str, text: str) -> list[float]:
-    """Comma-separated distances. Raises UsageError."""
-    words = [word.strip() for word in text.split(",") if word.strip()]
-    try:
-        found = [float(word) for word in words]
-    except ValueError:
-        found = []
-    if not found or not all(NEAREST <= number <= FARTHEST for number in found):
-        raise UsageError(f"{option} {text}: numbers from {NEAREST:g} to {FARTHEST:g}, comma-separated")
-    return list(dict.fromkeys(found))
+def _numbers(option: str, text: str) -> tuple[float, ...]:
+    return checked_numbers(option, text, float, NEAREST, FARTHEST)
 
 
 def depth_command(

@@ -12,7 +12,6 @@ from typing import Any
 
 from . import quality
 from .commands import Request
-from .counts import DEFAULT_COUNT
 from .errors import UsageError
 from .quality import require_device
 from .render_commands import RenderRequest
@@ -21,11 +20,8 @@ from .runs import Row, read_run
 
 LIMIT = re.compile(r"\s*(at least|at most)\s+([-+]?[\d.]+(?:e[-+]?\d+)?)\s*", re.I)
 MAX_GATES = 1000
-QUALITY = Request("octahedral", "rgba8", "nearest", "playground", "jax", DEFAULT_COUNT, 0)
-RENDER = RenderRequest(
-    *("hybrid", None, "octahedral", "rgba8", None, "rgba32f", "2", "gloss", "on", "640x480"),
-    *(1, 1.0, 200, 64, 0, 1, 0),
-)
+QUALITY = Request(encoding="octahedral", backend="jax")
+RENDER = RenderRequest(encoding="octahedral")
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +18,11 @@ from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import displayed
 from ..reports import pictures, plots
 from . import lights
+from .counts import checked_numbers
 from .errors import MissingError, UsageError, pick
 from .light_images import Shot
 from .light_names import MOST_LIGHT, light_buffers_named
+from .options import LightsOptions
 from .output import check_folder, check_writable, whole_file, without, write
 from .progress import progress
 from .quality import found_device, require_jax
@@ -29,31 +30,15 @@ from .render_commands import TARGETS, checked_setting, checked_target
 from .scene_names import scenes_named
 
 Row = dict[str, Any]
-T = TypeVar("T", int, float)
 # Lights in one sum, the largest specular power, and samples.
 MOST_LIGHTS, MOST_POWER, MOST_SAMPLES = 4096, 2048.0, 64
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = ("device", "mse", "size", "gl_stored_error", "exact_step", "aliased_psnr_db", "agree_percent", "seed")
 
 
-@dataclass(frozen=True)
-class LightsRequest:
+@dataclass(frozen=True, kw_only=True)
+class LightsRequest(LightsOptions):
     """What to measure, as typed: names and numbers are comma-separated."""
-
-    experiment: str
-    light_buffer: str
-    light_targets: str
-    sums: str
-    counts: str
-    peaks: str
-    samples: str
-    pipeline: str
-    scene: str
-    power: str
-    size: str
-    objects: int
-    lights: int
-    seed: int
 
     def experiments(self) -> list[str]:
         """The experiments asked for. Raises UsageError."""
@@ -70,9 +55,9 @@ class LightsRequest:
         """What is added up. Raises UsageError."""
         checked_setting(self.objects, self.lights, self.seed)
         return lights.Sums(
-            _numbers("--sum", self.sums, float, 1e-6, MOST_LIGHT),
-            _numbers("--counts", self.counts, int, 1, MOST_LIGHTS),
-            _numbers("--peak", self.peaks, float, 1e-6, MOST_LIGHT),
+            checked_numbers("--sum", self.sums, float, 1e-6, MOST_LIGHT),
+            checked_numbers("--counts", self.counts, int, 1, MOST_LIGHTS),
+            checked_numbers("--peak", self.peaks, float, 1e-6, MOST_LIGHT),
             self.seed,
         )
 
@@ -88,11 +73,11 @@ class LightsRequest:
 
     def all_samples(self) -> tuple[int, ...]:
         """The numbers of samples asked for. Raises UsageError."""
-        return _numbers("--samples", self.samples, int, 1, MOST_SAMPLES)
+        return checked_numbers("--samples", self.samples, int, 1, MOST_SAMPLES)
 
     def powers(self) -> tuple[float, ...]:
         """The specular powers asked for. Raises UsageError."""
-        return _numbers("--power", self.power, float, 1.0, MOST_POWER)
+        return checked_numbers("--power", self.power, float, 1.0, MOST_POWER)
 
     def targets(self) -> list[int]:
         """The numbers of light targets asked for. Raises UsageError."""
@@ -104,18 +89,6 @@ class LightsRequest:
         for asked in self.all_samples():
             given.setdefault(gl.given_samples(asked), []).append(asked)
         return given
-
-
-def _numbers(option: str, text: str, kind: Callable[[str], T], least: float, most: float) -> tuple[T, ...]:
-    """Comma-separated numbers, each once. Raises UsageError."""
-    try:
-        found = tuple(dict.fromkeys(kind(word) for word in text.split(",")))
-        if not all(math.isfinite(number) and least <= number <= most for number in found):
-            raise ValueError
-    except ValueError as error:
-        what = "whole numbers" if kind is int else "numbers"
-        raise UsageError(f"{option} {text}: {what} from {least:g} to {most:g}, comma-separated") from error
-    return found
 
 
 def lights_command(

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..gbuffer.scenes import files
-from .captures import Reading, capture
+from .captures import capture
 from .counts import checked_sides
 from .errors import UsageError, pick_or_read
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from .options import Reading
 from .pixel_files import MAX_PIXELS
 from .pixel_files import READERS as IMAGES
 from .scene_names import mesh_file, say_notes

@@ -22,6 +22,7 @@ from .counts import checked_sides
 from .errors import UsageError, pick
 from .image_metrics import require_flip
 from .light_names import light_buffers_named
+from .options import RenderOptions
 from .output import check_folder, check_writable, say_skipped, whole_file, without, write
 from .progress import progress
 from .quality import check_twin, codecs_named, require_device, require_jax
@@ -42,27 +43,9 @@ EXPENDABLE = (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class RenderRequest:
+@dataclass(frozen=True, kw_only=True)
+class RenderRequest(RenderOptions):
     """What to render, as typed: names are comma-separated."""
-
-    pipeline: str
-    layout: str | None
-    encoding: str | None
-    storage: str | None
-    rounding: str | None
-    light_buffer: str
-    light_targets: str
-    scene: str
-    shadow: str
-    size: str
-    samples: int
-    scale: float
-    objects: int
-    lights: int
-    frames: int
-    repeats: int
-    seed: int
 
     def layouts(self) -> list[Layout]:
         """The layouts asked for, each with every codec asked for in it; without codecs as they are.
@@ -214,20 +197,18 @@ def _check_budget(size: tuple[int, int], samples: int) -> None:
         )
 
 
-def render_command(
-    request: RenderRequest, with_flip: bool, images: Path | None, format: str, output: Path | None
-) -> None:
+def render_command(request: RenderRequest, images: Path | None, format: str, output: Path | None) -> None:
     """Render, measure, write the pictures if asked for, then the rows."""
     require_jax()
     device = require_device()
-    if with_flip:
+    if request.flip:
         require_flip()
     cases = request.cases(device)
     if images:
         check_folder(images)
     if output:
         check_writable(output)
-    bench, rows = Bench(device, request.repeats, with_flip), []
+    bench, rows = Bench(device, request.repeats, request.flip), []
     with progress(len(cases)) as tick:
         for case in cases:
             row, drawn = bench.measure(case)

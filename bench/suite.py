@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from ..encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
@@ -19,6 +19,7 @@ from .commands import Request
 from .depth_command import DepthRequest
 from .errors import UsageError, pick
 from .lights_command import LightsRequest
+from .options import SuiteOptions
 from .render_commands import RenderRequest
 from .rendering import Bench, Case, described
 from .runs import Row, Step
@@ -31,13 +32,9 @@ PACKED = ("rgba8", "rg16f", "12:12", "16:16", "11:10:11", "depth16", "depth24")
 FRAME = ("prepass", "gloss", "47", "320x240")
 
 
-@dataclass(frozen=True)
-class SuiteRequest:
+@dataclass(frozen=True, kw_only=True)
+class SuiteRequest(SuiteOptions):
     """What to measure: tables, comma-separated; normals in a uniform set; and a seed."""
-
-    tables: str
-    count: int
-    seed: int
 
     def steps(self) -> list[Step]:
         """Every step, in the order of the tables.
@@ -54,9 +51,9 @@ class SuiteRequest:
 
     def quality_cases(self) -> list[quality.Case]:
         """Every encoding in RGBA8, and in RG16F those of two components, on the seeds' scene and on half the sphere."""
-        wide = Request("all", "rgba8", "nearest", "playground,hemisphere", "jax,glsl", self.count, self.seed)
+        wide = Request(normals="playground,hemisphere", count=self.count, seed=self.seed)
         two = ",".join(name for name, encoding in ENCODINGS.items() if encoding.components == 2)
-        half = Request(two, "rg16f", *("nearest", "playground,hemisphere", "jax,glsl"), self.count, self.seed)
+        half = replace(wide, encoding=two, storage="rg16f")
         return [*wide.cases(), *half.cases()]
 
 
@@ -72,10 +69,7 @@ def _render(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     """Every encoding in RGBA8 in an otherwise exact frame; times are the passes' affair."""
     if not gl:
         return
-    asked = RenderRequest(
-        *("hybrid", None, "all", None, None, "rgba32f", "2", "gloss", "on", SIZE),
-        *(1, 1.0, OBJECTS, LIGHTS, 0, 1, request.seed),
-    )
+    asked = RenderRequest(encoding="all", size=SIZE, objects=OBJECTS, lights=LIGHTS, seed=request.seed)
     bench = Bench(gl, 0, False)
     for case in asked.cases(gl):
         yield Step("render", _render_key(case), lambda case=case: [bench.measure(case)[0]])
@@ -103,10 +97,8 @@ def _passes(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
 def _lights(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     """Each light buffer added up, and lighting a frame under six lamps."""
     pipeline, scene, power, size = FRAME
-    asked = LightsRequest(
-        *("all", "all", "all", "1,4", "8,64,256", "0.1,1", "1", pipeline, scene, power, size),
-        *(OBJECTS, 6, request.seed),
-    )
+    added = {"peaks": "0.1,1", "samples": "1", "pipeline": pipeline, "scene": scene, "power": power, "size": size}
+    asked = LightsRequest(**added, objects=OBJECTS, lights=6, seed=request.seed)
     names, added = list(lights.SUM_EXPERIMENTS), asked.added()
     for encoding in asked.encodings():
         key: Row = {"light_buffer": encoding.name, "experiments": ",".join(names), "seed": request.seed}
@@ -128,7 +120,7 @@ def _lit(asked: LightsRequest, gl: Device) -> list[Row]:
 
 
 def _depth(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
-    asked = DepthRequest("all", None, None, "0.1", "1000", None, 60.0, "jax,glsl", 2**14, request.seed)
+    asked = DepthRequest(near="0.1", seed=request.seed)
     for case in asked.cases():
         key: Row = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "seed": case.seed}
         key |= {"near": case.camera.near, "far": case.camera.far, "fov": case.camera.fov, "count": case.count}

@@ -11,9 +11,11 @@ from ..gbuffer.frame import Plan
 from ..gbuffer.pipelines import PIPELINES
 from ..reports import plots
 from . import sweep
-from .errors import UsageError, pick
+from .counts import checked_numbers
+from .errors import pick
 from .journal import Journal
 from .light_names import light_buffers_named
+from .options import SweepOptions
 from .output import check_writable, whole_file, without, write
 from .progress import progress
 from .quality import require_device, require_jax
@@ -39,22 +41,9 @@ EXPENDABLE = (
 )
 
 
-@dataclass(frozen=True)
-class SweepRequest:
+@dataclass(frozen=True, kw_only=True)
+class SweepRequest(SweepOptions):
     """What to sweep over, as typed: names and counts are comma-separated."""
-
-    pipeline: str
-    objects: str
-    shadow: str
-    layout: str | None
-    light_buffer: str
-    light_targets: str
-    size: str
-    samples: int
-    scale: float
-    lights: int
-    repeats: int
-    seed: int
 
     def points(self, device: Device) -> list[sweep.Point]:
         """One point for each row; what does not suit a pipeline is named on standard error.
@@ -68,7 +57,7 @@ class SweepRequest:
         points: list[sweep.Point] = []
         complaints: list[str] = []
         for shadows in pick("shadow", self.shadow, SHADOWS):
-            for count in _counts(self.objects):
+            for count in checked_numbers("--objects", self.objects, int, 1, MAX_OBJECTS):
                 setting = checked_setting(count, self.lights, self.seed)
                 for pipeline in pick("pipeline", self.pipeline, PIPELINES):
                     plans = [
@@ -80,14 +69,6 @@ class SweepRequest:
                     for plan in suited(device, pipeline, plans, complaints):
                         points.append(sweep.Point(pipeline, plan, setting, self.repeats, self.samples))
         return what_is_left(points, complaints)
-
-
-def _counts(text: str) -> list[int]:
-    """Comma-separated numbers of objects. Raises UsageError."""
-    words = [word.strip() for word in text.split(",") if word.strip()]
-    if not words or not all(word.isdecimal() and len(word) < 10 and 1 <= int(word) <= MAX_OBJECTS for word in words):
-        raise UsageError(f"--objects {text}: numbers from 1 to {MAX_OBJECTS}, comma-separated, such as 100,200,500")
-    return list(dict.fromkeys(map(int, words)))
 
 
 def sweep_command(request: SweepRequest, plot: Path | None, format: str, output: Path | None) -> None:

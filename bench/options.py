@@ -1,0 +1,279 @@
+"""The options of every command that measures, each once: its flag, kind, default and help.
+
+The command line, the options of the pytest plugin, and what a gate or a test may name all come from here. Imports
+nothing heavy, and no package that is not Python's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from types import MappingProxyType, NoneType
+from typing import Annotated, Any, get_args, get_type_hints
+
+from .counts import DEFAULT_COUNT
+from .errors import UsageError
+
+
+@dataclass(frozen=True)
+class Option:
+    """What an option is called and what is said of it; its kind and default stand at the field that has it.
+
+    Attributes:
+        flag: as typed; "--unpack/--no-unpack" for one that may be denied.
+        help: a sentence.
+        files: whether its words may be files.
+    """
+
+    flag: str
+    help: str
+    files: bool = False
+
+
+Names = "comma-separated, or all; `normalbench list` shows them"
+Encodings = Annotated[str, Option("--encoding", f"Encodings, {Names}.", files=True)]
+Backends = Annotated[str, Option("--backend", "jax, glsl; comma-separated, or all.")]
+Count = Annotated[int, Option("--count", "Normals in a uniform set.")]
+SetSeed = Annotated[int, Option("--seed", "What uniform sets are made with.")]
+Pipelines = Annotated[str, Option("--pipeline", f"Pipelines, {Names}.")]
+LightBuffers = Annotated[str, Option("--light-buffer", f"Light buffers, {Names}.")]
+LightTargets = Annotated[str, Option("--light-targets", "1, 2; comma-separated, or all.")]
+Shadow = Annotated[str, Option("--shadow", "on, off; comma-separated, or all.")]
+Size = Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")]
+Samples = Annotated[int, Option("--samples", "Samples a pixel; as many as the device has.")]
+Scale = Annotated[float, Option("--scale", "Size of inferred's buffers to the image's, up to 1.")]
+Objects = Annotated[int, Option("--objects", "Objects in the scene `objects`.")]
+Lights = Annotated[int, Option("--lights", "Point lights.")]
+Repeats = Annotated[int, Option("--repeats", "Frames that times are taken over.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class QualityOptions:
+    """What `quality` measures: names are comma-separated."""
+
+    encoding: Encodings = "all"
+    storage: Annotated[str, Option("--storage", f"Storages, {Names}.")] = "rgba8"
+    rounding: Annotated[str, Option("--rounding", "nearest, truncate; comma-separated, or all.")] = "nearest"
+    normals: Annotated[str, Option("--normals", f"Normal sets or files, {Names}.", files=True)] = "playground"
+    backend: Backends = "jax,glsl"
+    count: Count = DEFAULT_COUNT
+    seed: SetSeed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How files of normals are read.
+
+    Attributes:
+        channels: a layer, or three channels by name; None for what looks like normals.
+        unpack: whether [0, 1] stands for [-1, 1]; None: in files of whole numbers, which have nothing else.
+        normalise: whether any length will do.
+        space: one of captures.SPACES.
+        view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
+        mask: a file or a channel, 0 where there is background; None for normals of no length.
+        nan_share: of the normals, how many may be NaN or infinite; these are masked and counted.
+        fov: vertical, in degrees, of the camera; None for parallel rays.
+        size: of the picture of a mesh, WxH.
+    """
+
+    channels: Annotated[
+        str | None, Option("--channels", "Of a capture: a layer, or the channels of x,y,z by name.")
+    ] = None
+    unpack: Annotated[
+        bool | None, Option("--unpack/--no-unpack", "Of a capture: [0,1] stands for [-1,1]. PNG: always.")
+    ] = None
+    normalise: Annotated[bool, Option("--normalise", "Of a capture: take normals of any length.")] = False
+    space: Annotated[str, Option("--space", "Of a capture: view, view-left-handed, world.")] = "view"
+    view_matrix: Annotated[
+        str | None, Option("--view-matrix", "World to view space: 9 or 16 numbers by rows, or a file.", files=True)
+    ] = None
+    mask: Annotated[
+        str | None, Option("--mask", "Of a capture: a file or a channel that is 0 on the background.", files=True)
+    ] = None
+    nan_share: Annotated[float, Option("--nan-share", "Of a capture: the share of NaN that is masked and counted.")] = (
+        0.0
+    )
+    fov: Annotated[float | None, Option("--fov", "Of a capture: vertical degrees, for per-pixel view space.")] = None
+    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the picture of a mesh.")] = "640x480"
+
+
+AS_USUAL = Reading()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RenderOptions:
+    """What `render` measures: names are comma-separated."""
+
+    pipeline: Pipelines = "hybrid"
+    layout: Annotated[
+        str | None, Option("--layout", "Layouts, names or TOML files, comma-separated. Default: fp32.", files=True)
+    ] = None
+    encoding: Annotated[
+        str | None,
+        Option("--encoding", "Encodings to put into each layout, comma-separated, or all.", files=True),
+    ] = None
+    storage: Annotated[str | None, Option("--storage", "And their storages. Default: rgba8.")] = None
+    rounding: Annotated[str | None, Option("--rounding", "And how those round. Default: nearest.")] = None
+    light_buffer: LightBuffers = "rgba32f"
+    light_targets: LightTargets = "2"
+    scene: Annotated[str, Option("--scene", f"Scenes or mesh files, {Names}.", files=True)] = "gloss"
+    shadow: Shadow = "on"
+    size: Size = "640x480"
+    samples: Samples = 1
+    scale: Scale = 1.0
+    objects: Objects = 200
+    lights: Lights = 64
+    frames: Annotated[int, Option("--frames", "Moments to average over. 0: as the scene has it.")] = 0
+    repeats: Repeats = 3
+    seed: Annotated[int, Option("--seed", "What scenes are made with.")] = 0
+    flip: Annotated[bool, Option("--flip", "FLIP as well, a perceptual difference; a second a row.")] = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepOptions:
+    """What `sweep` sweeps over: names and counts are comma-separated."""
+
+    pipeline: Pipelines = "prepass,hybrid,deferred,inferred,forward"
+    objects: Annotated[str, Option("--objects", "Numbers of objects, comma-separated.")] = "100,200,500,1000,2000"
+    shadow: Shadow = "on,off"
+    layout: Annotated[
+        str | None, Option("--layout", "Layouts. Default: the one that each pipeline is published with.", files=True)
+    ] = None
+    light_buffer: LightBuffers = "rgba16f"
+    light_targets: LightTargets = "2"
+    size: Size = "1024x768"
+    samples: Samples = 1
+    scale: Scale = 0.5
+    lights: Lights = 64
+    repeats: Repeats = 5
+    seed: Annotated[int, Option("--seed", "What the scene is made with.")] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class LightsOptions:
+    """What `lights` measures: names and numbers are comma-separated."""
+
+    experiment: Annotated[
+        str, Option("--experiment", "equal, random, banding, chromaticity, resolve, image; or all.")
+    ] = "all"
+    light_buffer: LightBuffers = "all"
+    light_targets: LightTargets = "all"
+    sums: Annotated[str, Option("--sum", "equal: what the lights sum to; random: the least.")] = "1,4"
+    counts: Annotated[str, Option("--counts", "equal, random: how many they are.")] = "8,64,256"
+    peaks: Annotated[str, Option("--peak", "banding: the light at a lamp's centre.")] = "0.1,1,2,3"
+    samples: Annotated[str, Option("--samples", "resolve: samples a pixel.")] = "1,2,4,8"
+    pipeline: Pipelines = "prepass"
+    scene: Annotated[str, Option("--scene", f"resolve, image: scenes or mesh files, {Names}.", files=True)] = (
+        "objects,gloss"
+    )
+    power: Annotated[str, Option("--power", "image: specular powers.")] = "1,47,256"
+    size: Size = "320x240"
+    objects: Objects = 200
+    lights: Lights = 64
+    seed: Annotated[int, Option("--seed", "What lights and scenes are made with.")] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthOptions:
+    """What `depth` measures: names and numbers are comma-separated; None is what is usual."""
+
+    depth: Annotated[str, Option("--depth", f"Depth codes, {Names}.")] = "all"
+    storage: Annotated[
+        str | None, Option("--storage", f"Depth storages, {Names}. Default: where each code usually lies.")
+    ] = None
+    rebuild: Annotated[
+        str | None,
+        Option("--rebuild", "inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual."),
+    ] = None
+    near: Annotated[str, Option("--near", "Near planes, comma-separated.")] = "0.1,1"
+    far: Annotated[str, Option("--far", "Far planes, comma-separated.")] = "1000"
+    distance: Annotated[
+        str | None, Option("--distance", "Distances, comma-separated. Default: every power of ten.")
+    ] = None
+    fov: Annotated[float, Option("--fov", "Vertical field of view in degrees, of a 16:9 image.")] = 60.0
+    backend: Backends = "jax,glsl"
+    count: Annotated[int, Option("--count", "Points at each distance.")] = 2**14
+    seed: Annotated[int, Option("--seed", "What points are made with.")] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class CostOptions:
+    """What `cost` measures: names are comma-separated."""
+
+    encoding: Encodings = "all"
+    isa: Annotated[bool, Option("--isa", "What compilers make of the GLSL; needs no GPU.")] = False
+    time: Annotated[bool, Option("--time", "Nanoseconds a megapixel on the GL device.")] = False
+    jax: Annotated[bool, Option("--jax", "Million normals a second in JAX.")] = False
+    family: Annotated[
+        str, Option("--family", "GPUs: polaris10, vega10, navi10, navi21, navi31; comma-separated, or all.")
+    ] = "all"
+    stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
+    operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
+    storage: Annotated[
+        str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.")
+    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24"
+    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the target that is timed.")] = "256x256"
+    repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
+    count: Annotated[int, Option("--count", "Normals, for JAX and in uniform sets.")] = 2**20
+    seed: SetSeed = 0
+    normals: Annotated[str, Option("--normals", f"--plot: normal sets, {Names}.")] = "playground"
+    error: Annotated[str, Option("--error", "--plot: psnr, mean or max, the largest angle.")] = "psnr"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SuiteOptions:
+    """What `run` measures: tables, comma-separated; normals in a uniform set; and a seed."""
+
+    tables: Annotated[
+        str, Option("--tables", "quality, render, cost, lights, depth, passes; comma-separated, or all.")
+    ] = "all"
+    count: Count = DEFAULT_COUNT
+    seed: SetSeed = 0
+
+
+# The tables that a gate or a test may have measured, and what each may be asked.
+MEASURED: Mapping[str, tuple[type, ...]] = MappingProxyType(
+    {"quality": (QualityOptions, Reading), "render": (RenderOptions,)}
+)
+
+
+@dataclass(frozen=True)
+class Field:
+    """An option where it is used: of which type, `str | None` say, and its default."""
+
+    name: str
+    type: Any
+    default: Any
+    option: Option
+
+    @property
+    def kind(self) -> type:
+        """str, int, float or bool."""
+        return next(kind for kind in get_args(self.type) or (self.type,) if kind is not NoneType)
+
+    def checked(self, value: Any) -> Any:
+        """A value that came from a file or a test; a text option takes numbers as well. Raises UsageError."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if self.kind is str and (number or hasattr(value, "__fspath__")):
+            return str(value)
+        if isinstance(value, self.kind) and (self.kind is bool or not isinstance(value, bool)):
+            return value
+        if self.kind is float and number:
+            return float(value)
+        raise UsageError(f"{self.name} is {value!r}; {KINDS[self.kind]} would do")
+
+
+KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true or false"}
+
+
+@cache
+def fields_of(*groups: type) -> Mapping[str, Field]:
+    """The options of classes of them, by the names they have in Python."""
+    found: dict[str, Field] = {}
+    for group in groups:
+        hints = get_type_hints(group, include_extras=True)
+        for field in fields(group):
+            kind, option = get_args(hints[field.name])
+            found.setdefault(field.name, Field(field.name, kind, field.default, option))
+    return MappingProxyType(found)
