@@ -19,7 +19,10 @@ def check_command(gates: Path, run: Path | None, format: str, output: Path | Non
         rows = list(checked(found, run, tick))
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
         print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
-    write(without(rows, ("skipped",)) if format == "table" else rows, format, output)
+    if format == "table":
+        hidden = ("skipped",) if any(row["worst_normal"] for row in rows) else ("skipped", "worst_normal")
+        rows = without(rows, hidden)
+    write(rows, format, output, ("table",))
     failed = sum(row["holds"] == "FAIL" for row in rows)
     if failed:
         print(f"normalbench: {failed} of {len(rows)} limits do not hold", file=sys.stderr)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
-from .gates import IDENTITY
+from .limits import row_name
 from .runs import Done, Row
 
 # Two medians closer than this share of each other are the same to anyone who waits for a frame.
@@ -27,7 +27,9 @@ def compared(before: Done, after: Done) -> list[Row]:
     for key in dict.fromkeys([*ours, *theirs]):
         if key not in ours or key not in theirs:
             step = ours.get(key) or theirs[key]
-            found.append(_change(step["table"], _named(step["key"]), "", key in ours, key in theirs, "only one has it"))
+            found.append(
+                _change(step["table"], row_name(step["key"]), "", key in ours, key in theirs, "only one has it")
+            )
             continue
         pairs = zip(ours[key]["rows"], theirs[key]["rows"], strict=False)
         for one, other in pairs:
@@ -39,10 +41,6 @@ def _by_key(run: Done) -> dict[str, Row]:
     return {json.dumps([step["table"], step["key"]], sort_keys=True): step for step in run.steps}
 
 
-def _named(row: Row) -> str:
-    return " ".join(str(row[name]) for name in IDENTITY if row.get(name) is not None)
-
-
 def _change(table: str, row: str, column: str, before: Any, after: Any, change: str) -> Row:
     return dict(zip(COLUMNS, (table, row, column, before, after, change), strict=True))
 
@@ -51,12 +49,14 @@ def _changes(table: str, one: Row, other: Row, same_machine: bool) -> Iterator[R
     for column in dict.fromkeys([*one, *other]):
         before, after = one.get(column), other.get(column)
         if not column.startswith(TIMED) and not _same(before, after):
-            yield _change(table, _named(one), column, before, after, _difference(before, after))
+            yield _change(table, row_name(one), column, before, after, _difference(before, after))
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one["ms_frame"] and other["ms_frame"] / one["ms_frame"] - 1
         if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
-            yield _change(table, _named(one), "ms_frame", one["ms_frame"], other["ms_frame"], f"{100 * effect:+.1f} %")
+            yield _change(
+                table, row_name(one), "ms_frame", one["ms_frame"], other["ms_frame"], f"{100 * effect:+.1f} %"
+            )
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -68,6 +68,14 @@ def _errors(n: Vec3, decoded: Vec3, covered):
     return dot(difference, difference), dot(eighths, eighths), angle, invalid
 
 
+def _farthest(decode: Callable[[Any], Vec3], chunk):
+    """The largest angle of a chunk, the normal that has it, and what that was decoded as."""
+    decoded = decode(chunk)
+    _, _, angle, _ = _errors(chunk.n, decoded, chunk.covered)
+    at = jnp.argmax(angle)
+    return angle[at], jnp.stack([c[at] for c in chunk.n]), jnp.stack([c[at] for c in decoded])
+
+
 def _histogram_key(angle, covered):
     key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
     return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED)
@@ -175,6 +183,19 @@ class Statistics:
     angle_max_deg: float
 
 
+@dataclass(frozen=True)
+class Worst:
+    """The normal that came back farthest off, what it came back as, float32 of shape (3,), and by how many degrees."""
+
+    normal: np.ndarray
+    decoded: np.ndarray
+    angle_deg: float
+
+    def __str__(self) -> str:
+        normal, decoded = (", ".join(str(c) for c in v) for v in (self.normal, self.decoded))
+        return f"({normal}) comes back as ({decoded}), {self.angle_deg:.6g} degrees off"
+
+
 def psnr_db(mse: float) -> float:
     """Peak signal to noise ratio for a peak of 1, infinite where there is no error."""
     return 10 * math.log10(1 / mse) if mse > 0 else math.inf
@@ -212,6 +233,7 @@ class Meter:
 
     def __init__(self, decode: Callable[[Any], Vec3]):
         self._scan = compiled(lambda chunk: _scan(decode, chunk))
+        self._farthest = compiled(lambda chunk: _farthest(decode, chunk))
 
     def _one(self, load: Callable[[], Any]):
         with jax.enable_x64(True):
@@ -234,6 +256,15 @@ class Meter:
                 sums, largest, histogram = sums + part, max(largest, peak), histogram + counts
                 tick()
         return _statistics(pixels, sums, largest, histogram)
+
+    def worst(self, loads: Iterable[Callable[[], Any]]) -> Worst:
+        """Where the largest angle of a set is: a pass of its own, which `measure` need not be slowed down by."""
+        return max((self._farthest_of(load()) for load in loads), key=lambda found: found.angle_deg)
+
+    def _farthest_of(self, chunk: Any) -> Worst:
+        with jax.enable_x64(True):
+            angle, normal, decoded = self._farthest(jax.tree.map(jnp.asarray, chunk))
+            return Worst(np.asarray(normal), np.asarray(decoded), float(angle))
 
 
 def cores() -> int:

@@ -264,6 +264,15 @@ class Field:
         raise UsageError(f"{self.name} is {value!r}; {KINDS[self.kind]} would do")
 
 
+def checked_options(table: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a measured table by name, as a gate or a test says them. Raises UsageError for others."""
+    known = fields_of(*MEASURED[table])
+    unknown = next((name for name in values if name not in known), None)
+    if unknown is not None:
+        raise UsageError(f"unknown option {unknown!r}; known: {', '.join(known)}")
+    return {name: known[name].checked(value) for name, value in values.items()}
+
+
 KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true or false"}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import cache, partial
 from types import MappingProxyType
@@ -20,7 +21,7 @@ from ..gbuffer.codec_passes import CodecPasses
 from ..gbuffer.device import Device, FormatError, NoDeviceError, device
 from ..gbuffer.shader import ShaderError
 from .errors import MissingError, UsageError, pick
-from .metrics import Decoded, Meter, Statistics, effective_bits, idle, psnr_db
+from .metrics import Decoded, Meter, Statistics, Worst, effective_bits, idle, psnr_db
 from .normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
 from .user_encodings import NoTwinError, encodings_named
 
@@ -109,14 +110,24 @@ def check_twin(encoding: Encoding) -> None:
         raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error
 
 
-def _by_jax(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
-    normals = case.normal_set
+@dataclass(frozen=True)
+class Decoding:
+    """A case about to be measured: with what, on which chunks, and what the row says of how."""
+
+    meter: Meter
+    loads: Iterable[Callable[[], Any]]
+    how: Mapping[str, str]
+
+
+@contextmanager
+def _by_jax(case: Case) -> Iterator[Decoding]:
     how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
-    return _meter(case.codec).measure(normals.loads(), normals.count, tick), how
+    yield Decoding(_meter(case.codec), case.normal_set.loads(), how)
 
 
-def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
-    gl, normals = device(), case.normal_set
+@contextmanager
+def _by_glsl(case: Case) -> Iterator[Decoding]:
+    gl = device()
     with CodecPasses(gl, case.codec) as passes:
 
         def decoded(chunk: Chunk) -> Decoded:
@@ -124,9 +135,8 @@ def _by_glsl(case: Case, tick: Tick) -> tuple[Statistics, dict[str, str]]:
             n = passes.round_trip(*pixels).normals.reshape(-1, 3)
             return Decoded(chunk.n, Vec3(*np.ascontiguousarray(n.T)), chunk.covered)
 
-        loads = (partial(identity, decoded(load())) for load in normals.loads())
-        statistics = _decoded_meter().measure(loads, normals.count, tick)
-        return statistics, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+        loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
+        yield Decoding(_decoded_meter(), loads, {"device": gl.renderer, "rounded_by": passes.rounded_by})
 
 
 def identity(value: Any) -> Any:
@@ -134,7 +144,7 @@ def identity(value: Any) -> Any:
     return value
 
 
-BACKENDS: Mapping[str, Callable[[Case, Tick], tuple[Statistics, dict[str, str]]]] = MappingProxyType(
+BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = MappingProxyType(
     {"jax": _by_jax, "glsl": _by_glsl}
 )
 
@@ -192,10 +202,20 @@ def measure(case: Case, tick: Tick = idle) -> Row:
         "seed": case.normal_set.seed,
     }
     try:
-        statistics, how = BACKENDS[case.backend](case, tick)
+        with BACKENDS[case.backend](case) as found:
+            statistics = found.meter.measure(found.loads, case.normal_set.count, tick)
     except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
-    return row | _figures(statistics, case.normal_set.area) | how
+    return row | _figures(statistics, case.normal_set.area) | dict(found.how)
+
+
+def worst(case: Case) -> Worst | None:
+    """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
+    try:
+        with BACKENDS[case.backend](case) as found:
+            return found.meter.worst(found.loads)
+    except UNMEASURABLE:
+        return None
 
 
 def _figures(s: Statistics, area: float | None) -> Row:

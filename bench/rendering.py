@@ -20,7 +20,7 @@ from ..gbuffer.scenes.scene import KINDS, Scene
 from ..gbuffer.scenes.setting import Setting
 from ..gbuffer.shader import ShaderError
 from .image_metrics import flip, squared_error
-from .metrics import psnr_db
+from .metrics import Worst, psnr_db
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
 COLUMNS = (
@@ -152,6 +152,13 @@ class Bench:
             return row | {"skipped": str(error)}, None
         return row | times | self._compared(case, frames, reference), frames[0]
 
+    def worst(self, case: Case) -> Worst | None:
+        """The normal of a case's first frame that its G-buffer gives back farthest off; None where there is none."""
+        try:
+            return _farthest(self._frames(case)[0], self.reference(case)[0])
+        except UNMEASURABLE:
+            return None
+
     def _compared(self, case: Case, frames: list[Drawn], reference: list[Drawn]) -> Row:
         pairs = list(zip(frames, reference, strict=True))
         errors = [squared_error(one.shown, other.shown) for one, other in pairs]
@@ -166,6 +173,20 @@ class Bench:
             apart = [_normal_error(one, other, has_kind) for one, other in pairs]
             row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
         return row
+
+
+def _farthest(one: Drawn, other: Drawn) -> Worst | None:
+    """Of two frames, the normal that the one has and that is farthest off in the other."""
+    if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
+        return None
+    covered = other.kinds >= 0
+    right, found = (normals[covered].astype(np.float64) for normals in (other.normals, one.normals))
+    if not len(right):
+        return None
+    across, along = np.linalg.norm(np.cross(right, found - right), axis=-1), np.sum(right * found, axis=-1)
+    angles = np.nan_to_num(np.degrees(np.arctan2(across, along)), nan=180.0)
+    at = int(np.argmax(angles))
+    return Worst(right[at].astype(np.float32), found[at].astype(np.float32), float(angles[at]))
 
 
 def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:

@@ -57,7 +57,8 @@ def encodings_named(names: str) -> list[Encoding]:
         raise UsageError(complaints[0])
     for line in complaints:
         print(f"normalbench: left out: {' '.join(line.split())}", file=sys.stderr)
-    return pick("encoding", ",".join(rest), {**ENCODINGS, **found})
+    # "all" is the catalogue, whatever files there were before.
+    return pick("encoding", ",".join(rest), {**{name: ENCODINGS[name] for name in NAMES}, **found})
 
 
 def _looked_at(path: Path) -> Encoding:

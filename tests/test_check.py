@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from normalbench.bench.errors import MissingError, UsageError
-from normalbench.bench.gates import Limit, checked, read_gates
+from normalbench.bench.gates import checked, read_gates
+from normalbench.bench.limits import Limit
 from normalbench.bench.runs import Step, opened
 
 PASSES = '[[gate]]\nencoding = "spheremap"\nstorage = "rgba8"\nnormals = "playground"\npsnr_db = "at least 47.5"\n'
@@ -22,7 +23,9 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     path.write_text(PASSES + 'angle_max_deg = "at most 0.95"\n')
     status, out, err = run("check", str(path))
     assert status == 1 and "1 of 2 limits do not hold" in err
-    assert [line.split()[-1] for line in out.splitlines()[1:3]] == ["pass", "FAIL"]
+    assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
+    rows = json.loads(run("check", str(path), "--format", "json")[1])
+    assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
 
 
 @pytest.mark.usefixtures("gl")
@@ -31,6 +34,21 @@ def test_an_image_may_be_a_gate(run, tmp_path):
     path.write_text('[[gate]]\ntable = "render"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 20"\n')
     status, out, _ = run("check", str(path), "--format", "json")
     assert status == 0 and json.loads(out)[0]["table"] == "render"
+    path.write_text(path.read_text().replace("at least 20", "at least 99") + 'flip = "at most 0.5"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    psnr, flip = json.loads(out)
+    assert status == 1 and "comes back as" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
+    """The codec that is usual for a gate is not put into it."""
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
+    )
+    (row,) = json.loads(run("check", str(path), "--format", "json")[1])
+    assert row["row"].startswith("best_fit rgba8 nearest hybrid cryengine3"), row
 
 
 def test_figures_may_come_from_a_run(run, tmp_path):
@@ -59,14 +77,18 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("[[gate]]\n[other]", "gates are [[gate]] tables"),
         ("[[gate]", "cannot be read as gates"),
         ('[[gate]]\nencoding = "xy"', "holds no column to anything"),
-        ('[[gate]]\npsnr_db = "at least many"', "holds no column to anything"),
+        ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is no number"),
+        ('[[gate]]\npsnr_db = "at least nan"', "nan is no number"),
+        ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is no number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
+        ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; true or false would do"),
         ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is no number"),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; a text or a number"),
-        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; a text or a number"),
-        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; like 0 it must be"),
-        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: table, encoding"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; a whole number would do"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; a whole number would do"),
+        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: encoding"),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
-        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality has no column 'psnr'; it has encoding"),
+        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; there are encoding"),
         ('[[gate]]\ntable = "depth"\nerror_max = "at most 1"', "'depth' is not measured here, only quality, render"),
     ],
 )
