@@ -48,8 +48,8 @@ def _change(table: str, row: str, column: str, before: Any, after: Any, change: 
 def _changes(table: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
     for column in dict.fromkeys([*one, *other]):
         before, after = one.get(column), other.get(column)
-        if not column.startswith(TIMED) and not _same(before, after):
-            yield _change(table, row_name(one), column, before, after, _difference(before, after))
+        if not column.startswith(TIMED) and not same(before, after):
+            yield _change(table, row_name(one), column, before, after, difference(before, after))
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one["ms_frame"] and other["ms_frame"] / one["ms_frame"] - 1
@@ -59,12 +59,13 @@ def _changes(table: str, one: Row, other: Row, same_machine: bool) -> Iterator[R
             )
 
 
-def _same(one: Any, other: Any) -> bool:
-    # What is no number is the same as itself here.
+def same(one: Any, other: Any) -> bool:
+    """Whether two figures are one; what is no number is the same as itself here."""
     return one == other or (one != one and other != other)
 
 
-def _difference(before: Any, after: Any) -> str:
+def difference(before: Any, after: Any) -> str:
+    """By how much a figure is another, as text."""
     if isinstance(before, int | float) and isinstance(after, int | float):
         return f"{after - before:+.3g}"
     return "another"

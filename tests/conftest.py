@@ -11,8 +11,14 @@ from normalbench.bench import cli, isa, spirv
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.gbuffer.device import NoDeviceError, device
 
+pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
+
+
+def pytest_configure(config):
+    if os.environ.get("CI"):
+        config.option.normalbench_require_gl = True
 
 
 @pytest.fixture(scope="session")
