@@ -17,17 +17,9 @@ from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
 from ..reports.plots import PlotError
+from .command_options import CostOptions, DepthOptions, LightsOptions, SuiteOptions, SweepOptions
 from .errors import MissingError, UsageError
-from .options import (
-    CostOptions,
-    DepthOptions,
-    LightsOptions,
-    QualityOptions,
-    Reading,
-    RenderOptions,
-    SuiteOptions,
-    SweepOptions,
-)
+from .options import QualityOptions, Reading, RenderOptions
 from .output import abandon_output, write
 from .progress import ending
 from .signatures import with_options

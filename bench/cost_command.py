@@ -15,11 +15,11 @@ from ..encodings.storage import STORAGES
 from ..gbuffer.kernels import PACKINGS, STAGES, Packing
 from ..reports import pareto, plots
 from . import cost, cost_clocks, cost_sheets, isa, quality
+from .command_options import CostOptions
 from .cost import Case, Row
 from .counts import checked_count
 from .errors import MissingError, UsageError, pick
 from .normal_sets import NORMAL_SETS, NormalSet
-from .options import CostOptions
 from .output import check_folder, check_writable, say, whole_file, without, write
 from .progress import progress
 from .render_commands import MAX_REPEATS, checked_target, in_range

@@ -21,9 +21,9 @@ from ..gbuffer.scenes.catalogue import SCENES
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures, plots
 from . import depth
+from .command_options import DepthOptions
 from .counts import checked_numbers
 from .errors import UsageError, pick
-from .options import DepthOptions
 from .output import check_folder, check_writable, say_skipped, whole_file, write
 from .progress import progress
 from .quality import require_device, require_jax

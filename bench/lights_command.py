@@ -18,11 +18,11 @@ from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import displayed
 from ..reports import pictures, plots
 from . import lights
+from .command_options import LightsOptions
 from .counts import checked_numbers
 from .errors import MissingError, UsageError, pick
 from .light_images import Shot
 from .light_names import MOST_LIGHT, light_buffers_named
-from .options import LightsOptions
 from .output import check_folder, check_writable, whole_file, without, write
 from .progress import progress
 from .quality import found_device, require_jax

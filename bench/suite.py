@@ -15,11 +15,11 @@ from ..gbuffer.layouts import LAYOUTS
 from ..gbuffer.pipelines import PIPELINES
 from ..gbuffer.scenes.setting import Setting
 from . import cost, depth, isa, lights, quality, spirv, sweep
+from .command_options import SuiteOptions
 from .commands import Request
 from .depth_command import DepthRequest
 from .errors import UsageError, pick
 from .lights_command import LightsRequest
-from .options import SuiteOptions
 from .render_commands import RenderRequest
 from .rendering import Bench, Case, described
 from .runs import Row, Step

@@ -11,11 +11,11 @@ from ..gbuffer.frame import Plan
 from ..gbuffer.pipelines import PIPELINES
 from ..reports import plots
 from . import sweep
+from .command_options import SweepOptions
 from .counts import checked_numbers
 from .errors import pick
 from .journal import Journal
 from .light_names import light_buffers_named
-from .options import SweepOptions
 from .output import check_writable, whole_file, without, write
 from .progress import progress
 from .quality import require_device, require_jax
