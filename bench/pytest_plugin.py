@@ -11,6 +11,7 @@ options alone. With xdist every worker measures what its own tests ask for, at m
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,11 +136,17 @@ def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """A file of gates, where it is named on the command line: a test for each gate."""
-    if file_path.suffix == ".toml" and parent.session.isinitpath(file_path):
+    if file_path.suffix == ".toml" and _is_named(file_path, parent.config):
         from .pytest_gates import GateFile
 
         return GateFile.from_parent(parent, path=file_path)
     return None
+
+
+def _is_named(path: Path, config: pytest.Config) -> bool:
+    # Session.isinitpath forgets a file that lies in a folder that is named as well.
+    here = config.invocation_params.dir
+    return str(path) in [os.path.abspath(here / word.partition("::")[0]) for word in config.args]  # noqa: PTH100 # no link
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -202,6 +202,7 @@ def test_a_file_of_gates_is_tests(inside, pytester):
     gate = '[[gate]]\nencoding = "xy"\nnormals = "sphere"\ncount = 4096\npsnr_db = "at least {}"\n'
     pytester.makefile(".toml", gates=gate.format(5) + gate.format(50) + 'colour = "x"\n' + gate.format(50), other="[x]")
     inside(test_a="def test_it(): pass").assert_outcomes(passed=1)
+    inside(".", "./gates.toml").assert_outcomes(passed=2, failed=2)
     result = inside("gates.toml", "-v")
     result.assert_outcomes(passed=1, failed=2)
     result.stdout.fnmatch_lines(

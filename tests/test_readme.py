@@ -12,12 +12,9 @@ import numpy as np
 import pytest
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench import cli, quality, seeds
+from normalbench.bench import cli, seeds
 from normalbench.bench.light_sums import Adder, equal_lights
-from normalbench.bench.normal_sets import playground
-from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -78,17 +75,15 @@ def test_the_make_targets_exist():
         assert f"\n{target}:" in makefile
 
 
-@pytest.mark.usefixtures("gl")
-def test_the_table_is_what_is_measured():
+def test_the_table_is_what_is_measured(normalbench):
     table = TEXT[TEXT.index("<!-- normalbench run -->") :]
     lines = re.findall(r"^\| `(\w+)` +\| +(\d+) \| +([\d.]*) \| +([\d.]+) \| +([\d.]+) \|$", table, re.M)
     assert {line[0] for line in lines} == {*seeds.PSNR_DB, "octahedral"}
     for name, bits, article, by_jax, by_glsl in lines:
-        codec = Codec(ENCODINGS[name], STORAGES[seeds.STORAGE])
-        assert codec.bits == int(bits)
         assert not article or float(article) == pytest.approx(seeds.PSNR_DB[name], abs=0.0051)
         for backend, figure in (("jax", by_jax), ("glsl", by_glsl)):
-            row = quality.measure(quality.Case(codec, playground(), backend))
+            row = normalbench.quality(encoding=name, storage=seeds.STORAGE, backend=backend)
+            assert row["bits"] == int(bits)
             assert float(figure) == pytest.approx(row["psnr_seed_db"], abs=0.02), f"{name} by {backend}"
 
 
@@ -181,11 +176,19 @@ def test_the_pipelines_it_shows_are_those_there_are():
     assert shown == {p.name: ", ".join(stage.name for stage in p.stages) for p in PIPELINES.values()}
 
 
-def test_the_gate_it_shows_passes():
+@pytest.mark.usefixtures("gl")
+def test_the_tests_it_shows_pass(pytester):
+    """With the encoding it shows beside them, and the gates it shows named as it says."""
     (example,) = re.findall(r"```python\n(.*?)```", TEXT, re.S)
-    names: dict = {}
-    exec(example, names)
-    names["test_normals_in_two_bytes_are_good_enough"]()
+    pytester.makepyfile(example)
+    pytester.path.joinpath("mine.glsl").write_text(ENCODING)
+    pytester.path.joinpath("gates.toml").write_text(GATES)
+    (command,) = re.findall(r"^    (pytest .*--normalbench.*)$", TEXT, re.M)
+    words = ["." if word == "tests" else word for word in shlex.split(command)[1:]]
+    plain = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest")
+    for more in (["--normalbench-write-baseline"], []):
+        result = pytester.runpytest_subprocess(*words, *more, *plain)
+        result.assert_outcomes(passed=example.count("def test_") + GATES.count("[[gate]]"))
 
 
 def test_the_picture_it_shows_is_there():

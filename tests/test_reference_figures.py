@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench import quality
-from normalbench.bench.normal_sets import from_arrays, hemisphere, sphere
+from normalbench.bench.normal_sets import from_arrays
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
@@ -16,38 +16,38 @@ COUNT = 4_000_000
 # Mean, RMS and supremum of the angle in degrees, uniform directions, computed in float64 with a search for the worst
 # case. Octahedral 8:8 and xyz SNORM8 also stand in Cigolle et al., JCGT 3(2), 2014 (0.33709 and 0.17015).
 FIGURES = [
-    ("octahedral", "rg8_snorm", "nearest", sphere, 0.336890, 0.371170, 0.956992),
-    ("octahedral", "rg8", "nearest", sphere, 0.335610, 0.369824, 0.953181),
-    ("octahedral", "rg8", "truncate", sphere, 0.671067, 0.739498, 1.906265),
-    ("spherical", "rg8", "nearest", sphere, 0.372156, 0.461192, 5.075859),
-    ("spheremap", "rg8", "nearest", hemisphere, 0.352483, 0.379227, 0.899604),
+    ("octahedral", "rg8_snorm", "nearest", "sphere", 0.336890, 0.371170, 0.956992),
+    ("octahedral", "rg8", "nearest", "sphere", 0.335610, 0.369824, 0.953181),
+    ("octahedral", "rg8", "truncate", "sphere", 0.671067, 0.739498, 1.906265),
+    ("spherical", "rg8", "nearest", "sphere", 0.372156, 0.461192, 5.075859),
+    ("spheremap", "rg8", "nearest", "hemisphere", 0.352483, 0.379227, 0.899604),
     # In float32 only the n / p form keeps to the supremum near -z; the Lambert form has a test of its own.
-    ("spheremap_classic", "rg8", "nearest", sphere, 0.492355, 0.719445, 11.918),
-    ("stereographic", "rg8", "nearest", hemisphere, 0.458578, 0.498289, 1.129611),
-    ("xy", "rg8", "nearest", hemisphere, 0.467529, 0.778805, 5.959707),
-    ("xyz_renormalised", "rgba8_snorm", "nearest", sphere, 0.170119, 0.184113, 0.390376),
+    ("spheremap_classic", "rg8", "nearest", "sphere", 0.492355, 0.719445, 11.918),
+    ("stereographic", "rg8", "nearest", "hemisphere", 0.458578, 0.498289, 1.129611),
+    ("xy", "rg8", "nearest", "hemisphere", 0.467529, 0.778805, 5.959707),
+    ("xyz_renormalised", "rgba8_snorm", "nearest", "sphere", 0.170119, 0.184113, 0.390376),
     # With the table of 1024 x 1024; the nearest of all codes has 0.027989 and 0.034788. The axes are the worst.
-    ("best_fit", "rgba8", "nearest", sphere, 0.031262, 0.038016, 0.317755),
-    ("octahedral", "rg16_snorm", "nearest", sphere, 0.001306, 0.001439, 0.003709),
-    ("octahedral", "rg16f", "nearest", sphere, 0.014993, 0.017636, 0.059345),
+    ("best_fit", "rgba8", "nearest", "sphere", 0.031262, 0.038016, 0.317755),
+    ("octahedral", "rg16_snorm", "nearest", "sphere", 0.001306, 0.001439, 0.003709),
+    ("octahedral", "rg16f", "nearest", "sphere", 0.014993, 0.017636, 0.059345),
 ]
 
 
 @pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", FIGURES)
-def test_the_reference_figures_are_reproduced(encoding, storage, rounding, normals, mean, rms, sup):
+def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup):
     """Means within 0.5 %, RMS within 1 %; the largest of four million samples is below the supremum, and not far."""
-    codec = Codec(ENCODINGS[encoding], STORAGES[storage], rounding)
-    row = quality.measure(quality.Case(codec, normals(COUNT), "jax"))
+    row = normalbench.quality(encoding=encoding, storage=storage, rounding=rounding, normals=normals, count=COUNT)
     assert row["count"] == COUNT
-    assert row["angle_mean_deg"] == pytest.approx(mean, rel=0.005), codec.name
-    assert row["angle_rms_deg"] == pytest.approx(rms, rel=0.01), codec.name
+    at_least = {"angle_mean_deg": mean * 0.995, "angle_rms_deg": rms * 0.99, "angle_max_deg": sup * 0.9}
     # At 16 bits float32's own rounding of input and decode adds up to 1e-5 degrees.
-    assert 0.9 * sup <= row["angle_max_deg"] <= sup * 1.001 + 1e-5, codec.name
+    at_most = {"angle_mean_deg": mean * 1.005, "angle_rms_deg": rms * 1.01, "angle_max_deg": sup * 1.001 + 1e-5}
+    row.assert_that(**{column: f"at least {least}" for column, least in at_least.items()})
+    row.assert_that(**{column: f"at most {most}" for column, most in at_most.items()})
 
 
-def test_the_lambert_spheremap_loses_the_far_pole_in_float32():
+def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     """As published, 8 z + 8 cancels: mean and RMS stay, but 3e-4 rad from -z a direction turns by tens of degrees."""
-    row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(COUNT), "jax"))
+    row = normalbench.quality(encoding="spheremap", storage="rg8", normals="sphere", count=COUNT)
     assert row["angle_mean_deg"] == pytest.approx(0.492355, rel=0.005)
     assert row["angle_rms_deg"] == pytest.approx(0.719445, rel=0.01)
     around = np.linspace(0, 2 * np.pi, 1000)
@@ -63,12 +63,11 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32():
 
 
 @pytest.mark.parametrize("name", sorted(ENCODINGS))
-def test_no_row_is_better_than_its_codes_allow(name):
+def test_no_row_is_better_than_its_codes_allow(normalbench, name):
     """The RMS of N codes cannot beat the hexagonal quantiser's: effective bits never exceed the bits stored."""
     for storage in ("rgba8", "rgb10a2", "rgba8_snorm"):
-        codec = Codec(ENCODINGS[name], STORAGES[storage])
-        row = quality.measure(quality.Case(codec, sphere(2**20), "jax"))
-        assert row["effective_bits"] <= row["bits"] + 1e-3, f"{codec.name}: {row['effective_bits']} of {row['bits']}"
+        row = normalbench.quality(encoding=name, storage=storage, normals="sphere", count=2**20)
+        row.assert_that(effective_bits=f"at most {row['bits'] + 1e-3}")
 
 
 def test_effective_bits_of_the_limit_itself():
@@ -78,24 +77,15 @@ def test_effective_bits_of_the_limit_itself():
     assert effective_bits(0.31773, 4 * math.pi) == pytest.approx(16, abs=1e-4)
 
 
-def test_unorm8_cannot_hold_an_axis_and_snorm8_can():
+def test_unorm8_cannot_hold_an_axis_and_snorm8_can(normalbench):
     """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact to the set's own few ulps."""
-    from normalbench.bench.normal_sets import axes
-
-    largest = {
-        storage: quality.measure(quality.Case(Codec(ENCODINGS["octahedral"], STORAGES[storage]), axes(), "jax"))
-        for storage in ("rg8", "rg8_snorm")
-    }
+    largest = {storage: normalbench.quality(storage=storage, normals="axes") for storage in ("rg8", "rg8_snorm")}
     # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
     assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
-    assert largest["rg8_snorm"]["angle_max_deg"] < 1e-4
+    largest["rg8_snorm"].assert_that(angle_max_deg="at most 1e-4")
 
 
-def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere():
+def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere(normalbench):
     """Poles and rims included, none of the six axes comes back as another direction."""
-    from normalbench.bench.normal_sets import axes
-
-    for name, encoding in ENCODINGS.items():
-        if encoding.domain == "sphere":
-            row = quality.measure(quality.Case(Codec(encoding, STORAGES["rgba8"]), axes(), "jax"))
-            assert row["angle_max_deg"] < 12, f"{name}: {row['angle_max_deg']} degrees on an axis"
+    whole = ",".join(name for name, encoding in ENCODINGS.items() if encoding.domain == "sphere")
+    normalbench.quality(encoding=whole, normals="axes").assert_that(angle_max_deg="at most 12")
