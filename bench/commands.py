@@ -81,6 +81,8 @@ def quality_command(request: Request, images: Path | None, format: str, output: 
     if format == "table":
         # Infinity is shown as such, and why a row is empty or has odd figures has been said.
         rows = without(rows, ("exact", "skipped", "invalid"))
+    if format in ("table", "markdown"):
+        rows = without(rows, quality.FOR_PROGRAMS)
     write(rows, format, output, EXPENDABLE)
 
 

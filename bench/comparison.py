@@ -14,8 +14,9 @@ from .runs import Done, Row
 LEAST_EFFECT = 0.05
 # How probable a difference may be by chance alone, of either sign, and still count.
 CHANCE = 0.01
-# Each frame's time, where a row has them; everything that goes by the clock starts alike.
-EACH, TIMED = "ms_frame_each", ("ms_", "clock")
+# Each frame's time, where a row has them; everything that goes by the clock starts alike. A histogram changes where its
+# mean and its largest value do, and takes a page to say so.
+EACH, NOT_COMPARED = "ms_frame_each", ("ms_", "clock", "angle_counts")
 COLUMNS = ("table", "row", "column", "before", "after", "change")
 
 
@@ -48,7 +49,7 @@ def _change(table: str, row: str, column: str, before: Any, after: Any, change: 
 def _changes(table: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
     for column in dict.fromkeys([*one, *other]):
         before, after = one.get(column), other.get(column)
-        if not column.startswith(TIMED) and not same(before, after):
+        if not column.startswith(NOT_COMPARED) and not same(before, after):
             yield _change(table, row_name(one), column, before, after, difference(before, after))
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]

@@ -31,6 +31,8 @@ BIN_SHIFT = 13
 FIRST_BIN = int(np.float32(2.0**-40).view(np.uint32)) >> BIN_SHIFT
 BINS = (int(np.float32(256.0).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN
 UNCOVERED = BINS
+# A row keeps eight bins of an octave: three bits of mantissa.
+BINS_TOGETHER = 2**7
 
 
 def idle() -> None:
@@ -55,11 +57,16 @@ def angle_between(a: Vec3, b: Vec3):
     return jnp.where(dot(b, b) > 0.0, 180.0 * atan2_pi(across, dot(a, b)), 180.0)
 
 
+def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
+    """Decodes, the opposite direction where one is no number; and which of them are numbers."""
+    finite = jnp.isfinite(dot(decoded, decoded))
+    return select(finite, decoded, -n), finite
+
+
 def _errors(n: Vec3, decoded: Vec3, covered):
     """Per normal: squared error, the seeds' squared error, angle, and 1 where the decode is no number, which counts as
     the opposite direction."""
-    finite = jnp.isfinite(dot(decoded, decoded))
-    decoded = select(finite, decoded, -n)
+    decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
     # The seeds' difference image was |n - n'| in eight bits per channel.
     eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
@@ -170,6 +177,8 @@ class Statistics:
         mse: mean squared error over the three components of covered normals, not renormalised.
         seed_mse: the seeds' own: |n - n'| rounded to 8 bits, over every pixel.
         angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
+        angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
+            first holds 0 as well.
     """
 
     count: int
@@ -181,6 +190,7 @@ class Statistics:
     angle_rms_deg: float
     angle_p99_deg: float
     angle_max_deg: float
+    angle_counts: tuple[tuple[float, int], ...]
 
 
 @dataclass(frozen=True)
@@ -221,6 +231,13 @@ def _percentile(histogram: np.ndarray, largest: float, share: float) -> float:
     edges = ((np.arange(index, index + 2) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
     within = (rank - (cumulative[index] - histogram[index])) / histogram[index]
     return min(float(edges[0] + within * (edges[1] - edges[0])), largest) if largest else 0.0
+
+
+def _counts(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+    counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
+    edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
+    edges[0] = 0
+    return tuple((float(edges[i]), int(counts[i])) for i in np.flatnonzero(counts))
 
 
 class Meter:
@@ -296,4 +313,5 @@ def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.nda
         angle_rms_deg=math.sqrt(angle_squared / count),
         angle_p99_deg=_percentile(histogram, largest, 0.99),
         angle_max_deg=largest,
+        angle_counts=_counts(histogram),
     )

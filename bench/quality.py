@@ -43,6 +43,7 @@ COLUMNS = (
     "angle_rms_deg",
     "angle_p99_deg",
     "angle_max_deg",
+    "angle_counts",
     "effective_bits",
     "exact",
     "device",
@@ -51,6 +52,8 @@ COLUMNS = (
     "skipped",
 )
 
+# What only a program reads.
+FOR_PROGRAMS = ("angle_counts",)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # What an unused channel is drawn as: -1 is black.
@@ -229,6 +232,7 @@ def _figures(s: Statistics, area: float | None) -> Row:
         "angle_rms_deg": s.angle_rms_deg,
         "angle_p99_deg": s.angle_p99_deg,
         "angle_max_deg": s.angle_max_deg,
+        "angle_counts": " ".join(f"{edge:.6g}:{count}" for edge, count in s.angle_counts),
         "effective_bits": effective_bits(s.angle_rms_deg, area),
         "exact": s.mse == 0,
     }

@@ -46,10 +46,15 @@ def codec_pictures(
     along = np.clip(np.sum(normals * decoded, axis=-1, keepdims=True), 0, 1)
     return {
         "encoded": _bytes((encoded * 0.5 + 0.5) * mask),
-        "decoded": _bytes((decoded * 0.5 + 0.5) * mask),
+        "decoded": normals_picture(decoded, covered),
         "error": _bytes(np.abs(normals - decoded) * GAIN * mask),
         "power": _bytes((1 - along**POWER) * mask * np.ones(3)),
     }
+
+
+def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
+    """Normals as they are: [-1, 1] as [0, 255], black on the background; shapes as for `codec_pictures`."""
+    return _bytes((normals * 0.5 + 0.5) * covered[..., None])
 
 
 def render_pictures(image: np.ndarray, reference: np.ndarray) -> dict[str, np.ndarray]:

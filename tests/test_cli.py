@@ -141,7 +141,8 @@ def test_run_leaves_a_results_folder(results):
     facts = json.loads((folder / "run.json").read_text())
     assert facts["machine"]["jax"] and facts["machine"]["GL"] and facts["finished"] and facts["sources"]
     assert facts["command"] == ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
-    assert len(list((folder / "images").iterdir())) == codecs * 4
+    assert len(list((folder / "images").iterdir())) == codecs * 4 + 1, "and the set itself"
+    assert len(list((folder / "sphere").iterdir())) == codecs
     with Image.open(folder / "playground-rgba8.png") as sheet:
         assert sheet.size == (4 * 320, 7 * (240 + 16))
 

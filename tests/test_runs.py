@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench import isa, journal, run_command, spirv
+from normalbench.bench import isa, journal, short, spirv
 from normalbench.bench.errors import UsageError
 from normalbench.bench.runs import ROWS, Step, opened, read_run, same_work, sources, unfinished
 from normalbench.bench.suite import TABLES, SuiteRequest
@@ -151,7 +151,7 @@ def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
 
 @pytest.mark.usefixtures("gl")
 def test_every_table_has_steps_and_its_short_form():
-    assert set(TABLES) == set(run_command.SHORT)
+    assert set(TABLES) == set(short.SHORT)
     found = SuiteRequest(count=4096).steps()
     compilers = isa.driver_file() and spirv.version(spirv.COMPILER)
     assert {step.table for step in found} == set(TABLES) - (set() if compilers else {"cost"})
