@@ -240,6 +240,26 @@ def compare(
     compare_command(before, after, format, output)
 
 
+@app.command()
+def report(
+    run: Annotated[Path, typer.Argument(help="A results folder.")],
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
+    ] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Write the page to this file. Default: report.html in the folder."),
+    ] = None,
+) -> None:
+    """A run on one page: who wins, tables, pictures, charts, and how each figure was measured. Opens offline.
+
+    The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
+    """
+    from .report_command import report_command
+
+    report_command(run, markdown, output)
+
+
 def _say(message: str) -> None:
     print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
 

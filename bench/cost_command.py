@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -216,12 +215,12 @@ def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> None:
         for measure, (column, unit) in UNITS.items():
             chosen = _one_kind([r for r in rows if r["measure"] == measure and r[column] is not None])
             for operation in request.operations if chosen else ():
-                points = list(_points(chosen, column, operation, errors))
+                points = list(cost_sheets.points(chosen, column, operation, errors))
                 panels.append((f"{operation}, {title}\n{_where(chosen[0])}", unit, points))
     if not panels:
         raise UsageError("--plot: there is nothing to draw; see why above")
     with whole_file(path) as partial:
-        pareto.pareto_plot(panels, error, partial, path.suffix[1:])
+        plots.save(pareto.pareto_figure(panels, error), (partial, path.suffix[1:]))
 
 
 def _one_kind(rows: list[Row]) -> list[Row]:
@@ -231,16 +230,3 @@ def _one_kind(rows: list[Row]) -> list[Row]:
 
 def _where(row: Row) -> str:
     return ", ".join(row[column] for column in ("family", "stage", "driver") if row["family"]) or row["device"]
-
-
-def _points(
-    rows: Sequence[Row], column: str, operation: str, errors: dict[Codec, float | None]
-) -> Iterator[pareto.Point]:
-    """Each codec: what its encoding and its storage take together, as far as both are known."""
-    costs = {(row["encoding"], row["storage"], row["operation"]): row[column] for row in rows}
-    for codec, error in errors.items():
-        bits = ":".join(map(str, codec.storage.bits[: max(codec.encoding.components, 2)]))
-        packing = (None, f"{codec.storage.name} {bits}", cost.PACKING_OPERATIONS[operation])
-        own = costs.get((codec.encoding.name, None, operation))
-        if own is not None and error is not None and math.isfinite(error):
-            yield codec.encoding.name, own + (costs.get(packing) or 0), error, codec.bits

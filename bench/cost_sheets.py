@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
+from ..encodings.codec import Codec
+from ..reports.pareto import Point
 from . import seeds
-from .cost import COLUMNS, Row
+from .cost import COLUMNS, PACKING_OPERATIONS, Row
 from .disassembly import names
 
 # What chooses between two numbers or keeps one within bounds.
@@ -98,3 +101,14 @@ def _why(cheap: tuple[Row, str], dear: tuple[Row, str], slots: dict) -> str:
         slot = slots[row["encoding"], row["operation"]]
         parts.append(f"  {row['encoding']}: {row['instructions']} ({kinds}) for {slot} slots")
     return "\n".join(["  another order, for a slot computes up to four numbers, an instruction here one:", *parts])
+
+
+def points(rows: Sequence[Row], column: str, operation: str, errors: Mapping[Codec, float | None]) -> Iterator[Point]:
+    """Each codec: what its encoding and its storage take together, as far as both are known."""
+    costs = {(row["encoding"], row["storage"], row["operation"]): row[column] for row in rows}
+    for codec, error in errors.items():
+        bits = ":".join(map(str, codec.storage.bits[: max(codec.encoding.components, 2)]))
+        packing = (None, f"{codec.storage.name} {bits}", PACKING_OPERATIONS[operation])
+        own = costs.get((codec.encoding.name, None, operation))
+        if own is not None and error is not None and math.isfinite(error):
+            yield codec.encoding.name, own + (costs.get(packing) or 0), error, codec.bits

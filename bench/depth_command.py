@@ -135,7 +135,7 @@ def depth_command(
         if plot:
             lines = [row for case in chosen for row in _curve(case, tick)]
             with whole_file(plot) as partial:
-                plots.depth_plot(lines, partial, plot.suffix[1:].lower())
+                plots.save(plots.depth_figure(lines), (partial, plot.suffix[1:].lower()))
     write(_beside(rows) if format == "table" else rows, format, output, EXPENDABLE)
 
 

@@ -116,7 +116,7 @@ def lights_command(
     _say_reasons(rows)
     if plot:
         with whole_file(plot) as partial:
-            plots.lights_plot(rows, partial, plot.suffix[1:])
+            plots.save(plots.lights_figure(rows), (partial, plot.suffix[1:]))
     if format == "table":
         rows = without(rows, ("skipped", "invalid"))
     write(rows, format, output, EXPENDABLE, by="experiment")

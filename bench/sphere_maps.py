@@ -62,7 +62,7 @@ def sphere_map(codec: Codec) -> SphereMap:
     found[:held, inside] = np.asarray(_angles(codec)(n))
     cells = found.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
     some = ~np.isnan(cells).all(axis=-1)
-    mean, largest = np.full((2, *some.shape), np.nan, np.float32)
+    mean, largest = (np.full(some.shape, np.nan, np.float32) for _ in range(2))
     mean[some], largest[some] = np.nanmean(cells[some], axis=-1), np.nanmax(cells[some], axis=-1)
     return SphereMap(mean, largest, FINE * FINE)
 
@@ -94,10 +94,9 @@ def read_map(path: Path) -> SphereMap | None:
     """A map as it was written; None where there is none or it is damaged."""
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
-            found = SphereMap(*(kept[name] for name in SphereMap._fields))
+            mean, largest, directions = (kept[name] for name in SphereMap._fields)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
-    shapes = {found.mean_deg.shape, found.max_deg.shape}
-    fits = len(shapes) == 1 and found.mean_deg.ndim == 3 and len(found.mean_deg) == 2 and found.directions.ndim == 0
-    numeric = all(plane.dtype == np.float32 for plane in found[:2])
-    return found._replace(directions=int(found.directions)) if fits and numeric else None
+    fits = mean.shape == largest.shape and mean.ndim == 3 and len(mean) == 2 and directions.shape == ()
+    numeric = mean.dtype == largest.dtype == np.float32 and np.issubdtype(directions.dtype, np.integer)
+    return SphereMap(mean, largest, int(directions)) if fits and numeric else None

@@ -88,7 +88,7 @@ def sweep_command(request: SweepRequest, plot: Path | None, format: str, output:
             raise
         if plot:
             with whole_file(plot) as partial:
-                plots.sweep_plot(rows, partial, plot.suffix[1:])
+                plots.save(plots.sweep_figure(rows), (partial, plot.suffix[1:]))
         write(_shown(rows) if format == "table" else rows, format, output, EXPENDABLE)
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-from .plots import COLOURS, MARKERS
+from .plots import COLOURS, MARKERS, drawn_off_screen
 
 # A name, what it costs, its error, and the bits it takes.
 Point = tuple[str, float, float, int]
@@ -15,20 +14,18 @@ Point = tuple[str, float, float, int]
 DISTANCES, ANGLES = (7, 12, 18, 26, 36, 48, 62), 16
 
 
-def pareto_plot(panels: Sequence[tuple[str, str, Sequence[Point]]], error: str, path: Path, format: str) -> None:
+def pareto_figure(panels: Sequence[tuple[str, str, Sequence[Point]]], error: str) -> Any:
     """Cost against error. What another beats is grey; the others are joined by steps, those of as many bits.
 
     Args:
         panels: a title, what the cost is, and points.
         error: the error's name; of decibels more are better, of all others less.
-        path, format: where to write it, and as which of FORMATS.
+
+    Returns:
+        a figure for `plots.save`.
     """
-    import matplotlib
-
-    matplotlib.use("agg")
-    from matplotlib import pyplot
-
-    more_is_better, across = "psnr" in error, min(len(panels), 2)
+    pyplot = drawn_off_screen()
+    more_is_better, across = "psnr" in error.lower(), min(len(panels), 2)
     down = -(-len(panels) // across)
     figure, axes = pyplot.subplots(
         down, across, figsize=(6.4 * across, 5.2 * down), squeeze=False, layout="constrained"
@@ -46,8 +43,7 @@ def pareto_plot(panels: Sequence[tuple[str, str, Sequence[Point]]], error: str, 
     figure.canvas.draw()
     for axis, (_, _, points) in zip(axes.flat, panels, strict=False):
         _label(axis, points, more_is_better)
-    figure.savefig(path, format=format, dpi=120)
-    pyplot.close(figure)
+    return figure
 
 
 def pareto_front(points: Sequence[Point], more_is_better: bool) -> list[Point]:
@@ -88,6 +84,8 @@ def _label(axis: Any, points: Sequence[Point], more_is_better: bool) -> None:
         written = axis.annotate(
             point[0], point[1:3], (0, 0), textcoords="offset points", size=7, color=colour, arrowprops=leader
         )
+        # The layout is done, and is not to be done again around labels.
+        written.set_in_layout(False)
         taken.append(_placed(written, taken, axis.bbox))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 FORMATS = ("png", "svg", "pdf")
+DPI = 120
 # Okabe and Ito's colours, told apart by most people who do not see all of them.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999", "#8C564B")
 
@@ -22,17 +23,39 @@ def check_format(path: Path) -> None:
         raise PlotError(f"{path}: a plot's name ends in {', '.join('.' + name for name in FORMATS)}")
 
 
-def sweep_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
-    """Milliseconds a frame over the number of objects, a line for each pipeline, a panel with shadows and one without.
-
-    Args:
-        rows: of a sweep: pipeline, objects, shadow, ms_frame, ms_frame_spread, size, lights, clock, device.
-        path, format: where to write it, and as which of FORMATS.
-    """
+def drawn_off_screen() -> Any:
+    """matplotlib's pyplot, which needs no display."""
     import matplotlib
 
     matplotlib.use("agg")
     from matplotlib import pyplot
+
+    return pyplot
+
+
+def save(figure: Any, *files: tuple[Path, str]) -> None:
+    """Write a figure to each path as its format, one of FORMATS, and be done with it. Raises OSError."""
+    from matplotlib import pyplot
+
+    try:
+        for path, ending in files:
+            figure.savefig(path, format=ending, dpi=DPI)
+            # What is laid out once stays where it is.
+            figure.set_layout_engine("none")
+    finally:
+        pyplot.close(figure)
+
+
+def sweep_figure(rows: Sequence[dict[str, Any]]) -> Any:
+    """Milliseconds a frame over the number of objects, a line for each pipeline, a panel with shadows and one without.
+
+    Args:
+        rows: of a sweep: pipeline, objects, shadow, ms_frame, ms_frame_spread, size, lights, clock, device.
+
+    Returns:
+        a figure for `save`.
+    """
+    pyplot = drawn_off_screen()
     from matplotlib.ticker import LogLocator, ScalarFormatter
 
     shadows = sorted({row["shadow"] for row in rows}, reverse=True)
@@ -72,24 +95,22 @@ def sweep_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
     figure.suptitle(
         f"{first['size']}, {first['lights']} point lights and a sun\n{first['device']}, {first['clock']}", size=9
     )
-    figure.savefig(path, format=format, dpi=120)
-    pyplot.close(figure)
+    return figure
 
 
 MARKERS = "osD^v<>PX"
 
 
-def lights_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
+def lights_figure(rows: Sequence[dict[str, Any]]) -> Any:
     """What is lost over the number of lights, a line for each light buffer: of equal lights, and of coloured ones.
 
     Args:
         rows: of `lights`, the experiments equal and random.
-        path, format: where to write it, and as which of FORMATS.
-    """
-    import matplotlib
 
-    matplotlib.use("agg")
-    from matplotlib import pyplot
+    Returns:
+        a figure for `save`.
+    """
+    pyplot = drawn_off_screen()
 
     found = [_equal_lines(rows), _random_lines(rows)]
     panels = [(title, lines) for title, lines in found if lines]
@@ -116,8 +137,7 @@ def lights_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None
     axes[0][0].set_ylabel("error in light, by the model")
     figure.legend(*axes[0][-1].get_legend_handles_labels(), loc="outside right center")
     figure.suptitle("dotted: blends times half a step; errors below 1e-6 are drawn at 1e-6", size=9)
-    figure.savefig(path, format=format, dpi=120)
-    pyplot.close(figure)
+    return figure
 
 
 LEAST_ERROR = 1e-6
@@ -161,18 +181,17 @@ DASHES = ("-", "--", ":", "-.", (0, (1, 3)), (0, (7, 2, 1, 2, 1, 2)), (0, (9, 3)
 LABEL_SIZE, LABEL_GAP = 8, 9.5
 
 
-def depth_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
+def depth_figure(rows: Sequence[dict[str, Any]]) -> Any:
     """The worst position error over the distance, a line for each depth code in its storage, its name at its end, a
     panel for each near and far plane.
 
     Args:
         rows: of depth codes: depth, storage, rebuilt, near, far, distance, error_max, fov, backend, device.
-        path, format: where to write it, and as which of FORMATS.
-    """
-    import matplotlib
 
-    matplotlib.use("agg")
-    from matplotlib import pyplot
+    Returns:
+        a figure for `save`.
+    """
+    pyplot = drawn_off_screen()
 
     ranges = list(dict.fromkeys((row["near"], row["far"]) for row in rows))
     figure, panels = pyplot.subplots(
@@ -198,8 +217,7 @@ def depth_plot(rows: Sequence[dict[str, Any]], path: Path, format: str) -> None:
     panels[0][0].set_ylabel("worst position error, same unit")
     first = rows[0]
     figure.suptitle(f"field of view {first['fov']:g} degrees; {first['backend']}, {first['device']}", size=9)
-    figure.savefig(path, format=format, dpi=120)
-    pyplot.close(figure)
+    return figure
 
 
 def _depth_lines(rows: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:

@@ -12,7 +12,7 @@ GAP = 2
 PROSE = 40
 
 
-def _text(value: Any) -> str:
+def text_of(value: Any) -> str:
     """A value for people: four digits of a number, nothing for nothing."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
@@ -28,7 +28,7 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
+def is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
     return all(isinstance(row[column], int | float | None) for row in rows)
 
 
@@ -46,11 +46,11 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
     """A table for a pull request, columns aligned as text so that the source reads too."""
-    rows, caption = _without_constants(rows)
+    rows, caption = without_constants(rows)
     columns = list(rows[0])
-    cells = [[_text(row[c]).replace("|", "\\|") for c in columns] for row in rows]
+    cells = [[text_of(row[c]).replace("|", "\\|") for c in columns] for row in rows]
     widths = [max(len(c), *(len(line[i]) for line in cells)) for i, c in enumerate(columns)]
-    numeric = [_is_numeric(rows, column) for column in columns]
+    numeric = [is_numeric(rows, column) for column in columns]
 
     def line(values: Sequence[str]) -> str:
         padded = (v.rjust(w) if n else v.ljust(w) for v, w, n in zip(values, widths, numeric, strict=True))
@@ -60,14 +60,14 @@ def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
     return "\n".join([line(columns), rule, *map(line, cells), "", caption]).rstrip() + "\n"
 
 
-def _without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
+def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
     """The rows less the columns that are empty or say the same in each, and a line with what those say.
 
     Measured figures, which are floats, stay in the table: that two are the same is what it is there to show.
     """
     if len(rows) < 2:
-        return [{k: v for k, v in row.items() if _text(v)} for row in rows], ""
-    texts = {column: [_text(row[column]) for row in rows] for column in rows[0]}
+        return [{k: v for k, v in row.items() if text_of(v)} for row in rows], ""
+    texts = {column: [text_of(row[column]) for row in rows] for column in rows[0]}
     figures = {column for column in texts if any(isinstance(row[column], float) for row in rows)}
     constant = {column: t[0] for column, t in texts.items() if len(set(t)) == 1 and column not in figures}
     caption = ", ".join(f"{column} {text}" for column, text in constant.items() if text and column != "exact")
@@ -85,7 +85,7 @@ def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[st
 
 def _widths(rows: Sequence[dict[str, Any]], columns: Sequence[str]) -> list[int]:
     """What each column needs: headers may break between words, cells nowhere but in long prose."""
-    longest = (max(len(_text(row[column])) for row in rows) for column in columns)
+    longest = (max(len(text_of(row[column])) for row in rows) for column in columns)
     return [max(min(cell, PROSE), *map(len, c.split("_"))) for cell, c in zip(longest, columns, strict=True)]
 
 
@@ -101,15 +101,15 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     from rich.markup import escape
     from rich.table import Table
 
-    shown, caption = _without_constants(rows)
+    shown, caption = without_constants(rows)
     columns = _fitting(shown, width, expendable)
     table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
     widths = _widths(shown, columns)
     for column, needed in zip(columns, widths, strict=True):
-        side = "right" if _is_numeric(shown, column) else "left"
+        side = "right" if is_numeric(shown, column) else "left"
         table.add_column(column.replace("_", " "), justify=side, width=needed, overflow="fold")
     for row in shown:
-        table.add_row(*(escape(_text(row[column])) for column in columns))
+        table.add_row(*(escape(text_of(row[column])) for column in columns))
     stream = StringIO()
     console = Console(file=stream, width=max(width, sum(widths) + GAP * len(columns)), highlight=False)
     console.print(table)

@@ -12,7 +12,7 @@ from normalbench.bench.disassembly import KINDS, kind, kinds, names
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer import kernels
 from normalbench.gbuffer.kernels import PACKINGS, STAGES
-from normalbench.reports import pareto
+from normalbench.reports import pareto, plots
 
 
 @pytest.fixture(scope="session")
@@ -199,7 +199,7 @@ def test_labels_lie_over_no_point_and_no_other_label(monkeypatch, tmp_path):
     errors = (18.5, 44.4, 52.7, 54.4, 41.6, 41.5, 48.5, 48.5, 48.5, 43.6, 37.6, 49.9, 61.8)
     points = [(name, c, e, 16) for name, c, e in zip(ENCODINGS, costs, errors, strict=False)]
     monkeypatch.setattr(pyplot, "close", lambda _: None)
-    pareto.pareto_plot([("title", "instructions", points)], "psnr_db", tmp_path / "p.png", "png")
+    plots.save(pareto.pareto_figure([("title", "instructions", points)], "psnr_db"), (tmp_path / "p.png", "png"))
     (axis,) = pyplot.gcf().axes
     boxes = [pareto._extent(text) for text in axis.texts]
     assert len(boxes) == len(points)
