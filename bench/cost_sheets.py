@@ -105,7 +105,7 @@ def _why(cheap: tuple[Row, str], dear: tuple[Row, str], slots: dict) -> str:
 
 def points(rows: Sequence[Row], column: str, operation: str, errors: Mapping[Codec, float | None]) -> Iterator[Point]:
     """Each codec: what its encoding and its storage take together, as far as both are known."""
-    costs = {(row["encoding"], row["storage"], row["operation"]): row[column] for row in rows}
+    costs = {(row.get("encoding"), row.get("storage"), row.get("operation")): row[column] for row in rows}
     for codec, error in errors.items():
         bits = ":".join(map(str, codec.storage.bits[: max(codec.encoding.components, 2)]))
         packing = (None, f"{codec.storage.name} {bits}", PACKING_OPERATIONS[operation])

@@ -108,7 +108,9 @@ def gathered(folder: Path, done: Done) -> Found:
 
 
 def _clean(rows: Any) -> list[Row]:
-    return [plain_text(row) for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
+    """Flat rows of plain text and numbers, whatever the file holds."""
+    found = [plain_text(row) for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
+    return [{c: str(v) if isinstance(v, list | dict) else v for c, v in row.items()} for row in found]
 
 
 def _asked(facts: Row) -> list[str]:

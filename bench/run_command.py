@@ -17,14 +17,13 @@ from .doctor import machine
 from .output import say, say_skipped, whole_file, write
 from .progress import progress
 from .rendering import ranked
+from .report_command import IMAGES, MAPS, PAGE, write_report
 from .runs import Done, Row, Run, Step, opened, read_run, sources, unfinished
 from .short import SHORT
 from .sphere_maps import write_maps
 from .suite import SuiteRequest, listed_costs
 
 RESULTS = Path("results")
-# In a results folder.
-IMAGES, MAPS = "images", "sphere"
 # What a table needs all its rows for.
 IN_ORDER = {"render": ranked}
 # What the one sheet of a run shows: the seeds' methods, and the one that most people use today.
@@ -47,8 +46,10 @@ def run_command(request: SuiteRequest, output: Path | None) -> None:
             print(f"normalbench: {run.kept} of {len(steps)} steps are kept; the same command goes on", file=sys.stderr)
             raise
         _complete(run, request)
-    _show(read_run(folder))
+    done = read_run(folder)
+    _show(done)
     say(f"\nEvery figure, the pictures and the machine they come from: {folder}\n")
+    say(f"All of it on one page: {write_report(folder, done, folder / PAGE)}\n")
 
 
 def _measure(run: Run, steps: Sequence[Step]) -> None:

@@ -130,7 +130,7 @@ def passes_chart(rows: Sequence[Row]) -> Any:
         start += widths
     for at, row in enumerate(rows):
         spread = row.get(f"{FRAME}{SPREAD}")
-        text = f"{row[FRAME]:.3g}" + (f" (spread {spread:.2g})" if is_number(spread) else "")
+        text = f"{row[FRAME]:.4g}" + (f" (spread {spread:.3g})" if is_number(spread) else "")
         axis.annotate(text, (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
     axis.set_yticks(range(len(rows)), [str(row["pipeline"]) for row in rows], size=8)
     axis.invert_yaxis()

@@ -26,6 +26,10 @@ THEME = {
 }
 
 
+# How many letters of a name a chart has room for.
+LONGEST = 48
+
+
 @dataclass(frozen=True)
 class Drawing:
     """A chart that can be drawn.
@@ -50,6 +54,7 @@ def _settings(name: str) -> Iterator[None]:
 
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
         warnings.filterwarnings("ignore", message=".*missing from.*font")
+        warnings.filterwarnings("ignore", message="constrained_layout not applied")
         yield
 
 
@@ -60,13 +65,14 @@ def write(drawing: Drawing, *files: tuple[Path, str]) -> None:
 
 
 def as_text(text: str) -> str:
-    """Text whose dollars a chart does not read as mathematics."""
-    return text.replace("$", r"\$")
+    """Text as a chart has room for it, whose dollars it does not read as mathematics."""
+    short = text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    return short.replace("$", r"\$")
 
 
-def for_drawing(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Rows whose text has no dollars that would be read as mathematics."""
-    return [{k: as_text(v) if isinstance(v, str) else v for k, v in row.items()} for row in rows]
+def for_drawing(rows: Sequence[dict[str, Any]], but: Sequence[str] = ()) -> list[dict[str, Any]]:
+    """Rows whose text is as a chart can show it, but for columns that are no text to show."""
+    return [{k: as_text(v) if isinstance(v, str) and k not in but else v for k, v in row.items()} for row in rows]
 
 
 def inline(svg: str, drawing: Drawing) -> str:

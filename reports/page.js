@@ -81,6 +81,10 @@ setTheme(kept in THEMES ? kept : "");
 // Pictures: two beside each other under a divider, and their pixels around a place.
 const SIDES = ["left", "right"];
 
+function penOf(canvas) {
+  return canvas.getContext("2d", { willReadFrequently: true });
+}
+
 class Viewer {
   constructor(root) {
     this.root = root;
@@ -167,7 +171,7 @@ class Viewer {
     if (image !== this.image(side)) return;
     canvas.width = image.naturalWidth;
     canvas.height = image.naturalHeight;
-    canvas.getContext("2d", { willReadFrequently: true }).drawImage(image, 0, 0);
+    penOf(canvas).drawImage(image, 0, 0);
     canvas.setAttribute("aria-label", `${side} of the divider: ${image.alt}`);
     this.zoom();
   }
@@ -214,7 +218,7 @@ class Viewer {
     Object.assign(here, { left: share(left, from.width), top: share(top, from.height) });
     Object.assign(here, { width: share(wide, from.width), height: share(high, from.height) });
     this.one(`[data-said="${side}"]`).textContent = this.image(side).alt;
-    const values = from.getContext("2d").getImageData(this.place.x, this.place.y, 1, 1).data;
+    const values = penOf(from).getImageData(this.place.x, this.place.y, 1, 1).data;
     return `${side} ${Array.from(values.slice(0, 3)).join(" ")}`;
   }
 }

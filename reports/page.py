@@ -20,6 +20,8 @@ from .verdict import Contest, contests
 HERE = Path(__file__).parent
 # What a contest's cheapest codec is counted by.
 STAGE = "fragment"
+# Text of more letters than this may break into lines.
+WRAPPED = 24
 KINDS = {"normals": "the normals as they are"} | CAPTIONS
 
 
@@ -40,11 +42,11 @@ NAVIGATION = (
 
 @dataclass(frozen=True)
 class Cell:
-    """A table's cell: what is read, what it is sorted by, and whether it is a figure."""
+    """A table's cell: what is read, what it is sorted by, and its class in page.css."""
 
     text: str
     value: str
-    numeric: bool
+    style: str
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,9 @@ def table(title: str, rows: Sequence[Row], folded: bool = False) -> Table:
 
 def _cell(value: Any, numeric: bool) -> Cell:
     text = tables.text_of(value)
-    return Cell(text, repr(float(value)) if numeric and text else text, numeric)
+    if numeric:
+        return Cell(text, repr(float(value)) if text else "", "n")
+    return Cell(text, text, "long" if len(text) > WRAPPED else "")
 
 
 def instructions(rows: Sequence[Row]) -> tuple[dict[str, float], str]:

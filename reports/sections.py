@@ -100,7 +100,7 @@ def _with_domain(found: Found, rows: Sequence[Row]) -> list[Row]:
 
 def _having(rows: Sequence[Row], *columns: str) -> list[Row]:
     """Rows with a figure in each of the columns, for drawing."""
-    return for_drawing([row for row in rows if all(is_number(row.get(c)) for c in columns)])
+    return for_drawing([row for row in rows if all(is_number(row.get(c)) for c in columns)], FOR_PROGRAMS)
 
 
 def _one_backend(rows: Sequence[Row]) -> list[Row]:

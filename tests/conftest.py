@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 import sys
 
 import jax
@@ -54,6 +55,27 @@ def radv():
     if missing and not os.environ.get("CI"):
         pytest.skip(missing[0])
     assert not missing
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory):
+    """A run of the quality table as the command leaves it: its folder, and the finished process."""
+    folder = tmp_path_factory.mktemp("run") / "results"
+    arguments = ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
+    command = [sys.executable, "-m", "normalbench.bench", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return folder, done
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """The browser that reports are opened in; where CI is set, a machine without one fails the tests that need it."""
+    found = shutil.which("chromium")
+    if not found and not os.environ.get("CI"):
+        pytest.skip("no Chromium to open reports in; install it (Debian: apt-get install chromium)")
+    assert found, "no Chromium"
+    return found
 
 
 @pytest.fixture

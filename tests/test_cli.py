@@ -33,13 +33,21 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--help"], ["list"], ["quality", "--help"], ["render", "--help"], ["sweep", "--help"], ["depth", "--help"]],
+    [
+        ["--help"],
+        ["list"],
+        ["quality", "--help"],
+        ["render", "--help"],
+        ["sweep", "--help"],
+        ["depth", "--help"],
+        ["report", "--help"],
+    ],
 )
 def test_help_and_list_import_nothing_heavy(arguments):
     """JAX, pandas and matplotlib take a second each; `--help` and `list` answer without them."""
     program = (
         "import sys; from normalbench.bench import cli; sys.argv = ['normalbench', *sys.argv[1:]]; cli.main();"
-        "heavy = {'jax', 'pandas', 'matplotlib', 'scipy', 'PIL'} & set(sys.modules); print(heavy or 'light')"
+        "heavy = {'jax', 'pandas', 'matplotlib', 'scipy', 'PIL', 'jinja2'} & set(sys.modules); print(heavy or 'light')"
     )
     done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True)
     assert done.stdout.strip().endswith("light"), done.stdout[-200:]
@@ -109,14 +117,6 @@ def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
     out = run(*QUICK, "--backend", "jax")[1]
     assert all(len(line) <= width for line in out.splitlines()), out
     assert all(f"{row['angle_max_deg']:.4g}" in out and f"{row['psnr_db']:.4g}" in out for row in rows), out
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("run") / "results"
-    done = in_a_process("run", "--tables", "quality", "--count", "300000", "-o", str(folder))
-    assert done.returncode == 0, done.stderr
-    return folder, done
 
 
 def test_run_prints_the_seeds_table_beside_their_own(results):
