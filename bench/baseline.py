@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..reports.tables import to_json
-from .comparison import TIMED, difference, same
+from .comparison import NOT_COMPARED, difference, same
 from .errors import UsageError
 from .limits import row_name
 from .options import MEASURED, fields_of
@@ -26,7 +26,9 @@ def entry(table: str, asked: Mapping[str, Any], row: Row) -> Entry:
     """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked."""
     known = fields_of(*MEASURED[table])
     key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
-    (plain,) = json.loads(to_json([{name: figure for name, figure in row.items() if not name.startswith(TIMED)}]))
+    (plain,) = json.loads(
+        to_json([{name: figure for name, figure in row.items() if not name.startswith(NOT_COMPARED)}])
+    )
     return {"table": table, "key": key, "row": plain}
 
 
