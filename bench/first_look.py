@@ -1,7 +1,8 @@
 """A first look at a user's GLSL, in a process that may hang or die: `python -m normalbench.bench.first_look FILE`.
 
-Prints one line of JSON: `error`, what the compiler says; `broken`, where it is not finite; `missing`, that there is no
-GL device; else by domain how far a direction is off on average without any storage, and the worst with what it becomes.
+Prints one line of JSON: `error`, what the compiler says; `broken`, where it is not finite or does not end; `missing`,
+that there is no GL device; else by domain how far a direction is off on average without any storage, and the worst with
+what it becomes.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ..gbuffer.codec_passes import exact_values
 from ..gbuffer.device import NoDeviceError, device
 from ..gbuffer.shader import ShaderError
 from .errors import UsageError
+from .loops import endless
 from .user_encodings import read_encoding
 
 RANDOM = 4096
@@ -43,10 +45,13 @@ def first_look(path: Path) -> dict[str, Any]:
         encoding, gl = read_encoding(path), device()
         codes, _ = exact_values(gl, encoding, given, view, given)
         _, decoded = exact_values(gl, encoding, given, view, codes)
+        stuck = endless(gl, encoding, given, view)
     except NoDeviceError as error:
         return {"missing": str(error)}
     except (ShaderError, UsageError) as error:
         return {"error": str(error)}
+    if stuck:
+        return {"broken": stuck}
     return _judged(n, codes[:, : encoding.components], decoded[:, :3])
 
 

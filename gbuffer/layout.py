@@ -246,7 +246,10 @@ def read_layout(path: Path) -> Layout:
     except (OSError, ValueError, RecursionError) as error:
         # ValueError is bad text, bad TOML, and a number of thousands of digits.
         raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
-    return _from_data(path, data)
+    try:
+        return _from_data(path, data)
+    except LayoutError as error:
+        raise LayoutError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
 
 
 def _from_data(path: Path, data: dict[str, Any]) -> Layout:

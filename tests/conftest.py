@@ -85,6 +85,26 @@ def own_cache(monkeypatch, tmp_path):
     return tmp_path / "cache"
 
 
+OPENED: list[str] | None = None
+
+
+def _listen(event: str, arguments: tuple) -> None:
+    if OPENED is not None and event in ("open", "socket.connect", "socket.getaddrinfo", "urllib.Request"):
+        OPENED.append(str(arguments[0]))
+
+
+sys.addaudithook(_listen)
+
+
+@pytest.fixture
+def opened():
+    """Every file opened and every address asked for while a test runs."""
+    global OPENED
+    OPENED = []
+    yield OPENED
+    OPENED = None
+
+
 @pytest.fixture(autouse=True)
 def catalogue():
     """What a user's file adds to the catalogue is gone after the test."""

@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 import time
 from pathlib import Path
 
@@ -181,26 +180,6 @@ def test_a_truncated_glb_is_one_line(tmp_path, run, cut):
 
 
 # Fuzzing
-
-
-OPENED: list[str] | None = None
-
-
-def _listen(event: str, arguments: tuple) -> None:
-    if OPENED is not None and event in ("open", "socket.connect", "socket.getaddrinfo", "urllib.Request"):
-        OPENED.append(str(arguments[0]))
-
-
-sys.addaudithook(_listen)
-
-
-@pytest.fixture
-def opened():
-    """Every file opened and every address asked for while a test runs."""
-    global OPENED
-    OPENED = []
-    yield OPENED
-    OPENED = None
 
 
 def specimens(tmp_path: Path) -> dict[str, bytes]:

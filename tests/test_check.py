@@ -111,7 +111,7 @@ VALUES = st.one_of(st.text(max_size=8), st.integers(), st.floats(), st.booleans(
 NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_db", "x", "normals"])
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.one_of(st.text(max_size=200), st.lists(st.dictionaries(NAMES, VALUES, max_size=5), max_size=3)))
 def test_no_gates_give_a_traceback(tmp_path_factory, content):
     """Text of every kind, and gates of every value: they are read and refused, or measured."""
