@@ -11,7 +11,7 @@ from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
 from ..reports import drawings, markdown, page
 from ..reports.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
-from ..reports.verdict import LEADING, is_number
+from ..reports.verdict import LEADING, is_count, is_number
 from . import cost_sheets, seeds, sphere_maps
 from .cost import OPERATIONS
 from .output import check_folder, check_writable, say, whole_file
@@ -25,6 +25,8 @@ KINDS = ("encoded", "decoded", "error", "power")
 PREFERRED = (*seeds.PSNR_DB, "octahedral")
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
+# What no column counts up to.
+LARGEST = 2**63
 # Rows that another version wrote, or somebody's hand.
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
@@ -110,7 +112,12 @@ def gathered(folder: Path, done: Done) -> Found:
 def _clean(rows: Any) -> list[Row]:
     """Flat rows of plain text and numbers, whatever the file holds."""
     found = [plain_text(row) for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
-    return [{c: str(v) if isinstance(v, list | dict) else v for c, v in row.items()} for row in found]
+    return [{column: _flat(value) for column, value in row.items()} for row in found]
+
+
+def _flat(value: Any) -> Any:
+    is_odd = isinstance(value, list | dict) or (is_count(value) and abs(value) >= LARGEST)
+    return str(value) if is_odd else value
 
 
 def _asked(facts: Row) -> list[str]:
@@ -154,7 +161,7 @@ def _originals(folder: Path, rows: Sequence[Row]) -> dict[str, Path]:
 
 def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
     there = _files(folder)
-    bits = {CodecKey.of(row): int(row["bits"]) for row in rows if is_number(row.get("bits"))}
+    bits = {CodecKey.of(row): row["bits"] for row in rows if is_count(row.get("bits"))}
     for key, count in bits.items():
         path = there.get(sphere_maps.file_name(*key))
         kept = sphere_maps.read_map(path) if path else None

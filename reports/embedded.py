@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from .found import CodecKey, Found, PictureSet, Row
-from .verdict import is_number
+from .verdict import is_count, is_number
 
 # What all pictures of a page may take, in bytes of text.
 BUDGET = 10 * 2**20
@@ -93,7 +93,7 @@ def in_order(found: Found) -> list[PictureSet]:
 
 
 def _is_judged(row: Row) -> bool:
-    return is_number(row.get("bits")) and is_number(row.get("psnr_db"))
+    return is_count(row.get("bits")) and is_number(row.get("psnr_db"))
 
 
 def gallery(found: Found, budget: int = BUDGET) -> Gallery:

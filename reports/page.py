@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from .definitions import definition
 from .drawings import Drawing, inline
 from .found import Found, Row, whole
 from .pictures import CAPTIONS
-from .verdict import Contest, contests
+from .verdict import Contest, contests, is_number
 
 HERE = Path(__file__).parent
 # What a contest's cheapest codec is counted by.
@@ -90,17 +89,13 @@ def _cell(value: Any, numeric: bool) -> Cell:
 def instructions(rows: Sequence[Row]) -> tuple[dict[str, float], str]:
     """Instructions to encode and decode, together, by encoding: of the last GPU family in fragment shaders; and which
     family that is."""
-    usable = [r for r in rows if r.get("stage") == STAGE and r.get("encoding") and _is_count(r.get("instructions"))]
+    usable = [r for r in rows if r.get("stage") == STAGE and r.get("encoding") and is_number(r.get("instructions"))]
     family = usable[-1].get("family") if usable else ""
     both: dict[str, list[float]] = {}
     for row in usable:
         if row.get("family") == family:
             both.setdefault(row["encoding"], []).append(row["instructions"])
     return {name: sum(counts) for name, counts in both.items() if len(counts) == 2}, str(family)
-
-
-def _is_count(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def judged(found: Found) -> list[Contest]:
@@ -151,19 +146,9 @@ def drawings(found: Found) -> dict[str, list[Drawing]]:
     return made
 
 
-def html(found: Found, svgs: Mapping[str, str]) -> str:
-    """The page.
-
-    Args:
-        found: the run.
-        svgs: the drawings' SVG files, by name; one that is missing is not shown.
-    """
+def _template() -> Any:
     import jinja2
 
-    made = drawings(found)
-    parts = [_part(found, section, made[section.key], svgs) for section in sections.SECTIONS]
-    script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
         autoescape=True,
@@ -171,12 +156,25 @@ def html(found: Found, svgs: Mapping[str, str]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("page.html.j2").render(
+    return environment.get_template("page.html.j2")
+
+
+def html(found: Found, svgs: Mapping[str, str]) -> str:
+    """The page.
+
+    Args:
+        found: the run.
+        svgs: the drawings' SVG files, by name; one that is missing is not shown.
+    """
+    made = drawings(found)
+    parts = [_part(found, section, made[section.key], svgs) for section in sections.SECTIONS]
+    script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
+    titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
+    return _template().render(
         found=found,
-        contests=[
-            (contest, table(f"Who leads by what, in {contest.bits} bits on {contest.normals}", contest.rows))
-            for contest in judged(found)
-        ],
+        remarks=remarks(found),
+        nav=NAVIGATION,
+        contests=[(contest, table(title, contest.rows)) for contest, title in titled],
         family=instructions(found.tables.get("cost", ()))[1],
         parts={part.section.key: part for part in parts},
         angles=_charts(made["angles"], svgs),
@@ -186,11 +184,9 @@ def html(found: Found, svgs: Mapping[str, str]) -> str:
         strip=spheres.colour_strip(),
         gallery=embedded.gallery(found),
         kinds=KINDS,
-        nav=NAVIGATION,
-        remarks=remarks(found),
         script=script,
         style=style,
-        digest=digest,
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -99,8 +100,9 @@ def _with_domain(found: Found, rows: Sequence[Row]) -> list[Row]:
 
 
 def _having(rows: Sequence[Row], *columns: str) -> list[Row]:
-    """Rows with a figure in each of the columns, for drawing."""
-    return for_drawing([row for row in rows if all(is_number(row.get(c)) for c in columns)], FOR_PROGRAMS)
+    """Rows with a finite figure in each of the columns, for drawing."""
+    usable = [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
+    return for_drawing(usable, FOR_PROGRAMS)
 
 
 def _one_backend(rows: Sequence[Row]) -> list[Row]:

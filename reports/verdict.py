@@ -107,6 +107,11 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and value == value
 
 
+def is_count(value: Any) -> bool:
+    """Whether it is a whole number."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
 def named(row: Row) -> str:
     """A codec as a sentence names it."""
     rounding = f", {row['rounding']}" if row.get("rounding") not in (None, "nearest") else ""
@@ -135,10 +140,10 @@ def contests(
         costs: instructions by encoding, its encoding and decoding together.
         domains: by encoding what it can hold: "sphere", "hemisphere" or "view".
     """
-    usable = [row for row in quality if is_number(row.get(LEADING)) and is_number(row.get("bits"))]
+    usable = [row for row in quality if is_number(row.get(LEADING)) and is_count(row.get("bits"))]
     groups: dict[tuple[str, int], list[Row]] = {}
     for row in usable:
-        groups.setdefault((str(row.get("normals")), int(row["bits"])), []).append(row)
+        groups.setdefault((str(row.get("normals")), row["bits"]), []).append(row)
     made = [_contest(key, rows, images, costs, domains) for key, rows in groups.items()]
     sets = list(dict.fromkeys(normals for normals, _ in groups))
     return sorted(made, key=lambda c: (sets.index(c.normals), -c.codecs, c.bits))
