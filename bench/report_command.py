@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from ..encodings.catalogue import ENCODINGS
 from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
-from ..reports import drawings, markdown, page
+from ..reports import drawings, embedded, markdown, page
 from ..reports.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
 from ..reports.verdict import LEADING, is_count, is_number
 from . import cost_sheets, seeds, sphere_maps
@@ -60,15 +61,25 @@ def write_report(folder: Path, done: Done, target: Path) -> Path:
     beside = target.parent / CHARTS
     check_folder(beside)
     run = gathered(folder, done)
+    # Pictures are packed while charts are drawn; either takes a core for seconds.
+    with ThreadPoolExecutor(1) as pool:
+        packing = pool.submit(embedded.gallery, run)
+        svgs, failed = _drawn(run, beside)
+        gallery = packing.result()
+    with whole_file(target) as partial:
+        partial.write_text(page.html(run.with_remarks(failed), svgs, gallery), encoding="utf-8")
+    return target
+
+
+def _drawn(run: Found, folder: Path) -> tuple[dict[str, str], list[str]]:
+    """Every chart's SVG by name, and a sentence for each that cannot be drawn."""
     svgs, failed = {}, []
     for drawing in (one for several in page.drawings(run).values() for one in several):
         try:
-            svgs[drawing.name] = _written(drawing, beside)
+            svgs[drawing.name] = _written(drawing, folder)
         except UNEXPECTED as error:
             failed.append(f"The chart {drawing.name!r} cannot be drawn from these rows: {type(error).__name__}.")
-    with whole_file(target) as partial:
-        partial.write_text(page.html(run.with_remarks(failed), svgs), encoding="utf-8")
-    return target
+    return svgs, failed
 
 
 def _written(drawing: drawings.Drawing, folder: Path) -> str:

@@ -115,6 +115,10 @@ def passes_of(row: Row) -> dict[str, float]:
     return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
 
 
+def _short(milliseconds: Any) -> str:
+    return f"{milliseconds:.0f}" if milliseconds >= 100 else f"{milliseconds:.3g}"
+
+
 def passes_chart(rows: Sequence[Row]) -> Any:
     """What a frame's milliseconds go into: a bar for each pipeline, a part for each pass.
 
@@ -130,7 +134,7 @@ def passes_chart(rows: Sequence[Row]) -> Any:
         start += widths
     for at, row in enumerate(rows):
         spread = row.get(f"{FRAME}{SPREAD}")
-        text = f"{row[FRAME]:.4g}" + (f" (spread {spread:.3g})" if is_number(spread) else "")
+        text = _short(row[FRAME]) + (f" (spread {_short(spread)})" if is_number(spread) else "")
         axis.annotate(text, (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
     axis.set_yticks(range(len(rows)), [str(row["pipeline"]) for row in rows], size=8)
     axis.invert_yaxis()

@@ -159,12 +159,13 @@ def _template() -> Any:
     return environment.get_template("page.html.j2")
 
 
-def html(found: Found, svgs: Mapping[str, str]) -> str:
+def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> str:
     """The page.
 
     Args:
         found: the run.
         svgs: the drawings' SVG files, by name; one that is missing is not shown.
+        gallery: its pictures.
     """
     made = drawings(found)
     parts = [_part(found, section, made[section.key], svgs) for section in sections.SECTIONS]
@@ -182,7 +183,7 @@ def html(found: Found, svgs: Mapping[str, str]) -> str:
         directions=found.maps[0].directions if found.maps else 0,
         cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
         strip=spheres.colour_strip(),
-        gallery=embedded.gallery(found),
+        gallery=gallery,
         kinds=KINDS,
         script=script,
         style=style,
