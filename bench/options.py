@@ -54,7 +54,9 @@ class QualityOptions:
 
     encoding: Encodings = "all"
     storage: Annotated[str, Option("--storage", f"Storages, {Names}.")] = "rgba8"
-    rounding: Annotated[str, Option("--rounding", "nearest, truncate; comma-separated, or all.")] = "nearest"
+    rounding: Annotated[str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
+        "nearest"
+    )
     normals: Annotated[str, Option("--normals", f"Normal sets or files, {Names}.", files=True)] = "playground"
     backend: Backends = "jax,glsl"
     count: Count = DEFAULT_COUNT

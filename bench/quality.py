@@ -177,11 +177,7 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     """
     codecs = list(codecs)
     fit = [codec for codec in codecs if codec.fits]
-    left_out = [
-        f"{c.name}: {c.encoding.components} components, but {c.storage.title} has {c.storage.channels} channels"
-        for c in codecs
-        if not c.fits
-    ]
+    left_out = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
     if not fit:
         raise UsageError(left_out[0] if left_out else "nothing to measure")
     return fit, left_out
@@ -295,7 +291,7 @@ def image_round_trip(case: Case) -> RoundTrip:
         encoded, decoded = result.codes[..., :3].copy(), result.normals
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
-        code = case.codec.store(case.codec.encoding.encode(n, view))
+        code = case.codec.stored(n, view)
         decoded = image(case.codec.encoding.decode(code, view))
         encoded = image([*code, *[np.zeros_like(code.x)] * (3 - len(code))])
     encoded[..., case.codec.encoding.components + case.codec.encoding.sign_bits :] = UNUSED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from typing import TypeVar
 
@@ -10,21 +11,34 @@ from .encoding import Encoding
 from .errors import CatalogueError
 from .light_encoding import LightEncoding
 
-NAMES = (
+PAIRS = (
     "xyz",
     "xyz_renormalised",
     "xy",
     "xy_sign",
     "spherical",
     "spherical_lut",
+    "latitude_longitude",
     "spheremap",
     "spheremap_classic",
     "cryengine3",
     "stereographic",
     "per_pixel_view",
     "octahedral",
+    "hemi_octahedral",
+    "signed_octahedral",
+    "equal_area_octahedral",
+    "cube",
+    "warped_cube",
+    "tetrahedral",
     "best_fit",
+    "best_fit_searched",
+    "spherical_fibonacci",
+    "optimised_rings",
 )
+# Encodings that are there with precise rounding as well: of the codes around, the one that decodes nearest.
+PRECISE = {f"{name}_precise": name for name in ("octahedral", "equal_area_octahedral")}
+NAMES = (*PAIRS, *PRECISE)
 LIGHT_NAMES = (
     "rgba32f",
     "rgba16f",
@@ -60,6 +74,12 @@ def _loaded(folder: str, name: str, kind: type[E]) -> E:
     return encoding
 
 
-ENCODINGS: dict[str, Encoding] = _load("normals", NAMES, Encoding)
+def _precise(name: str, encoding: Encoding) -> Encoding:
+    title, citation = f"{encoding.title}, precise", f"{encoding.citation}; rounding: Z. Cigolle et al., JCGT 3(2), 2014"
+    return replace(encoding, name=name, title=title, citation=citation, is_precise=True, functions=encoding.prefix)
+
+
+ENCODINGS: dict[str, Encoding] = _load("normals", PAIRS, Encoding)
+ENCODINGS |= {name: _precise(name, ENCODINGS[pair]) for name, pair in PRECISE.items()}
 LIGHT_ENCODINGS: dict[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
 DEPTH_ENCODINGS: dict[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from functools import reduce
 
 from .encoding import Encoding
-from .storage import Storage, store_number
-from .vec import Vec3
+from .storage import Storage, numbers_around, store_number
+from .vec import Vec3, dot, select
+
+# A number that is not one of few values is not laid into fewer bits.
+LEAST_BITS = 4
 
 
 @dataclass(frozen=True)
 class Codec:
-    """An encoding, the storage of its components, and how that rounds: "nearest" or "truncate"."""
+    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`."""
 
     encoding: Encoding
     storage: Storage
@@ -19,26 +24,76 @@ class Codec:
 
     @property
     def name(self) -> str:
-        return f"{self.encoding.name}/{self.storage.name}" + ("/truncate" if self.rounding == "truncate" else "")
+        return f"{self.encoding.name}/{self.storage.name}" + ("" if self.rounding == "nearest" else f"/{self.rounding}")
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can.
+
+        Sign bits are kept beside it, in the depth's sign.
+        """
+        encoding, storage = self.encoding, self.storage
+        if encoding.components > storage.channels:
+            return f"{encoding.components} components, but {storage.title} has {storage.channels} channels"
+        if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
+            return f"{storage.title} is of floats, and {self._rounds} is for fixed point"
+        if encoding.is_precise and self.rounding != "nearest":
+            return "it is rounded precisely, not otherwise"
+        for channel in range(encoding.components):
+            levels, bits = encoding.levels_of(channel), storage.bits[channel]
+            if levels > storage.levels(channel):
+                return f"number {channel + 1} has {levels} values, more than {storage.title} tells apart"
+            if not levels and bits < LEAST_BITS:
+                return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
+        return None
+
+    @property
+    def _rounds(self) -> str:
+        return "precise rounding" if self.encoding.is_precise else self.rounding
 
     @property
     def fits(self) -> bool:
-        """Whether the storage has a channel for each component. Sign bits are kept beside it, in the depth's sign."""
-        return self.encoding.components <= self.storage.channels
+        """Whether the storage can hold what the encoding makes."""
+        return self.misfit is None
 
     @property
     def bits(self) -> int:
         """The bits it occupies: of the channels used, and one for each sign bit."""
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
+    def rounding_of(self, component: int) -> str:
+        """How a component rounds: one of few values to the nearest, whatever the others do."""
+        return "nearest" if self.encoding.levels_of(component) else self.rounding
+
     def store(self, code):
         """A code (Vec2 or Vec3) as it comes back from the storage. A sign bit comes back as it was."""
         stored = (
-            store_number(c, self.storage, i, self.rounding) if i < self.encoding.components else c
+            store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else c
             for i, c in enumerate(code)
         )
         return type(code)(*stored)
 
+    def stored(self, n: Vec3, view: Vec3):
+        """The code of unit normals as it comes back from the storage."""
+        code = self.encoding.encode(n, view)
+        return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
+
+    def _nearest_of(self, code, n: Vec3, view: Vec3):
+        """Of the codes around, every number rounded down or up, the one that is decoded nearest to n."""
+        around = [
+            (c,) * 2 if self.encoding.levels_of(i) else numbers_around(c, self.storage, i) for i, c in enumerate(code)
+        ]
+        codes = [type(code)(*numbers) for numbers in itertools.product(*around)]
+        # Squared distances, not cosines: near 1 those no longer tell fine codes apart.
+        misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
+        return reduce(_nearer, zip((dot(miss, miss) for miss in misses), codes, strict=True))[1]
+
     def round_trip(self, n: Vec3, view: Vec3) -> Vec3:
         """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised."""
-        return self.encoding.decode(self.store(self.encoding.encode(n, view)), view)
+        return self.encoding.decode(self.stored(n, view), view)
+
+
+def _nearer(a, b):
+    """Of two codes with their distance the nearer one, and the first where they are as near."""
+    is_nearer = b[0] < a[0]
+    return select(is_nearer, b[0], a[0]), select(is_nearer, b[1], a[1])

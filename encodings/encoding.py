@@ -33,7 +33,12 @@ class Encoding:
         ulps_reason: why it is that many.
         sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.
+        levels: for each component how many values it may have, from -1 to 1 evenly spread; 0, as where none are given,
+            for a number like any other.
+        is_precise: of the codes around, every component rounded down or up, the one that decodes nearest is stored.
+        searches: the encoder takes the best of several codes; where two are as good the languages may differ.
         tables: makes the look-up tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
+        functions: what the names of its GLSL functions begin with, of a variant that shares another's file.
     """
 
     name: str
@@ -47,5 +52,20 @@ class Encoding:
     ulps: tuple[int, int]
     ulps_reason: str
     sign_bits: int = 0
+    levels: tuple[int, ...] = ()
+    is_precise: bool = False
+    searches: bool = False
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     tables: Callable[[], Mapping[str, Any]] = dict
+    functions: str = ""
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
+
+    def levels_of(self, component: int) -> int:
+        """How many values a number of its code has; 0 for one like any other, 2 for a sign bit."""
+        if component >= self.components:
+            return 2
+        return self.levels[component] if self.levels else 0

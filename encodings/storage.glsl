@@ -1,5 +1,6 @@
 // Rounding in the shader, beside storage.py, for a device that does not round as the codec asks. The kinds of format
-// are UNORM 0, SNORM 1, half 2, and other floats 3, which the shader leaves to the device.
+// are UNORM 0, SNORM 1, half 2, small floats 3, and 32-bit floats 4, which stay as they are. The ways to round are
+// nearest 0, truncate 1, and truncate_half 2.
 #include "sign.glsl"
 
 float round_half(float x, bool truncates) {
@@ -16,11 +17,38 @@ float round_half(float x, bool truncates) {
     return abs(x) < exp2(-14.0) ? small : uintBitsToFloat(sign | magnitude);
 }
 
-// A texel's number as a format of this kind keeps it; scale is the integer that stands for 1.
-float round_number(float x, int kind, float scale, bool truncates) {
-    if (kind >= 2) return kind == 2 ? round_half(x, truncates) : x;
-    float product = clamp(x, kind == 0 ? 0.0 : -1.0, 1.0) * scale;
-    return (truncates ? trunc(product) : roundEven(product)) / scale;
+// An unsigned float of `bits` bits, five of them the exponent's: 11 or 10.
+float round_small_float(float x, int bits, bool truncates) {
+    int cut = 23 - (bits - 5);
+    uint word = floatBitsToUint(x), unit_bits = 1u << cut;
+    if (x != x || word == 0x7F800000u) return x;
+    if (!(x > 0.0)) return 0.0;
+    float step = exp2(float(cut - 23 - 14)), most = exp2(16.0) - exp2(float(cut - 23 + 15));
+    float small = (truncates ? floor(x / step) : roundEven(x / step)) * step;
+    uint half_unit = truncates ? 0u : (unit_bits >> 1) - 1u + (word >> cut & 1u);
+    float normal = uintBitsToFloat((word + half_unit) & ~(unit_bits - 1u));
+    return min(x < exp2(-14.0) ? small : normal, most);
+}
+
+// x in [-1, 1] as a whole number, `scale` standing for 1.
+float round_whole(float x, float scale, int rounding) {
+    if (rounding == 0) return roundEven(x * scale);
+    return clamp(trunc(x * (rounding == 2 ? scale + 0.5 : scale)), -scale, scale);
+}
+
+// The two numbers that a fixed-point channel can hold around c, the lower one first.
+vec2 numbers_around(float c, float scale, bool is_biased) {
+    float below = floor((is_biased ? clamp(c * 0.5 + 0.5, 0.0, 1.0) : clamp(c, -1.0, 1.0)) * scale);
+    vec2 texels = vec2(below, min(below + 1.0, scale)) / scale;
+    return is_biased ? texels * 2.0 - 1.0 : texels;
+}
+
+// A texel's number as a format of this kind keeps it; scale is the integer that stands for 1, bits are the channel's.
+float round_number(float x, int kind, float scale, int bits, int rounding) {
+    if (kind == 2) return round_half(x, rounding != 0);
+    if (kind == 3) return round_small_float(x, bits, rounding != 0);
+    if (kind == 4) return x;
+    return round_whole(clamp(x, kind == 0 ? 0.0 : -1.0, 1.0), scale, rounding) / scale;
 }
 
 // The unsigned integer that stands for c in [0, 1] where `scale` stands for 1. A signed c in [-1, 1] lies in sign and
@@ -63,20 +91,55 @@ uint part_of(uint byte, int first, int bits, int channel) {
 }
 
 #ifdef STORAGE_KIND
-// Of one storage: STORAGE_KIND is its kind, STORAGE_SCALE the integers that stand for 1, by channel; STORAGE_TRUNCATE is
-// 1 for rounding toward zero, SHADER_ROUNDS is 1 where the shader must round before the write.
+// Of one storage: STORAGE_KIND is its kind, STORAGE_BIASED 1 where a number c is kept as c/2 + 1/2; by channel
+// STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PACKED is 1 where numbers are integers across
+// channels of 8 bits. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
+const float storage_scale[] = STORAGE_SCALE;
+const int storage_bits[] = STORAGE_BITS, storage_rounding[] = STORAGE_ROUNDING;
 
 vec4 round_texel(vec4 texel) {
-    const float scales[] = STORAGE_SCALE;
-    for (int i = 0; i < 4; ++i) texel[i] = round_number(texel[i], STORAGE_KIND, scales[i], STORAGE_TRUNCATE != 0);
+    for (int i = 0; i < 4; ++i)
+        texel[i] = round_number(texel[i], STORAGE_KIND, storage_scale[i], storage_bits[i], storage_rounding[i]);
     return texel;
 }
 
-// Numbers in [-1, 1] to what is written to the target, and back from what is read.
+vec4 biased(vec4 code) { return STORAGE_BIASED != 0 ? code * 0.5 + 0.5 : code; }
+vec4 unbiased(vec4 texel) { return STORAGE_BIASED != 0 ? texel * 2.0 - 1.0 : texel; }
+
+#if STORAGE_PACKED
+const float BYTE_SCALE = exp2(8.0) - 1.0;
+// A signed number's integer is `scale` more than itself, so that -1 is 0.
+const uint PACKED_ZERO = STORAGE_KIND == 1 ? 1u : 0u;
+
 vec4 to_texel(vec4 code) {
-    vec4 texel = STORAGE_KIND == 0 ? code * 0.5 + 0.5 : code;
-    return SHADER_ROUNDS != 0 ? round_texel(texel) : texel;
+    vec4 numbers = biased(code);
+    uvec4 bytes = uvec4(0u);
+    int first = 0;
+    for (int i = 0; i < STORAGE_CHANNELS; ++i) {
+        float scale = storage_scale[i], number = clamp(numbers[i], STORAGE_KIND == 0 ? 0.0 : -1.0, 1.0);
+        uint integer = uint(int(round_whole(number, scale, storage_rounding[i])) + int(PACKED_ZERO) * int(scale));
+        for (int c = 0; c < 4; ++c) bytes[c] |= byte_of(integer, first, storage_bits[i], c);
+        first += storage_bits[i];
+    }
+    return vec4(bytes) / BYTE_SCALE;
 }
 
-vec4 from_texel(vec4 texel) { return STORAGE_KIND == 0 ? texel * 2.0 - 1.0 : texel; }
+vec4 from_texel(vec4 texel) {
+    uvec4 bytes = uvec4(texel * BYTE_SCALE + 0.5);
+    const float steps[] = STORAGE_STEP;
+    vec4 numbers = vec4(0.0);
+    int first = 0;
+    for (int i = 0; i < STORAGE_CHANNELS; ++i) {
+        uint integer = 0u;
+        for (int c = 0; c < 4; ++c) integer |= part_of(bytes[c], first, storage_bits[i], c);
+        numbers[i] = float(int(integer) - int(PACKED_ZERO) * int(storage_scale[i])) * steps[i];
+        first += storage_bits[i];
+    }
+    return unbiased(numbers);
+}
+#else
+// Numbers in [-1, 1] to what is written to the target, and back from what is read.
+vec4 to_texel(vec4 code) { return SHADER_ROUNDS != 0 ? round_texel(biased(code)) : biased(code); }
+vec4 from_texel(vec4 texel) { return unbiased(texel); }
+#endif
 #endif

@@ -6,8 +6,12 @@ integer, NaN takes the lower end; what comes back is the integer times the float
 OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (tests/test_storage.py).
 
 Half floats round to nearest even, or are cut off: GL allows both, and both ship. To truncate is to cut off the texel:
-UNORM goes down, which is toward -1 in the code; SNORM and floats go toward zero. Where a device does not round as a
-codec asks, the shader rounds before the write (`storage.glsl`), and the row says so.
+UNORM goes down, which is toward -1 in the code; SNORM and floats go toward zero. `truncate_half` is what engines that
+pack by hand write to make up for that, floor(x (2^n - 1/2)). Where a device does not round as a codec asks, the shader
+rounds before the write (`storage.glsl`), and the row says so.
+
+Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes. A
+signed one of n bits is then the integer of SNORM above plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from types import MappingProxyType
 
 from .vec import jnp, maximum, minimum, select, sign_bit
 
-ROUNDINGS = ("nearest", "truncate")
+ROUNDINGS = ("nearest", "truncate", "truncate_half")
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
@@ -34,6 +38,7 @@ class Storage:
         bits: bits of each channel, in channel order.
         internal_format: the GL enum.
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
+        is_packed: numbers of so many bits lie as integers across the channels of RGBA8.
     """
 
     name: str
@@ -42,10 +47,22 @@ class Storage:
     bits: tuple[int, ...]
     internal_format: int
     curved: int = 0
+    is_packed: bool = False
 
     @property
     def channels(self) -> int:
+        """How many numbers it holds."""
         return len(self.bits)
+
+    @property
+    def is_biased(self) -> bool:
+        """Whether a number c is stored as c/2 + 1/2: the format has no sign."""
+        return self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
+
+    @property
+    def target(self) -> Storage:
+        """The format of the render target: another one where numbers are laid across its channels."""
+        return STORAGES["rgba8"] if self.is_packed else self
 
     def scale(self, channel: int) -> int:
         """The integer that stands for 1 in a channel; 1 for float formats."""
@@ -53,10 +70,23 @@ class Storage:
             return 1
         return 2 ** (self.bits[channel] - (self.kind == "snorm")) - 1
 
+    def levels(self, channel: int) -> int:
+        """How many values of a number in [-1, 1] a channel tells apart at least, evenly spread ones."""
+        if self.kind != "float":
+            return self.scale(channel) * (1 + (self.kind == "snorm")) + 1
+        mantissa = {32: 23, 16: 10}.get(self.bits[channel], self.bits[channel] - 5)
+        return 2 ** (mantissa + 1 - self.is_biased)
 
+
+def _packed(name: str, title: str, kind: str, *bits: int) -> Storage:
+    return Storage(name, title, kind, bits, RGBA8, is_packed=True)
+
+
+RGBA8 = 0x8058
+R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
 STORAGES: Mapping[str, Storage] = MappingProxyType(
     {
-        "rgba8": Storage("rgba8", "RGBA8", "unorm", (8, 8, 8, 8), 0x8058),
+        "rgba8": Storage("rgba8", "RGBA8", "unorm", (8, 8, 8, 8), RGBA8),
         "rgba8_snorm": Storage("rgba8_snorm", "RGBA8 signed", "snorm", (8, 8, 8, 8), 0x8F97),
         "rg8": Storage("rg8", "RG8", "unorm", (8, 8), 0x822B),
         "rg8_snorm": Storage("rg8_snorm", "RG8 signed", "snorm", (8, 8), 0x8F95),
@@ -66,36 +96,49 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rg16f": Storage("rg16f", "RG16F", "float", (16, 16), 0x822F),
         "rgba16f": Storage("rgba16f", "RGBA16F", "float", (16, 16, 16, 16), 0x881A),
         "rgba32f": Storage("rgba32f", "RGBA32F", "float", (32, 32, 32, 32), 0x8814),
+        "r11g11b10f": R11G11B10F,
+        "rgb8_8_8_1": _packed("rgb8_8_8_1", "8:8:1 in RGB8", "unorm", 8, 8, 1),
+        "rgb8_10_10_2": _packed("rgb8_10_10_2", "10:10:2 in RGB8", "unorm", 10, 10, 2),
+        "rgb8_10_10_3": _packed("rgb8_10_10_3", "10:10:3 in RGB8", "unorm", 10, 10, 3),
+        "rgb8_12_12": _packed("rgb8_12_12", "12:12 in RGB8", "unorm", 12, 12),
+        "rgb8_12_12_snorm": _packed("rgb8_12_12_snorm", "12:12 signed in RGB8", "snorm", 12, 12),
+        "rgba8_11_11_10": _packed("rgba8_11_11_10", "11:11:10 in RGBA8", "unorm", 11, 11, 10),
+        "rgba8_11_10_11": _packed("rgba8_11_10_11", "11:10:11 in RGBA8", "unorm", 11, 10, 11),
+        "rgba8_16_16": _packed("rgba8_16_16", "16:16 in RGBA8", "unorm", 16, 16),
     }
 )
 
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
-R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
 # Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.
 SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)
 
 # Every format that a render target may have; normals are measured in those above.
 FORMATS: Mapping[str, Storage] = MappingProxyType(
     {
-        **STORAGES,
+        **{name: storage for name, storage in STORAGES.items() if not storage.is_packed},
         "r8": Storage("r8", "R8", "unorm", (8,), 0x8229),
         "r32f": R32F,
-        "r11g11b10f": R11G11B10F,
     }
 )
 
 
+def rounded(x, scale: int, rounding: str = "nearest"):
+    """x in [-1, 1] (float32, any shape) as a whole number, `scale` standing for 1: nearest, or cut off toward zero, or
+    cut off of x (scale + 1/2)."""
+    if rounding == "nearest":
+        return jnp.round(x * jnp.float32(scale))
+    widened = jnp.trunc(x * jnp.float32(scale + 0.5 if rounding == "truncate_half" else scale))
+    return minimum(maximum(widened, -float(scale)), float(scale))
+
+
 def store_unorm(x, scale: int, rounding: str = "nearest"):
     """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
-    product = minimum(maximum(x, 0.0), 1.0) * jnp.float32(scale)
-    code = jnp.round(product) if rounding == "nearest" else jnp.floor(product)
-    return code * jnp.float32(1.0 / scale)
+    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * jnp.float32(1.0 / scale)
 
 
 def store_snorm(x, scale: int, rounding: str = "nearest"):
     """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
-    product = minimum(maximum(x, -1.0), 1.0) * jnp.float32(scale)
-    code = jnp.round(product) if rounding == "nearest" else jnp.trunc(product)
+    code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding)
     # An integer has no negative zero.
     return code.astype(jnp.int32).astype(jnp.float32) * jnp.float32(1.0 / scale)
 
@@ -159,9 +202,19 @@ def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
 
 def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
     """One number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
-    if storage.kind == "unorm":
+    # What is laid across channels is a whole number as UNORM and SNORM have it; its bytes are exact.
+    if storage.is_biased:
         return store_texel(c * 0.5 + 0.5, storage, channel, rounding) * 2.0 - 1.0
     return store_texel(c, storage, channel, rounding)
+
+
+def numbers_around(c, storage: Storage, channel: int):
+    """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
+    scale = storage.scale(channel)
+    x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
+    below = jnp.floor(x * jnp.float32(scale))
+    texels = (step * jnp.float32(1.0 / scale) for step in (below, minimum(below + 1.0, float(scale))))
+    return tuple(texel * 2.0 - 1.0 if storage.is_biased else texel for texel in texels)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,12 @@ vec3 unit(vec3 v) { return dot(v, v) > TINY ? v * inversesqrt(dot(v, v)) : vec3(
 // 1 or -1, and 1 for either zero, so that a fold has no seam of zeros.
 vec2 sign_not_zero(vec2 v) { return vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0); }
 
+float sign_not_zero(float v) { return v < 0.0 ? -1.0 : 1.0; }
+
+// The number in [-1, 1] that stands for a whole number from 0 to levels - 1, and back to the nearest one.
+float number_of(float index, int levels) { return index * (2.0 / float(levels - 1)) - 1.0; }
+float index_of(float number, int levels) { return floor((number * 0.5 + 0.5) * float(levels - 1) + 0.5); }
+
 // v itself, or (0, 0, 1) where it is no direction: zero, NaN or infinite.
 vec3 direction_or_forward(vec3 v) {
     float length2 = dot(v, v);

@@ -203,11 +203,21 @@ def unit(v: V) -> V:
     return select(length2 > TINY, v * inversesqrt(length2), first_axis)
 
 
-def sign_not_zero(v):
+def sign_not_zero(v: Any) -> Any:
     """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
     if isinstance(v, Vec2 | Vec3):
         return type(v)(*(sign_not_zero(c) for c in v))
     return jnp.where(v < 0.0, -1.0, 1.0)
+
+
+def number_of(index, levels: int):
+    """The number in [-1, 1] that stands for a whole number from 0 to levels - 1."""
+    return index * (2.0 / (levels - 1)) - 1.0
+
+
+def index_of(number, levels: int):
+    """The whole number (a float) from 0 to levels - 1 that a number in [-1, 1] stands for, the nearest one."""
+    return jnp.floor((number * 0.5 + 0.5) * (levels - 1) + 0.5)
 
 
 def direction_or_forward(v: Vec3) -> Vec3:

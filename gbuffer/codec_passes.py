@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 from ..encodings import vec
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
-from ..encodings.storage import R32F, STORAGES, Storage
+from ..encodings.storage import R32F, ROUNDINGS, STORAGES, Storage
 from .device import Device, bind, read_pixels
 from .shader import ShaderError, read_shader
 
@@ -28,31 +29,47 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
     size = encoding.components + encoding.sign_bits
     code, text = f"vec{size}", re.sub(r"\s+", " ", read_shader(encoding.glsl))
     for result, verb, given in ((code, "encode", "vec3 n"), ("vec3", "decode", f"{code} e")):
-        signature = f"{result} {encoding.name}_{verb}({given}, vec3 view)"
-        if not re.search(rf"\b{result} {encoding.name}_{verb} ?\( ?{given.split()[0]}\b", text):
+        signature = f"{result} {encoding.prefix}_{verb}({given}, vec3 view)"
+        if not re.search(rf"\b{result} {encoding.prefix}_{verb} ?\( ?{given.split()[0]}\b", text):
             raise ShaderError(f"{encoding.glsl}: no function {signature}")
     return {
         "CODE": code,
-        "ENCODE": f"{encoding.name}_encode",
-        "DECODE": f"{encoding.name}_decode",
+        "ENCODE": f"{encoding.prefix}_encode",
+        "DECODE": f"{encoding.prefix}_decode",
         "COMPONENTS": encoding.components,
         "SIGN_BITS": encoding.sign_bits,
+        "LEVELS": levels_of(encoding),
+        "PRECISE": int(encoding.is_precise),
         **vec.CONSTANTS,
         **encoding.constants,
     }
 
 
+def levels_of(encoding: Encoding) -> tuple[int, ...]:
+    """How many values each of three numbers of a code has."""
+    return tuple(encoding.levels_of(component) for component in range(3))
+
+
 def storage_kind(storage: Storage) -> int:
-    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, other floats 3."""
-    return KINDS.index(storage.kind) + (storage.kind == "float" and storage.bits[0] != 16)
+    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4."""
+    if storage.kind == "float":
+        return {16: 2, 32: 4}.get(storage.bits[0], 3)
+    return KINDS.index(storage.kind)
 
 
-def storage_defines(storage: Storage, rounding: str, shader_rounds: bool) -> dict[str, object]:
-    """The macros that make `storage.glsl` speak of a storage."""
+def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: bool) -> dict[str, object]:
+    """The macros that make `storage.glsl` speak of a storage; `roundings` is of each of its channels."""
+    channels = [i % storage.channels for i in range(4)]
+    scales = [storage.scale(i) for i in channels]
     return {
         "STORAGE_KIND": storage_kind(storage),
-        "STORAGE_SCALE": tuple(float(storage.scale(i % storage.channels)) for i in range(4)),
-        "STORAGE_TRUNCATE": int(rounding == "truncate"),
+        "STORAGE_BIASED": int(storage.is_biased),
+        "STORAGE_PACKED": int(storage.is_packed),
+        "STORAGE_CHANNELS": storage.channels,
+        "STORAGE_SCALE": tuple(float(scale) for scale in scales),
+        "STORAGE_STEP": tuple(float(np.float32(1 / scale)) for scale in scales),
+        "STORAGE_BITS": tuple(storage.bits[i] for i in channels),
+        "STORAGE_ROUNDING": tuple(ROUNDINGS.index(roundings[i]) for i in channels),
         "SHADER_ROUNDS": int(shader_rounds),
     }
 
@@ -77,11 +94,12 @@ class CodecPasses:
 
     def __init__(self, device: Device, codec: Codec):
         self._device, self._codec = device, codec
-        native = device.native_rounding(codec.storage)
-        self.rounded_by = "device" if native == codec.rounding else "shader"
+        is_native = not codec.storage.is_packed and device.native_rounding(codec.storage) == codec.rounding
+        self.rounded_by = "device" if is_native else "shader"
+        roundings = [codec.rounding_of(channel) for channel in range(codec.storage.channels)]
         defines = {
             **encoding_defines(codec.encoding),
-            **storage_defines(codec.storage, codec.rounding, self.rounded_by == "shader"),
+            **storage_defines(codec.storage, roundings, self.rounded_by == "shader"),
         }
         names = {"ENCODING": codec.encoding.glsl}
         with ExitStack() as stack:
@@ -104,7 +122,7 @@ class CodecPasses:
             FormatError: the device cannot render to the storage's format.
         """
         size = (normals.shape[1], normals.shape[0])
-        device, storage = self._device, self._codec.storage
+        device, storage = self._device, self._codec.storage.target
         with ExitStack() as stack:
             given = {"normals": normals, "views": views}
             sources = {name: device.owned(stack, device.upload(pixels)) for name, pixels in given.items()}

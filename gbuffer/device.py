@@ -12,13 +12,15 @@ from typing import Any, Protocol, TypeVar
 import moderngl
 import numpy as np
 
-from ..encodings.storage import ROUNDINGS, STORAGES, Storage, store_number
+from ..encodings.storage import STORAGES, Storage, store_texel
 from ..encodings.vec import jnp
 from .raw import DepthBuffer, samples_of
 from .shader import ShaderError, Source
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
+# How a device's own conversion may round.
+NATIVE_ROUNDINGS = ("nearest", "truncate")
 # More than any one frame uses: the one that was asked for longest ago is released.
 KEPT_PROGRAMS = 64
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
@@ -246,14 +248,12 @@ class Device:
             return "nearest"
         # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.
         steps = 4085
-        values = np.linspace(-1.0 if storage.kind != "unorm" else 0.0, 1.0, steps + 1, dtype=np.float32)
+        values = np.linspace(0.0 if storage.is_biased else -1.0, 1.0, steps + 1, dtype=np.float32)
         pixels = np.repeat(values[None, :, None], 4, axis=2)
         got = self.through(pixels, storage)[0, :, 0]
-        decoded = got * 2 - 1 if storage.kind == "unorm" else got
-        numbers = values * 2 - 1 if storage.kind == "unorm" else values
-        for rounding in ROUNDINGS:
-            expected = np.asarray(store_number(jnp.asarray(numbers), storage, 0, rounding))
-            if np.array_equal(decoded, expected):
+        for rounding in NATIVE_ROUNDINGS:
+            expected = np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
+            if np.array_equal(got, expected):
                 return rounding
         return "other"
 

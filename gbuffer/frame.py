@@ -12,10 +12,11 @@ from typing import Any
 import moderngl
 import numpy as np
 
+from ..encodings.catalogue import ENCODINGS
 from ..encodings.light_encoding import LightEncoding
-from ..encodings.storage import FORMATS, R32F, Storage
+from ..encodings.storage import FORMATS, R32F, ROUNDINGS, Storage
 from . import materials
-from .codec_passes import encoding_defines, storage_kind
+from .codec_passes import encoding_defines, levels_of, storage_kind
 from .depth_passes import depth_defines
 from .device import Device, FormatError, bind
 from .layout import COMPONENTS, PACKINGS, Layout
@@ -278,7 +279,11 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
         "TARGETS": len(storages),
         "TARGET_KIND": tuple(storage_kind(storage) for storage in storages),
         "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
+        "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
         "TARGET_ROUNDS": rounds,
+        "NORMAL_LEVELS": levels_of(ENCODINGS[layout.encoding]),
+        "NORMAL_SCALE": layout.normal_scales,
+        "NORMAL_BIASED": int(layout.codec.storage.is_biased),
         "PACK_WIDEN": widen,
         "PACK_BIAS": bias,
         "HAS_DEPTH": int("depth" in layout.components),
@@ -290,6 +295,6 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
 
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
-    """For each target 0 where the device rounds as asked, else what the shader does: 1 nearest, 2 truncate."""
-    asked = 2 if layout.rounding == "truncate" else 1
+    """For each target 0 where the device rounds as asked, else one more than how `storage.glsl` counts the way."""
+    asked = ROUNDINGS.index(layout.rounding) + 1
     return tuple(0 if device.native_rounding(t.storage) == layout.rounding else asked for t in layout.targets)

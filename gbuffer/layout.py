@@ -168,8 +168,20 @@ class Layout:
         least = LEAST_BITS.get(component, 2 if signed_depth else 1)
         if bits < least:
             raise LayoutError(f"{place}: {component} needs {least} bits, not {bits}")
-        if storage.kind == "float" and bits < 16 and (component.startswith(("normal", "motion")) or signed_depth):
+        if storage.kind == "float" and bits < 16 and signed_depth:
             raise LayoutError(f"{place}: {storage.title} has no sign, which {component} needs")
+        if component.startswith("normal."):
+            self._check_normal(place, component, storage, bits)
+
+    def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
+        """Raises LayoutError where a number of the normal's code is not kept as the encoding needs it."""
+        encoding = ENCODINGS[self.encoding]
+        if encoding.is_precise and (storage.kind == "float" or self.rounding != "nearest" or self.packing != "nearest"):
+            raise LayoutError(f"{place}: {self.encoding} is rounded precisely, in fixed point and not otherwise")
+        levels = encoding.levels_of("xyz".index(component[-1]))
+        room = storage.levels(0) if storage.kind == "float" else 2**bits - (storage.kind == "snorm")
+        if levels > room:
+            raise LayoutError(f"{place}: {component} has {levels} values, more than {bits} bits tell apart")
 
     @property
     def summary(self) -> str:
@@ -202,6 +214,16 @@ class Layout:
         return sum(taken) + ENCODINGS[self.encoding].sign_bits
 
     @property
+    def normal_scales(self) -> tuple[float, ...]:
+        """The integers that stand for 1 in the first three numbers of the normal's code; 1 where there is none."""
+        found = {w.component: w for w in self.words if "normal" in w.component}
+        words = [found.get(f"normal.{axis}") for axis in "xyz"]
+        return tuple(float(self._scale(word)) if word else 1.0 for word in words)
+
+    def _scale(self, word: Word) -> int:
+        return 2**word.bits - 1 if word.bits else self.targets[word.target].storage.scale(word.first)
+
+    @property
     def bytes_per_pixel(self) -> int:
         """Of its targets and of depth and stencil, at one sample."""
         return sum(sum(target.storage.bits) for target in self.targets) // 8 + DEPTH_STENCIL_BYTES
@@ -210,12 +232,21 @@ class Layout:
         """The layout with its normal in a target of its own, encoded and stored as `codec` does.
 
         Raises:
-            LayoutError: the codec keeps a sign in a depth that the layout does not keep.
+            LayoutError: the codec keeps a sign in a depth that the layout does not keep, or lies in signed words.
         """
+        storage, components = codec.storage, "xyz"[: codec.encoding.components]
+        if storage.is_packed and storage.kind != "unorm":
+            raise LayoutError(
+                f"layout {self.name}: {storage.title}: words of a layout are unsigned; use another storage"
+            )
         kept = [replace(t, holds=" ".join(_without_normal(t.holds))) for t in self.targets]
         kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
-        home = Target(codec.storage.name, " ".join(f"normal.{a}" for a in "xyz"[: codec.encoding.components]))
-        return replace(self, targets=(*kept, home), encoding=codec.encoding.name, rounding=codec.rounding)
+        sizes = [f":{bits}" if storage.is_packed else "" for bits in storage.bits]
+        home = Target(
+            storage.target.name, " ".join(f"normal.{a}{size}" for a, size in zip(components, sizes, strict=False))
+        )
+        rounding = {"packing" if storage.is_packed else "rounding": codec.rounding}
+        return replace(self, targets=(*kept, home), encoding=codec.encoding.name, **rounding)
 
 
 def _ends(storage: Storage) -> list[int]:

@@ -1,5 +1,5 @@
 #version 430
-// The shader's own rounding, on any number.
+// The shader's own rounding, on any number; and the way back from numbers that are laid across channels.
 #include "../encodings/storage.glsl"
 
 uniform sampler2D source;
@@ -7,5 +7,11 @@ out vec4 texel;
 
 void main() {
     texel = texelFetch(source, ivec2(gl_FragCoord.xy), 0);
+#if READS
+    texel = from_texel(texel);
+#elif STORAGE_PACKED
+    texel = to_texel(texel);
+#else
     texel = round_texel(texel);
+#endif
 }

@@ -11,7 +11,15 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench import listing, normal_sets, quality
-from normalbench.encodings.catalogue import DEPTH_ENCODINGS, DEPTH_NAMES, ENCODINGS, LIGHT_ENCODINGS, NAMES
+from normalbench.encodings.catalogue import (
+    DEPTH_ENCODINGS,
+    DEPTH_NAMES,
+    ENCODINGS,
+    LIGHT_ENCODINGS,
+    NAMES,
+    PAIRS,
+    PRECISE,
+)
 from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
 from normalbench.gbuffer.layouts import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -77,7 +85,8 @@ def test_python_starts_with_the_checkout_on_its_path():
 
 def test_the_catalogue_and_the_files_are_the_same():
     files = {suffix: {p.stem for p in (ROOT / "encodings/normals").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
-    assert files[".py"] == files[".glsl"] == set(NAMES) == set(ENCODINGS)
+    assert files[".py"] == files[".glsl"] == set(PAIRS)
+    assert set(ENCODINGS) == set(NAMES) == {*PAIRS, *PRECISE} and set(PRECISE.values()) <= set(PAIRS)
     files = {suffix: {p.stem for p in (ROOT / "encodings/depth").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
     assert files[".py"] == files[".glsl"] == set(DEPTH_NAMES) == set(DEPTH_ENCODINGS)
 
@@ -92,9 +101,10 @@ def test_an_encoding_is_complete(name):
     assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "shapes and special cases are said"
     glsl = encoding.glsl.read_text()
     size = encoding.components + encoding.sign_bits
-    assert re.search(rf"vec{size} {name}_encode\(vec3 n, vec3 view\)", glsl)
-    assert re.search(rf"vec3 {name}_decode\(vec{size} e, vec3 view\)", glsl)
-    assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
+    assert re.search(rf"vec{size} {encoding.prefix}_encode\(vec3 n, vec3 view\)", glsl)
+    assert re.search(rf"vec3 {encoding.prefix}_decode\(vec{size} e, vec3 view\)", glsl)
+    assert not encoding.levels or len(encoding.levels) == encoding.components
+    assert f"{encoding.prefix}.py" in glsl.splitlines()[0], "the twin is named"
 
 
 @pytest.mark.parametrize("name", DEPTH_NAMES)

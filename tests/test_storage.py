@@ -1,5 +1,6 @@
 """What the emulation stores is what the GL device stores, bit for bit."""
 
+import itertools
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -8,12 +9,14 @@ import numpy as np
 import pytest
 from neighbours import around
 
-from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_snorm, store_unorm
+from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_number, store_texel, store_unorm
 from normalbench.gbuffer.codec_passes import storage_defines
 from normalbench.gbuffer.device import read_pixels
 
-INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float"]
-HALVES = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] == 16]
+INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.is_packed]
+PACKED = [name for name, s in STORAGES.items() if s.is_packed]
+FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
+FLOAT_ROUNDINGS = ROUNDINGS[:2]
 
 
 OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.inf, -np.inf], np.float32)
@@ -44,11 +47,7 @@ def as_pixels(values: np.ndarray) -> np.ndarray:
 
 
 def emulated(values: np.ndarray, storage, rounding: str) -> np.ndarray:
-    x = jnp.asarray(values)
-    if storage.kind == "float":
-        return np.asarray(store_half(x, rounding))
-    store = store_unorm if storage.kind == "unorm" else store_snorm
-    return np.asarray(store(x, storage.scale(0), rounding))
+    return np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
 
 
 def assert_same_bits(values, expected, got, what: str) -> None:
@@ -60,7 +59,7 @@ def assert_same_bits(values, expected, got, what: str) -> None:
         pytest.fail(f"{what}: {len(different)} of {len(values)} differ; {values[i]!r}: {expected[i]!r}, GL {got[i]!r}")
 
 
-@pytest.mark.parametrize("name", [*INTEGERS, *HALVES])
+@pytest.mark.parametrize("name", [*INTEGERS, *FLOATS])
 def test_the_device_stores_what_the_emulation_says(gl, name):
     """The format's own conversion, for the rounding the device was found to use."""
     storage = STORAGES[name]
@@ -80,19 +79,23 @@ def test_the_device_stores_what_the_emulation_says(gl, name):
 def rounded_in_the_shader(gl, values: np.ndarray, storage, rounding: str) -> np.ndarray:
     """Numbers rounded by storage.glsl, written to the format and read back; (count, 4)."""
     with ExitStack() as stack:
-        defines = storage_defines(storage, rounding, shader_rounds=True)
-        passed = gl.owned(stack, gl.fragment_pass(Path(__file__).with_name("round.frag"), defines))
+        defines = storage_defines(storage, [rounding] * storage.channels, shader_rounds=True)
+        writes, reads = (
+            gl.owned(stack, gl.fragment_pass(Path(__file__).with_name("round.frag"), defines | {"READS": reads}))
+            for reads in (0, 1)
+        )
         copy = gl.owned(stack, gl.fragment_pass("copy.frag"))
         source = gl.owned(stack, gl.upload(as_pixels(values)))
-        target = gl.owned(stack, gl.target(source.size, storage))
+        target = gl.owned(stack, gl.target(source.size, storage.target))
         result = gl.owned(stack, gl.target(source.size, STORAGES["rgba32f"]))
-        gl.render(passed, [target], source=source)
-        gl.render(copy, [result], source=target)
+        gl.render(writes, [target], source=source)
+        gl.render(reads if storage.is_packed else copy, [result], source=target)
         return read_pixels(result).reshape(-1, 4)[: len(values)]
 
 
-@pytest.mark.parametrize("rounding", ROUNDINGS)
-@pytest.mark.parametrize("name", [*INTEGERS, *HALVES])
+@pytest.mark.parametrize(
+    "name, rounding", [*itertools.product(INTEGERS, ROUNDINGS), *itertools.product(FLOATS, FLOAT_ROUNDINGS)]
+)
 def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
     """Rounded in the shader, then written: what the device's conversion does no longer matters."""
     storage = STORAGES[name]
@@ -101,6 +104,27 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
     assert_same_bits(
         values, emulated(values, storage, rounding), got.copy(), f"{name} rounded in the shader, {rounding}"
     )
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+@pytest.mark.parametrize("name", PACKED)
+def test_numbers_across_channels_come_back_as_the_emulation_says(gl, name, rounding):
+    """Every code of every number and every tie, by the integer's own bits; the other numbers have the same one."""
+    storage = STORAGES[name]
+    values = integer_inputs(storage)
+    with np.errstate(over="ignore"):
+        values = values * 2 - 1 if storage.is_biased else values
+    got = rounded_in_the_shader(gl, values, storage, rounding)
+    for channel in range(storage.channels):
+        expected = np.asarray(store_number(jnp.asarray(values), storage, channel, rounding))
+        assert_same_bits(values, expected, got[:, channel].copy(), f"{name}, number {channel}, {rounding}")
+
+
+def test_truncating_half_a_code_wider_is_floor_of_f_times_4095_and_a_half():
+    """As engines write it: 12 bits of f in [0, 1] are floor(f 4095.5)."""
+    f = np.random.default_rng(0).random(2**16, np.float32)
+    stored = np.asarray(store_unorm(jnp.asarray(f), 4095, "truncate_half")) * 4095
+    assert np.array_equal(np.round(stored), np.floor(f * np.float32(4095.5)))
 
 
 @pytest.mark.parametrize("rounding", ROUNDINGS)
@@ -114,7 +138,7 @@ def test_the_two_bits_of_alpha_are_rounded_by_their_own_scale(gl, rounding):
 
 def test_every_half_float_survives_both_roundings():
     halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
-    for rounding in ROUNDINGS:
+    for rounding in FLOAT_ROUNDINGS:
         back = np.asarray(store_half(jnp.asarray(halves.astype(np.float32)), rounding)).astype(np.float16)
         same = (back == halves) | (np.isnan(back) & np.isnan(halves))
         assert same.all(), f"{rounding}: {halves[~same][0]!r} became {back[~same][0]!r}"

@@ -17,8 +17,8 @@ void main() {
     uint integer = fixed_code(number, SCALE, DEPTH_SIGNED != 0);
     for (int c = 0; c < 4; ++c) texel[c] = float(byte_of(integer, FIRST, BITS, c)) / 255.0;
 #elif HOME == 1
-    texel = vec4(ROUNDS != 0 ? round_number(number, KIND, SCALE, false) : number);
+    texel = vec4(ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, 0) : number);
 #else
-    gl_FragDepth = ROUNDS != 0 ? round_number(number, KIND, SCALE, false) : number;
+    gl_FragDepth = ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, 0) : number;
 #endif
 }

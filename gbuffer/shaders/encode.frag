@@ -13,7 +13,9 @@ layout(location = 1) out float signed_depth;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 view = texelFetch(views, pixel, 0).xyz;
-    vec4 code = widen(ENCODE(direction_or_forward(texelFetch(normals, pixel, 0).xyz), view));
+    float scales[] = float[](storage_scale[0], storage_scale[1], storage_scale[2]);
+    vec3 n = direction_or_forward(texelFetch(normals, pixel, 0).xyz);
+    vec4 code = widen(encoded(n, view, scales, STORAGE_BIASED != 0));
 #if SIGN_BITS
     signed_depth = abs(view.z) * code[COMPONENTS];
     code[COMPONENTS] = 0.0;

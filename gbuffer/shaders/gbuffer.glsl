@@ -11,7 +11,8 @@ layout(location = 0) out vec4 texels[TARGETS];
 void write_gbuffer(Surface s) {
     float numbers[NUMBERS];
     mat3 axes = WORLD_SPACE != 0 ? mat3(view_to_world) : mat3(1.0);
-    vec4 code = widen(ENCODE(direction_or_forward(axes * s.direction), axes * s.position));
+    const float scales[] = NORMAL_SCALE;
+    vec4 code = widen(encoded(direction_or_forward(axes * s.direction), axes * s.position, scales, NORMAL_BIASED != 0));
     for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
     numbers[DEPTH] = SIGN_BITS != 0 ? code[COMPONENTS] * -s.position.z : -s.position.z;
     for (int i = 0; i < 3; ++i) {

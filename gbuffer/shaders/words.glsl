@@ -1,12 +1,14 @@
 // Numbers to the texels of a layout and back. The layout comes from layouts.py as macros: WORDS words, each a component
 // (WORD_COMPONENT) in a target (WORD_TARGET), in a channel of its own (WORD_BITS 0, WORD_FIRST the channel) or as an
 // integer of WORD_BITS bits from bit WORD_FIRST on; for each of TARGETS targets the kind of its format, its channels'
-// scales, and whether the shader rounds (1 nearest, 2 truncate). DEPTH_RANGE is the near and the far plane.
+// scales and bits, and whether the shader rounds (one more than storage.glsl's ways). NORMAL_LEVELS says how many values
+// each of the normal's numbers has, 0 for one like any other. DEPTH_RANGE is the near and the far plane.
 #include "depth_code.glsl"
 #include "../../encodings/storage.glsl"
 
 const int word_component[] = WORD_COMPONENT, word_target[] = WORD_TARGET, word_first[] = WORD_FIRST;
 const int word_bits[] = WORD_BITS, target_kind[] = TARGET_KIND, target_rounds[] = TARGET_ROUNDS;
+const int target_bits[] = TARGET_BITS, normal_levels[] = NORMAL_LEVELS;
 const float target_scale[] = TARGET_SCALE;
 
 bool is_signed(int component) { return component < DEPTH || component >= MOTION; }
@@ -33,12 +35,14 @@ float from_unit(int component, float x, float scale) {
 
 // A number that has a channel of its own.
 float to_channel(int component, float x, int kind, float scale) {
+    if (kind == 3 && is_signed(component)) return x * 0.5 + 0.5;
     if (kind >= 2) return component == DEPTH ? number_of_depth(x, DEPTH_RANGE, true) : x;
     if (kind == 0) return to_unit(component, x, scale);
     return is_signed(component) ? x : to_unit(component, x, scale);
 }
 
 float from_channel(int component, float x, int kind, float scale) {
+    if (kind == 3 && is_signed(component)) return x * 2.0 - 1.0;
     if (kind >= 2) return component == DEPTH ? depth_of_number(x, DEPTH_RANGE, true) : x;
     return kind == 1 && is_signed(component) ? x : from_unit(component, x, scale);
 }
@@ -47,7 +51,8 @@ float from_channel(int component, float x, int kind, float scale) {
 // have as many bits as a float32 has, and stays an integer.
 uint to_word(int component, float x, float scale) {
     if (component == DEPTH) return fixed_code(number_of_depth(x, DEPTH_RANGE, false), scale, DEPTH_SIGNED != 0);
-    vec2 rule = component < DEPTH ? vec2(PACK_WIDEN, PACK_BIAS) : vec2(0.0, 0.5);
+    bool as_packed = component < DEPTH && normal_levels[component] == 0;
+    vec2 rule = as_packed ? vec2(PACK_WIDEN, PACK_BIAS) : vec2(0.0, 0.5);
     float part = clamp(to_unit(component, x, scale), 0.0, 1.0);
     return uint(min(floor(part * (scale + rule.x) + rule.y), scale));
 }
@@ -69,9 +74,10 @@ vec4[TARGETS] to_texels(float numbers[NUMBERS]) {
         int target = word_target[w], first = word_first[w], bits = word_bits[w], component = word_component[w];
         float x = numbers[component];
         if (bits == 0) {
-            int kind = target_kind[target], rounds = target_rounds[target];
-            float scale = target_scale[target * 4 + first], texel = to_channel(component, x, kind, scale);
-            texels[target][first] = rounds != 0 ? round_number(texel, kind, scale, rounds == 2) : texel;
+            int kind = target_kind[target], rounds = target_rounds[target], channel = target * 4 + first;
+            float scale = target_scale[channel], texel = to_channel(component, x, kind, scale);
+            if (rounds != 0) texel = round_number(texel, kind, scale, target_bits[channel], rounds - 1);
+            texels[target][first] = texel;
         } else {
             uint integer = to_word(component, x, exp2(float(bits)) - 1.0);
             for (int c = 0; c < 4; ++c) packed_bytes[target][c] |= byte_of(integer, first, bits, c);

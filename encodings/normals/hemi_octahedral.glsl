@@ -1,0 +1,14 @@
+// Hemi-octahedral map, beside hemi_octahedral.py.
+#include "../vec.glsl"
+
+vec2 hemi_octahedral_encode(vec3 n, vec3 view) {
+    // p = n.xy / (|n.x| + |n.y| + |n.z|), e = (p.x + p.y, p.x - p.y)
+    vec2 p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)));
+    return vec2(p.x + p.y, p.x - p.y);
+}
+
+vec3 hemi_octahedral_decode(vec2 e, vec3 view) {
+    // p = (e.x + e.y, e.x - e.y) / 2, n = (p, 1 - |p.x| - |p.y|)
+    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
+    return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
+}
