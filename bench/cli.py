@@ -76,14 +76,14 @@ def quality(
     ] = None,
     format: FormatOption = Format.table,
     output: OutputOption = None,
-) -> None:
+) -> int:
     """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
 
     A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).
     """
     from .commands import Request, quality_command
 
-    quality_command(Request(**vars(options), reading=reading), images, format, output)
+    return quality_command(Request(**vars(options), reading=reading), images, format, output)
 
 
 @app.command()

@@ -19,9 +19,13 @@ from .normal_names import normal_sets_named
 from .options import AS_USUAL, QualityOptions, Reading
 from .output import check_folder, check_writable, say_skipped, whole_file, without, write
 from .progress import progress
+from .quality_order import ONCE, in_order, with_limits
 
 # What a narrow terminal goes without, the first first.
-EXPENDABLE = ("device", "rounded_by", "background", "not_finite", "mse", "angle_rms_deg", "count", "angle_p99_deg")
+EXPENDABLE = (
+    *("device", "rounded_by", "background", "not_finite", "reached_mean_percent", "reached_max_percent", "domain"),
+    *("mse", "sup_z", "sup_y", "sup_x", "angle_rms_deg", "count", "angle_p99_deg"),
+)
 # What the one sheet of a run shows: the seeds' methods, and the one that most people use today.
 SHEET = (*seeds.PSNR_DB, "octahedral")
 
@@ -33,6 +37,8 @@ class Request(QualityOptions):
     """What to measure, as typed: comma-separated names."""
 
     reading: Reading = AS_USUAL
+    worst_case: bool = False
+    codes: bool = False
 
     def cases(self) -> list[quality.Case]:
         """One case for each row. Raises UsageError for unknown names, and MissingError where only GLSL is asked for
@@ -52,7 +58,7 @@ class Request(QualityOptions):
             print(f"normalbench: left out: {line}", file=sys.stderr)
         needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
         normal_sets = normal_sets_named(self.normals, count, self.seed, self.reading, needs_rays)
-        return quality.cases(codecs, normal_sets, backends)
+        return quality.cases(codecs, normal_sets, backends, self.worst_case, self.codes)
 
 
 def _measured(cases: Sequence[quality.Case]) -> list[quality.Row]:
@@ -66,8 +72,8 @@ def _measured(cases: Sequence[quality.Case]) -> list[quality.Row]:
     return rows
 
 
-def quality_command(request: Request, images: Path | None, format: str, output: Path | None) -> None:
-    """Measure, write the pictures if asked for, then the rows."""
+def quality_command(request: Request, images: Path | None, format: str, output: Path | None) -> int:
+    """Measure, write the pictures if asked for, then the rows. Exit status 1 where one is below its limit."""
     cases = request.cases()
     if images and not any(case.normal_set.shape for case in cases):
         raise UsageError(f"--images needs a normal set that is an image: {seeds.NORMALS}, or a file of one")
@@ -75,15 +81,29 @@ def quality_command(request: Request, images: Path | None, format: str, output: 
         check_folder(images)
     if output:
         check_writable(output)
-    rows = _measured(cases)
+    rows = in_order(_measured(cases))
+    below = say_below_limit(rows)
     if images:
         write_pictures(cases, images)
+    if format in ("table", "markdown"):
+        rows = without(with_limits(rows), ONCE)
     if format == "table":
         # Infinity is shown as such, and why a row is empty or has odd figures has been said.
         rows = without(rows, ("exact", "skipped", "invalid"))
     if format in ("table", "markdown"):
         rows = without(rows, quality.FOR_PROGRAMS)
     write(rows, format, output, EXPENDABLE)
+    return 1 if below else 0
+
+
+def say_below_limit(rows: Iterable[quality.Row]) -> bool:
+    """Whether errors are smaller than so many codes can have, which is said of each row: then the measure is wrong."""
+    below = [row for row in rows if row["below_limit"]]
+    for row in below:
+        what = f"{row['encoding']}/{row['storage']} on {row['normals']} by {row['backend']}"
+        wrong = f"{row['codes']} codes cannot do that: the measure is wrong, or the set not uniform"
+        print(f"normalbench: {what}: {row['below_limit']}; {wrong}", file=sys.stderr)
+    return bool(below)
 
 
 def _round_trip(case: quality.Case) -> quality.RoundTrip | None:

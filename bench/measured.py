@@ -49,9 +49,10 @@ def measured(table: str, values: Mapping[str, Any], usual: Mapping[str, Any] | N
 
 
 def with_their_options(table: str, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
-    """The options, and those without which a limited column is not measured: `flip`."""
+    """The options, and those without which a limited column is not measured: `flip`, `worst_case`, `codes`."""
+    limited = {limit.column for limit in limits}
     known = fields_of(*MEASURED[table])
-    asked = {limit.column for limit in limits if limit.column in known and known[limit.column].kind is bool}
+    asked = {name for name, field in known.items() if field.kind is bool and limited & {name, *field.option.columns}}
     return dict(values) | dict.fromkeys(asked, True)
 
 

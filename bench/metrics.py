@@ -8,11 +8,13 @@ histogram whose bins are 2^-10 of an octave wide, so they hold to 0.1 %.
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from threading import Lock
 from typing import Any, NamedTuple
 
 import jax
@@ -96,24 +98,28 @@ class Decoded(NamedTuple):
     covered: Any
 
 
-def _scan(decode: Callable[[Any], Vec3], chunk):
+def _blocks(chunk):
+    return jax.tree.map(lambda a: a.reshape(-1, BLOCK // LANES, LANES), chunk)
+
+
+def _traced_scan(chunk: Decoded):
     """Sums (float64 over lanes), the largest angle and each normal's histogram bin, for one chunk."""
 
-    def step(carry, block):
+    def step(carry, block: Decoded):
         sums, largest = carry
-        squared, seed_squared, angle, invalid = _errors(block.n, decode(block), block.covered)
+        squared, seed_squared, angle, invalid = _errors(*block)
         key = _histogram_key(angle, block.covered)
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
         squared, seed_squared, angle, invalid, key = jax.lax.optimization_barrier(
             (squared, seed_squared, angle, invalid, key)
         )
         parts = (squared, seed_squared, angle, angle * angle, invalid)
-        added = Sums(*(s + p.sum(0).astype(jnp.float64) for s, p in zip(sums, parts, strict=True)))
+        added = Sums(*(s + p.astype(jnp.float64).sum(0) for s, p in zip(sums, parts, strict=True)))
         return (added, jnp.maximum(largest, angle.max(0))), key
 
-    blocks = jax.tree.map(lambda a: a.reshape(-1, BLOCK // LANES, LANES), chunk)
     zero = jnp.zeros(LANES, jnp.float64)
-    (sums, largest), keys = jax.lax.scan(step, (Sums(*[zero] * len(Sums._fields)), zero.astype(jnp.float32)), blocks)
+    start = (Sums(*[zero] * len(Sums._fields)), zero.astype(jnp.float32))
+    (sums, largest), keys = jax.lax.scan(step, start, _blocks(chunk))
     return Sums(*(s.sum() for s in sums)), largest.max(), keys.ravel()
 
 
@@ -134,6 +140,11 @@ def compiled(function):
             return usable[0](*arguments)
 
     return call
+
+
+_scan = compiled(_traced_scan)
+# Sums, the largest angle, and how many normals lie in each bin of the histogram.
+Part = tuple[np.ndarray, float, np.ndarray]
 
 
 def squared_errors(codec: Codec):
@@ -179,6 +190,7 @@ class Statistics:
         angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
         angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
             first holds 0 as well.
+        within: for each power of two of degrees, ascending, how many angles are below it.
     """
 
     count: int
@@ -191,6 +203,7 @@ class Statistics:
     angle_p99_deg: float
     angle_max_deg: float
     angle_counts: tuple[tuple[float, int], ...]
+    within: tuple[tuple[float, int], ...]
 
 
 @dataclass(frozen=True)
@@ -211,18 +224,6 @@ def psnr_db(mse: float) -> float:
     return 10 * math.log10(1 / mse) if mse > 0 else math.inf
 
 
-def effective_bits(angle_rms_deg: float, area: float | None) -> float | None:
-    """log2 of how many codes, ideally placed on `area` steradians, have this RMS angle.
-
-    The hexagonal quantiser's bound: E[theta^2] >= 5 / (18 sqrt 3) area / N. None where the set is not uniform.
-    """
-    if area is None:
-        return None
-    if angle_rms_deg == 0:
-        return math.inf
-    return math.log2(5 / (18 * math.sqrt(3)) * area / math.radians(angle_rms_deg) ** 2)
-
-
 def _percentile(histogram: np.ndarray, largest: float, share: float) -> float:
     """The value below which `share` of the counts lie, interpolated within its bin."""
     cumulative = np.cumsum(histogram[:BINS])
@@ -240,8 +241,42 @@ def _counts(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
     return tuple((float(edges[i]), int(counts[i])) for i in np.flatnonzero(counts))
 
 
+def _within(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+    octave = 2 ** (23 - BIN_SHIFT)
+    below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]
+    first = np.log2(np.uint32(FIRST_BIN << BIN_SHIFT).view(np.float32))
+    return tuple((float(2.0 ** (first + k + 1)), int(count)) for k, count in enumerate(below))
+
+
+class Total:
+    """What chunks add up to."""
+
+    def __init__(self):
+        self.sums, self.largest, self.histogram = np.zeros(len(Sums._fields)), 0.0, np.zeros(BINS + 1, np.int64)
+
+    def add(self, part: Part) -> None:
+        """One chunk's sums, largest angle and histogram."""
+        sums, largest, counts = part
+        self.sums, self.largest, self.histogram = self.sums + sums, max(self.largest, largest), self.histogram + counts
+
+
+class Once:
+    """A load that is done once, by whoever asks first, and kept for the others."""
+
+    def __init__(self, load: Callable[[], Any]):
+        self._load, self._lock = load, Lock()
+
+    def __call__(self) -> Any:
+        with self._lock:
+            if self._load:
+                self._value, self._load = self._load(), None
+        return self._value
+
+
 class Meter:
     """Measures what a decoder makes of normal sets; compiled once and used for every chunk.
+
+    Two programs: the decoder's own, and the statistics', which is the same for all and takes longer to compile.
 
     Args:
         decode: a traced function from a block to decoded normals. A block is a pytree of planes with the unit normals
@@ -249,12 +284,14 @@ class Meter:
     """
 
     def __init__(self, decode: Callable[[Any], Vec3]):
-        self._scan = compiled(lambda chunk: _scan(decode, chunk))
+        self._decode = jax.jit(decode)
         self._farthest = compiled(lambda chunk: _farthest(decode, chunk))
 
-    def _one(self, load: Callable[[], Any]):
+    def one(self, load: Callable[[], Any]) -> Part:
+        """One chunk's part of the statistics."""
         with jax.enable_x64(True):
-            sums, largest, keys = self._scan(jax.tree.map(jnp.asarray, load()))
+            chunk = jax.tree.map(jnp.asarray, load())
+            sums, largest, keys = _scan(Decoded(chunk.n, self._decode(chunk), chunk.covered))
             histogram = np.bincount(np.asarray(keys), minlength=BINS + 1)
             return np.array([float(s) for s in sums]), float(largest), histogram
 
@@ -267,12 +304,7 @@ class Meter:
             pixels: how many normals the set has, background included.
             tick: called when a chunk is done.
         """
-        sums, largest, histogram = np.zeros(len(Sums._fields)), 0.0, np.zeros(BINS + 1, np.int64)
-        with ThreadPoolExecutor(cores()) as pool:
-            for part, peak, counts in _bounded_map(pool, self._one, loads):
-                sums, largest, histogram = sums + part, max(largest, peak), histogram + counts
-                tick()
-        return _statistics(pixels, sums, largest, histogram)
+        return measure_together([self], loads, pixels, lambda _: tick())[0]
 
     def worst(self, loads: Iterable[Callable[[], Any]]) -> Worst:
         """Where the largest angle of a set is: a pass of its own, which `measure` need not be slowed down by."""
@@ -284,12 +316,33 @@ class Meter:
             return Worst(np.asarray(normal), np.asarray(decoded), float(angle))
 
 
+def measure_together(
+    meters: Sequence[Meter],
+    loads: Iterable[Callable[[], Any]],
+    pixels: int,
+    tick: Callable[[int], None],
+) -> list[Statistics]:
+    """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
+
+    The rest is as for `Meter.measure`.
+    """
+    totals = [Total() for _ in meters]
+    whose = itertools.cycle(range(len(meters)))
+    work = ((meter, once) for once in map(Once, loads) for meter in meters)
+    with ThreadPoolExecutor(cores()) as pool:
+        for part in bounded_map(pool, lambda item: item[0].one(item[1]), work):
+            index = next(whose)
+            totals[index].add(part)
+            tick(index)
+    return [_statistics(pixels, total.sums, total.largest, total.histogram) for total in totals]
+
+
 def cores() -> int:
     """The cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
+def bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
     """`pool.map` in order, but with a few items under way at once, so that any number of them is constant memory."""
     ahead: list = []
     for item in items:
@@ -314,4 +367,5 @@ def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.nda
         angle_p99_deg=_percentile(histogram, largest, 0.99),
         angle_max_deg=largest,
         angle_counts=_counts(histogram),
+        within=_within(histogram),
     )

@@ -14,6 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..encodings.elementary import sincos_pi
 from ..encodings.vec import Vec3, from_array, sqrt
 from .counts import DEFAULT_COUNT
 
@@ -91,8 +92,9 @@ def _uniform(start, count, offsets, *, whole: bool) -> Chunk:
     u, v = (_unit_interval(start + lane, step, offset) for step, offset in zip(STEPS, offsets, strict=True))
     # 1 - z^2 as a product, which does not cancel near the poles.
     z, r = (1.0 - 2.0 * u, 2.0 * sqrt(u * (1.0 - u))) if whole else (u, sqrt((1.0 - u) * (1.0 + u)))
-    angle = 2.0 * jnp.pi * v
-    n = Vec3(*(c.astype(jnp.float32) for c in (jnp.cos(angle) * r, jnp.sin(angle) * r, z)))
+    # An angle in half turns, in [-1, 1].
+    sine, cosine = sincos_pi(2.0 * (v - jnp.round(v)))
+    n = Vec3(*(c.astype(jnp.float32) for c in (cosine * r, sine * r, z)))
     return Chunk(n, _straight_ahead(n.z), lane < count)
 
 

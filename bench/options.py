@@ -24,12 +24,17 @@ class Option:
         flag: as typed; "--unpack/--no-unpack" for one that may be denied.
         help: a sentence.
         files: whether its words may be files.
+        columns: the columns that are not measured without it, besides one of its own name.
     """
 
     flag: str
     help: str
     files: bool = False
+    columns: tuple[str, ...] = ()
 
+
+SUPREMUM = ("angle_sup_deg", "sup_x", "sup_y", "sup_z", "sup_found_by", "sup_moved_deg")
+ODD_CODES = ("codes_unused", "codes_duplicate", "codes_unstable")
 
 Names = "comma-separated, or all; `normalbench list` shows them"
 Encodings = Annotated[str, Option("--encoding", f"Encodings, {Names}.", files=True)]
@@ -61,6 +66,14 @@ class QualityOptions:
     backend: Backends = "jax,glsl"
     count: Count = DEFAULT_COUNT
     seed: SetSeed = 0
+    worst_case: Annotated[
+        bool,
+        Option("--worst-case", "The true supremum and where it is, in float64; seconds a codec.", columns=SUPREMUM),
+    ] = False
+    codes: Annotated[
+        bool,
+        Option("--codes", "Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.", columns=ODD_CODES),
+    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)

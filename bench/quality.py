@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -20,8 +21,10 @@ from ..encodings.vec import Vec3
 from ..gbuffer.codec_passes import CodecPasses
 from ..gbuffer.device import Device, FormatError, NoDeviceError, device
 from ..gbuffer.shader import ShaderError
+from . import exact_figures
+from .code_limits import AREAS, effective_bits
 from .errors import MissingError, UsageError, pick
-from .metrics import Decoded, Meter, Statistics, Worst, effective_bits, idle, psnr_db
+from .metrics import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
 from .normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
 from .user_encodings import NoTwinError, encodings_named
 
@@ -43,8 +46,26 @@ COLUMNS = (
     "angle_rms_deg",
     "angle_p99_deg",
     "angle_max_deg",
+    "angle_sup_deg",
+    "sup_x",
+    "sup_y",
+    "sup_z",
+    "sup_found_by",
+    "sup_moved_deg",
     "angle_counts",
     "effective_bits",
+    "domain",
+    "codes",
+    "limit_mean_deg",
+    "limit_rms_deg",
+    "limit_max_deg",
+    "reached_mean_percent",
+    "reached_rms_percent",
+    "reached_max_percent",
+    "below_limit",
+    "codes_unused",
+    "codes_duplicate",
+    "codes_unstable",
     "exact",
     "device",
     "rounded_by",
@@ -56,6 +77,8 @@ COLUMNS = (
 FOR_PROGRAMS = ("angle_counts",)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
+# How many cases share a set's chunks: each keeps its own histogram.
+TOGETHER = 64
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
@@ -65,15 +88,26 @@ Tick = Callable[[], None]
 
 @dataclass(frozen=True)
 class Case:
-    """One row to measure."""
+    """One row to measure; `worst_case` and `codes` ask for figures that take seconds each."""
 
     codec: Codec
     normal_set: NormalSet
     backend: str
+    worst_case: bool = False
+    codes: bool = False
 
     @property
     def name(self) -> str:
         return f"{self.codec.name} {self.normal_set.name} {self.backend}"
+
+    @property
+    def domain(self) -> str | None:
+        """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
+        of a set that is not uniform."""
+        if self.normal_set.area is None:
+            return None
+        is_whole = self.normal_set.area == AREAS["sphere"] and self.codec.encoding.domain == "sphere"
+        return "sphere" if is_whole else "hemisphere"
 
 
 @cache
@@ -124,8 +158,11 @@ class Decoding:
 
 @contextmanager
 def _by_jax(case: Case) -> Iterator[Decoding]:
-    how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
-    yield Decoding(_meter(case.codec), case.normal_set.loads(), how)
+    yield Decoding(_meter(case.codec), case.normal_set.loads(), _how_by_jax())
+
+
+def _how_by_jax() -> dict[str, str]:
+    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
 
 
 @contextmanager
@@ -152,10 +189,12 @@ BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = Map
 )
 
 
-def cases(codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str]) -> list[Case]:
-    """Every codec on every set by every back end, the rows of one codec side by side."""
+def cases(
+    codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str], *exact: bool
+) -> list[Case]:
+    """Every codec on every set by every back end, the rows of one codec side by side; `exact` is Case's last fields."""
     normal_sets, backends = list(normal_sets), list(backends)
-    return [Case(codec, chosen, backend) for chosen in normal_sets for codec in codecs for backend in backends]
+    return [Case(codec, chosen, backend, *exact) for chosen in normal_sets for codec in codecs for backend in backends]
 
 
 def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
@@ -188,8 +227,17 @@ def measure(case: Case, tick: Tick = idle) -> Row:
 
     A row that the device cannot give has its reason in `skipped` and no figures.
     """
-    row = dict.fromkeys(COLUMNS)
-    row |= {
+    row = _described(case)
+    try:
+        with BACKENDS[case.backend](case) as found:
+            statistics = found.meter.measure(found.loads, case.normal_set.count, tick)
+    except UNMEASURABLE as error:
+        return row | {"skipped": str(error)}
+    return row | _measured(case, statistics) | dict(found.how)
+
+
+def _described(case: Case) -> Row:
+    return dict.fromkeys(COLUMNS) | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
         "rounding": case.codec.rounding,
@@ -198,14 +246,19 @@ def measure(case: Case, tick: Tick = idle) -> Row:
         "bits": case.codec.bits,
         "background": case.normal_set.background,
         "not_finite": case.normal_set.not_finite,
+        "domain": case.domain,
+        "codes": case.codec.codes,
         "seed": case.normal_set.seed,
     }
-    try:
-        with BACKENDS[case.backend](case) as found:
-            statistics = found.meter.measure(found.loads, case.normal_set.count, tick)
-    except UNMEASURABLE as error:
-        return row | {"skipped": str(error)}
-    return row | _figures(statistics, case.normal_set.area) | dict(found.how)
+
+
+def _measured(case: Case, statistics: Statistics) -> Row:
+    row = _figures(statistics, case.normal_set.area)
+    if case.worst_case:
+        row |= exact_figures.supremum(case.codec, case.domain, statistics)
+    if case.codes:
+        row |= exact_figures.odd(case.codec, case.domain)
+    return row | exact_figures.held(case.codec, case.domain, statistics, row.get("angle_sup_deg"))
 
 
 def worst(case: Case) -> Worst | None:
@@ -235,9 +288,27 @@ def _figures(s: Statistics, area: float | None) -> Row:
 
 
 def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
-    """The table, a row at a time."""
-    for case in chosen:
-        yield measure(case, lambda case=case: tick(case))
+    """The table, a row at a time, in the order of the cases."""
+    # By JAX the codecs on one set are measured together, so that it is made once; a few dozens, for memory's sake.
+    for _, cases_of_a_set in itertools.groupby(chosen, lambda case: id(case.normal_set)):
+        group = list(cases_of_a_set)
+        for start in range(0, len(group), TOGETHER):
+            yield from _rows_together(group[start : start + TOGETHER], tick)
+
+
+def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+    shared = [case for case in group if case.backend == "jax" and exact_figures.has_twin(case.codec.encoding)]
+    measured: dict[int, Statistics] = {}
+    if shared:
+        normals = shared[0].normal_set
+        meters = [_meter(case.codec) for case in shared]
+        found = measure_together(meters, normals.loads(), normals.count, lambda index: tick(shared[index]))
+        measured = {id(case): statistics for case, statistics in zip(shared, found, strict=True)}
+    for case in group:
+        if id(case) in measured:
+            yield _described(case) | _measured(case, measured[id(case)]) | _how_by_jax()
+        else:
+            yield measure(case, lambda case=case: tick(case))
 
 
 def require_jax() -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 from functools import reduce
+
+import numpy as np
 
 from .encoding import Encoding
 from .storage import Storage, numbers_around, store_number
@@ -60,6 +63,22 @@ class Codec:
     def bits(self) -> int:
         """The bits it occupies: of the channels used, and one for each sign bit."""
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        size = self.encoding.components + self.encoding.sign_bits
+        return math.prod(self.encoding.levels_of(i) or self.storage.count(i) for i in range(size))
+
+    def numbers(self, component: int) -> np.ndarray:
+        """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""
+        if component >= self.encoding.components:
+            return np.array([-1.0, 1.0])
+        every, levels = self.storage.numbers(component), self.encoding.levels_of(component)
+        if not levels:
+            return every
+        nearest = np.abs(every - np.linspace(-1.0, 1.0, levels)[:, None]).argmin(axis=1)
+        return every[nearest]
 
     def rounding_of(self, component: int) -> str:
         """How a component rounds: one of few values to the nearest, whatever the others do."""

@@ -12,6 +12,8 @@ rounds before the write (`storage.glsl`), and the row says so.
 
 Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes. A
 signed one of n bits is then the integer of SNORM above plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0.
+
+Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
 """
 
 from __future__ import annotations
@@ -20,9 +22,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+import numpy as np
+
 from .vec import jnp, maximum, minimum, select, sign_bit
 
 ROUNDINGS = ("nearest", "truncate", "truncate_half")
+# Of floats by their size: bits of the mantissa, and the biased exponent of 1.
+MANTISSA = {32: 23, 16: 10, 11: 6, 10: 5}
+FLOAT_ONE = {32: 127, 16: 15, 11: 15, 10: 15}
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
@@ -74,8 +81,25 @@ class Storage:
         """How many values of a number in [-1, 1] a channel tells apart at least, evenly spread ones."""
         if self.kind != "float":
             return self.scale(channel) * (1 + (self.kind == "snorm")) + 1
-        mantissa = {32: 23, 16: 10}.get(self.bits[channel], self.bits[channel] - 5)
-        return 2 ** (mantissa + 1 - self.is_biased)
+        return 2 ** (MANTISSA[self.bits[channel]] + 1 - self.is_biased)
+
+    def count(self, channel: int) -> int:
+        """How many numbers in [-1, 1] a channel tells apart, however spread."""
+        if self.kind != "float":
+            return self.levels(channel)
+        # From 0 to 1 the floats of each octave, down from the exponent of 1.
+        to_one = FLOAT_ONE[self.bits[channel]] << MANTISSA[self.bits[channel]]
+        return to_one + 1 if self.is_biased else 2 * to_one + 1
+
+    def numbers(self, channel: int) -> np.ndarray:
+        """Those numbers, ascending; float64. Not of 32-bit floats, which are too many."""
+        if self.kind != "float":
+            return np.linspace(-1.0, 1.0, self.count(channel))
+        one, mantissa = FLOAT_ONE[self.bits[channel]], MANTISSA[self.bits[channel]]
+        word = np.arange((one << mantissa) + 1)
+        octave, rest = np.maximum(word >> mantissa, 1), np.where(word >> mantissa, 1.0, 0.0)
+        texels = np.ldexp(rest + (word & 2**mantissa - 1) * 2.0**-mantissa, octave - one)
+        return texels * 2.0 - 1.0 if self.is_biased else np.concatenate([-texels[:0:-1], texels])
 
 
 def _packed(name: str, title: str, kind: str, *bits: int) -> Storage:
@@ -123,24 +147,24 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
 
 
 def rounded(x, scale: int, rounding: str = "nearest"):
-    """x in [-1, 1] (float32, any shape) as a whole number, `scale` standing for 1: nearest, or cut off toward zero, or
+    """x in [-1, 1] (any shape) as a whole number, `scale` standing for 1: nearest, or cut off toward zero, or
     cut off of x (scale + 1/2)."""
     if rounding == "nearest":
-        return jnp.round(x * jnp.float32(scale))
-    widened = jnp.trunc(x * jnp.float32(scale + 0.5 if rounding == "truncate_half" else scale))
+        return jnp.round(x * float(scale))
+    widened = jnp.trunc(x * (scale + 0.5 if rounding == "truncate_half" else float(scale)))
     return minimum(maximum(widened, -float(scale)), float(scale))
 
 
 def store_unorm(x, scale: int, rounding: str = "nearest"):
     """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
-    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * jnp.float32(1.0 / scale)
+    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * (1.0 / scale)
 
 
 def store_snorm(x, scale: int, rounding: str = "nearest"):
     """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
     code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding)
     # An integer has no negative zero.
-    return code.astype(jnp.int32).astype(jnp.float32) * jnp.float32(1.0 / scale)
+    return code.astype(jnp.int32).astype(x.dtype) * (1.0 / scale)
 
 
 def store_half(x, rounding: str = "nearest"):
@@ -173,6 +197,18 @@ def store_small_float(x, bits: int, rounding: str = "nearest"):
     return select((x == jnp.inf) | jnp.isnan(x), x, kept)
 
 
+def store_float(x, bits: int, rounding: str = "nearest"):
+    """x (float64, any shape, magnitude below 2^15) as a float of so many bits stores it, by arithmetic: what stands for
+    the exact map. Of 11 and 10 bits there is nothing below 0."""
+    if bits == 32:
+        return x.astype(jnp.float32).astype(x.dtype)
+    octave = maximum(jnp.frexp(x)[1] - 1, -14)
+    step = jnp.ldexp(jnp.ones_like(x), octave - MANTISSA[bits])
+    whole = x / step
+    stored = (jnp.round(whole) if rounding == "nearest" else jnp.trunc(whole)) * step
+    return stored if bits == 16 else maximum(stored, 0.0)
+
+
 def to_srgb(x):
     """Linear light in [0, 1] (float32, any shape) by the sRGB curve."""
     curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
@@ -194,6 +230,8 @@ def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
     """One number of a texel (float32, any shape), as the format is given it, through one channel and back."""
     bits, scale = storage.bits[channel], storage.scale(channel)
     if storage.kind == "float":
+        if x.dtype != jnp.float32:
+            return store_float(x, bits, rounding)
         return x if bits == 32 else store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
     if storage.kind == "snorm":
         return store_snorm(x, scale, rounding)
@@ -212,8 +250,8 @@ def numbers_around(c, storage: Storage, channel: int):
     """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
     scale = storage.scale(channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
-    below = jnp.floor(x * jnp.float32(scale))
-    texels = (step * jnp.float32(1.0 / scale) for step in (below, minimum(below + 1.0, float(scale))))
+    below = jnp.floor(x * float(scale))
+    texels = (step * (1.0 / scale) for step in (below, minimum(below + 1.0, float(scale))))
     return tuple(texel * 2.0 - 1.0 if storage.is_biased else texel for texel in texels)
 
 

@@ -1,5 +1,7 @@
 """The statistics of a row, against NumPy in float64 and against the laws they obey."""
 
+from dataclasses import replace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -9,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
-from normalbench.bench import counts, quality
-from normalbench.bench.metrics import Meter, _bounded_map, angle_between, psnr_db, squared_errors
-from normalbench.bench.normal_sets import CHUNK, from_arrays, hemisphere, sphere
+from normalbench.bench import counts, metrics, quality
+from normalbench.bench.metrics import Meter, angle_between, bounded_map, compiled, psnr_db, squared_errors
+from normalbench.bench.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.numpy_baseline import angles, whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
@@ -167,7 +169,90 @@ def test_work_in_flight_is_bounded():
 
     taken = []
     with ThreadPoolExecutor(2) as pool:
-        results = _bounded_map(pool, lambda i: i, (taken.append(i) or i for i in range(100)))
+        results = bounded_map(pool, lambda i: i, (taken.append(i) or i for i in range(100)))
         assert next(results) == 0
         assert len(taken) <= 4
         assert list(results) == list(range(1, 100))
+
+
+def rows_of(normals, names=("octahedral", "spherical", "xyz")) -> list[dict]:
+    codecs = [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in names]
+    return list(quality.rows(quality.cases(codecs, [normals], ["jax"]), lambda _: None))
+
+
+def test_codecs_measured_together_are_as_measured_alone():
+    """Each chunk is made once for all of them; nothing else changes, in whatever order and company."""
+    normals = sphere(3 * CHUNK + 5)
+    alone = [
+        quality.measure(case)
+        for case in quality.cases(
+            [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in ("octahedral", "spherical", "xyz")],
+            [normals],
+            ["jax"],
+        )
+    ]
+    assert rows_of(normals) == alone
+    assert list(reversed(rows_of(normals, ("xyz", "spherical", "octahedral")))) == alone
+
+
+def test_a_chunk_is_made_once_for_all_codecs():
+    made, normals = [], sphere(2 * CHUNK)
+    counted = replace(normals, chunk=lambda start: (made.append(start), normals.chunk(start))[1])
+    rows_of(counted)
+    assert sorted(made) == [0, CHUNK]
+
+
+def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
+    """One thread or four: the same bits. Blocks of another size: the last digits of the sums, and the same maximum."""
+    normals = sphere(5 * CHUNK + 99)
+    usual = rows_of(normals)
+    for threads in (1, 4):
+        monkeypatch.setattr(metrics, "cores", lambda threads=threads: threads)
+        assert rows_of(normals) == usual
+    for block, lanes in ((2**12, 64), (2**16, 512)):
+        monkeypatch.setattr(metrics, "BLOCK", block)
+        monkeypatch.setattr(metrics, "LANES", lanes)
+        monkeypatch.setattr(metrics, "_scan", compiled(lambda chunk: metrics._traced_scan(chunk)))
+        for row, other in zip(usual, rows_of(normals), strict=True):
+            for name in ("mse", "psnr_db", "psnr_seed_db", "angle_mean_deg", "angle_rms_deg"):
+                assert other[name] == pytest.approx(row[name], rel=1e-13), (name, block)
+            assert (other["angle_max_deg"], other["angle_p99_deg"]) == (row["angle_max_deg"], row["angle_p99_deg"])
+
+
+def test_any_count_is_constant_memory():
+    """Of a million chunks of a set none is kept: those that are done are gone."""
+    import gc
+    import weakref
+
+    class Load:
+        def __init__(self, chunk):
+            self.chunk = chunk
+
+        def __call__(self):
+            return self.chunk
+
+    chunk, seen, most = sphere(CHUNK).chunk(0), [], 0
+
+    def loads():
+        nonlocal most
+        for _ in range(40):
+            load = Load(chunk)
+            seen.append(weakref.ref(load))
+            gc.collect()
+            most = max(most, sum(ref() is not None for ref in seen))
+            yield load
+            del load
+
+    Meter(lambda block: block.n).measure(loads(), CHUNK)
+    assert most <= 8
+
+
+def test_uniform_sets_are_float64_rounded_once():
+    """NumPy's float64 sines of the same sequence, rounded: one in a million differs."""
+    n = sphere(CHUNK, 3).chunk(0).n
+    offsets = np.random.default_rng(3).integers(0, 2**32, 2, dtype=np.uint32)
+    index = np.arange(CHUNK, dtype=np.uint64)
+    u, v = (((index * s + o) % 2**32 + 0.5) * 2.0**-32 for s, o in zip(STEPS, offsets.astype(np.uint64), strict=True))
+    r = 2 * np.sqrt(u * (1 - u))
+    for ours, exact in zip(n, (np.cos(2 * np.pi * v) * r, np.sin(2 * np.pi * v) * r, 1 - 2 * u), strict=True):
+        assert np.count_nonzero(np.asarray(ours) != exact.astype(np.float32)) <= 3

@@ -33,12 +33,13 @@ def _texel(p: Vec2):
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
     """Unit normal to (angle / pi, z), the angle read at the texel nearest (x, y)."""
-    return Vec2(jnp.asarray(tables()["spherical_lut_angle"])[..., 0][_texel(n.xy)], n.z)
+    angle = jnp.asarray(tables()["spherical_lut_angle"][..., 0], n.z.dtype)
+    return Vec2(angle[_texel(n.xy)], n.z)
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
     """The normal at height e.y, its x and y read at the texel nearest the code."""
-    xy = jnp.asarray(tables()["spherical_lut_xy"])
+    xy = jnp.asarray(tables()["spherical_lut_xy"], e.y.dtype)
     texel = _texel(e)
     return Vec3(xy[..., 0][texel], xy[..., 1][texel], e.y)
 
