@@ -198,7 +198,7 @@ class Normalbench:
     A file is looked for in the test's folder first.
     """
 
-    session: Session
+    session: Session = field(repr=False)
     folder: Path
 
     @ends_here

@@ -9,6 +9,7 @@ import pytest
 from normalbench.bench import user_encodings
 from normalbench.bench.first_look import directions, first_look
 from normalbench.bench.user_encodings import read_encoding
+from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
 (MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[1] / "README.md").read_text(), re.S)
@@ -80,6 +81,14 @@ def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
     assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
+
+
+def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
+    """A session of tests, or a file of gates, measures the same in any order."""
+    path = written(tmp_path)
+    assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
+    assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
+    assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
 
 
 def test_a_missing_file_and_a_twin_that_fails_are_one_line(run, tmp_path):
