@@ -83,6 +83,9 @@ def _write_table(path: Path, rows: list[Row]) -> None:
     for suffix, written in ((".json", tables.to_json), (".csv", tables.to_csv)):
         with whole_file(path.with_suffix(suffix)) as partial:
             partial.write_text(written(rows), encoding="utf-8")
+    if tables.has_parquet():
+        with whole_file(path.with_suffix(".parquet")) as partial:
+            tables.write_parquet(rows, partial)
 
 
 def _draw(folder: Path, cases: Sequence[quality.Case]) -> None:

@@ -1,6 +1,7 @@
 """Results folders: what finished stays, what was stopped goes on, and reading never writes."""
 
 import json
+import math
 import os
 import random
 import subprocess
@@ -10,10 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench import isa, journal, short, spirv
+from normalbench.bench import isa, journal, normal_sets, quality, run_command, short, spirv
 from normalbench.bench.errors import UsageError
 from normalbench.bench.runs import ROWS, Step, opened, read_run, same_work, sources, unfinished
 from normalbench.bench.suite import TABLES, SuiteRequest
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.reports import tables
 
 FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
 
@@ -147,6 +152,19 @@ def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
     assert resumed_out.replace(str(killed), "") == out.replace(str(undisturbed), "")
     for name in ("depth.csv", "depth.json"):
         assert (killed / name).read_bytes() == (undisturbed / name).read_bytes()
+
+
+def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, monkeypatch):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    case = quality.Case(Codec(ENCODINGS["octahedral"], STORAGES["rgba8"]), normal_sets.axes(0, 0), "jax")
+    rows = [quality.measure(case), quality.measure(case) | {"psnr_db": math.inf, "bits": None}]
+    run_command._write_table(tmp_path / "rows", rows)
+    table = parquet.read_table(tmp_path / "rows.parquet")
+    assert table.to_pylist() == rows
+    assert [str(table.schema.field(name).type) for name in ("bits", "psnr_db", "exact")] == ["int64", "double", "bool"]
+    monkeypatch.setattr(tables, "find_spec", lambda _: None)
+    run_command._write_table(tmp_path / "others", rows)
+    assert sorted(path.suffix for path in tmp_path.glob("others.*")) == [".csv", ".json"]
 
 
 @pytest.mark.usefixtures("gl")
