@@ -11,7 +11,7 @@ import numpy as np
 
 from .encoding import Encoding
 from .storage import Storage, numbers_around, store_number
-from .vec import Vec3, dot, select
+from .vec import Vec3, dot, jnp, select
 
 # A number that is not one of few values is not laid into fewer bits.
 LEAST_BITS = 4
@@ -94,7 +94,8 @@ class Codec:
 
     def stored(self, n: Vec3, view: Vec3):
         """The code of unit normals as it comes back from the storage."""
-        code = self.encoding.encode(n, view)
+        # A number chosen from constants has no width of its own.
+        code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, n.z.dtype) for c in code))
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
 
     def _nearest_of(self, code, n: Vec3, view: Vec3):

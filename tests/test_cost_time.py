@@ -90,7 +90,7 @@ def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
         assert row["software"] is (row["clock"] != "GL timer query") and row["spread"] >= 0
     view, spheremap, packed = (
         found[key]["ns_per_megapixel"]
-        for key in (("per_pixel_view", "encode"), ("spheremap", "encode"), ("rgba8 12:12", "pack"))
+        for key in (("per_pixel_view", "encode"), ("spheremap", "encode"), ("rgb8_12_12 12:12", "pack"))
     )
     assert view > spheremap > 0 and packed > 0, "a frame by pixel costs more than spheremap"
 
