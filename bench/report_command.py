@@ -17,7 +17,8 @@ from ..reports.pareto import Panel, Point, decibels
 from ..reports.verdict import LEADING, is_count, is_number
 from . import seeds, sphere_maps
 from .codec_costs import Costs, LeftOutError, Where
-from .cost import OPERATIONS
+from .cost import OPERATIONS, listing
+from .cost_sheets import article_rows, order_notes
 from .output import check_folder, check_writable, say, whole_file
 from .runs import Done, Row, read_run, sources
 from .short import SHORT
@@ -119,6 +120,7 @@ def gathered(folder: Path, done: Done) -> Found:
         maps=list(_maps(folder / MAPS, quality)),
         fronts=list(_fronts(tables, remarks)),
         listings=_listings(folder / LISTINGS, tables.get("cost", [])),
+        order=_order(folder / LISTINGS, tables.get("cost", [])),
         remarks=remarks,
     )
 
@@ -224,11 +226,28 @@ def _codec(row: Row) -> Codec | None:
     return Codec(encoding, storage, str(row.get("rounding"))) if encoding and storage else None
 
 
-def _listings(folder: Path, rows: Sequence[Row]) -> dict[str, str]:
-    """The last GPU family's kernels, as far as a page holds them."""
+def _last_family(folder: Path, rows: Sequence[Row]) -> tuple[str, Mapping[str, Path]]:
+    """The last GPU family of the rows, and the files that hold its kernels, by name."""
     families = [str(row["family"]) for row in rows if row.get("family")]
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
-    there = _files(known[families[-1]]) if families and families[-1] in known else {}
+    return (families[-1], _files(known[families[-1]])) if families and families[-1] in known else ("", {})
+
+
+def _order(folder: Path, rows: Sequence[Row]) -> list[str]:
+    """Where the last GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
+    family, there = _last_family(folder, rows)
+    try:
+        chosen = [row for row in rows if (row["family"], row["stage"]) == (family, STAGE) and row["encoding"]]
+        paths = [(row, there.get(listing(row, "")[0].name)) for row in chosen]
+        listed = [(row, path.read_text(encoding="utf-8", errors="replace")) for row, path in paths if path]
+        return order_notes(listed, article_rows(ENCODINGS, OPERATIONS))
+    except UNEXPECTED:
+        return []
+
+
+def _listings(folder: Path, rows: Sequence[Row]) -> dict[str, str]:
+    """The last GPU family's kernels, as far as a page holds them."""
+    family, there = _last_family(folder, rows)
     listed, size = {}, 0
     for name, path in sorted(there.items()):
         if not name.startswith(STAGE):
@@ -237,5 +256,5 @@ def _listings(folder: Path, rows: Sequence[Row]) -> dict[str, str]:
         size += len(text)
         if size > LISTED:
             break
-        listed[f"{families[-1]}, {plain_text(path.stem)}"] = "\n".join(map(plain_text, text.expandtabs().splitlines()))
+        listed[f"{family}, {plain_text(path.stem)}"] = "\n".join(map(plain_text, text.expandtabs().splitlines()))
     return listed

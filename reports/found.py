@@ -78,6 +78,7 @@ class Found:
         maps: errors over the sphere.
         fronts: cost against error.
         listings: disassemblies, text by name.
+        order: where costs are in another order than the article's, and why, in lines.
         remarks: what does not fit, in sentences.
     """
 
@@ -94,6 +95,7 @@ class Found:
     maps: Sequence[SphereMap] = ()
     fronts: Sequence[Front] = ()
     listings: Mapping[str, str] = field(default_factory=dict)
+    order: Sequence[str] = ()
     remarks: Sequence[str] = ()
 
     def with_remarks(self, more: Sequence[str]) -> Found:

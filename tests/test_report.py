@@ -211,6 +211,26 @@ def test_the_page_is_small_fetches_nothing_and_answers_first(results):
     assert answer < read.text.index("What normals lose")
 
 
+def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp_path):
+    folder, rows = tmp_path / "run", []
+    for name, count, guards in (("per_pixel_view", 30, 2), ("spherical", 24, 1)):
+        about = {"measure": "isa", "encoding": name, "operation": "encode", "stage": "fragment", "family": "navi31"}
+        rows.append(dict.fromkeys(cost.COLUMNS) | about | {"instructions": count, "transcendental": 1})
+        path, text = cost.listing(rows[-1], "BB0:\n" + "        v_cmp_lt_f32_e32 vcc, 0, v1\n" * guards)
+        (folder / "disassembly" / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "disassembly" / path).write_text(text)
+    _, read = reported(run, a_run(folder, {"cost": rows}))
+    assert "the other way round: per_pixel_view and spherical" in read.text
+    for name, said in (
+        ("per_pixel_view", "30 instructions for 17 slots, of them 2"),
+        ("spherical", "24 instructions for 26 slots, of them 1"),
+    ):
+        assert f"{name}: {said} to compare, choose or clamp, 1 transcendental" in read.text
+    (folder / "disassembly" / path).unlink()
+    _, read = reported(run, folder)
+    assert "the other way round" not in read.text and "spherical" in read.text
+
+
 def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
     folder, _ = results
     found = report_command.gathered(folder, read_run(folder))
