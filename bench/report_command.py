@@ -164,7 +164,7 @@ def _pictures(folder: Path, rows: Sequence[Row]) -> Iterator[PictureSet]:
     """The pictures of each codec of the rows. A name is looked up, so that none leads out of the folder."""
     there = _files(folder)
     for normals, key in dict.fromkeys((str(row.get("normals")), CodecKey.of(row)) for row in rows):
-        stem = f"{normals}-{key.encoding}-{key.storage}" + ("-truncate" if key.rounding == "truncate" else "")
+        stem = f"{normals}-{key.encoding}-{key.storage}" + ("" if key.rounding == "nearest" else f"-{key.rounding}")
         files = {kind: there[name] for kind in KINDS if (name := f"{stem}-{kind}.png") in there}
         if files:
             yield PictureSet(key, normals, files)

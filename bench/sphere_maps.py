@@ -78,7 +78,7 @@ def _angles(codec: Codec):
 
 def file_name(encoding: str, storage: str, rounding: str) -> str:
     """What a codec's map is called."""
-    return "-".join([encoding, storage, *(["truncate"] if rounding == "truncate" else [])]) + ".npz"
+    return "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])]) + ".npz"
 
 
 def write_maps(codecs: Iterable[Codec], folder: Path) -> None:

@@ -13,6 +13,7 @@ import pytest
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench import cli, seeds
+from normalbench.bench.code_limits import HEMISPHERE, SPHERE, code_limit
 from normalbench.bench.light_sums import Adder, equal_lights
 from normalbench.encodings.catalogue import LIGHT_ENCODINGS
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -85,6 +86,23 @@ def test_the_table_is_what_is_measured(normalbench):
             row = normalbench.quality(encoding=name, storage=seeds.STORAGE, backend=backend)
             assert row["bits"] == int(bits)
             assert float(figure) == pytest.approx(row["psnr_seed_db"], abs=0.02), f"{name} by {backend}"
+
+
+def test_the_limit_table_is_what_is_measured(normalbench):
+    """To the digits shown."""
+    table = TEXT[TEXT.index("<!-- normalbench quality -->") :].split("\n\n")[0]
+    lines = re.findall(r"^\| `?(\w+)`? +\| (\w+) +\|" + r" +([\d.]*)[ %]*\|" * 6 + "$", table, re.M)
+    assert len(lines) == 8
+    for name, domain, mean, rms, largest, bits, share, unused in lines:
+        if name == "limit":
+            least = code_limit(2**16, {"sphere": SPHERE, "hemisphere": HEMISPHERE}[domain])
+            found = [least.mean_deg, least.rms_deg, least.max_deg, 16.0]
+        else:
+            row = normalbench.quality(encoding=name, storage="rg8", normals=domain, worst_case=True, codes=True)
+            found = [row[f"angle_{what}_deg"] for what in ("mean", "rms", "sup")] + [row["effective_bits"]]
+            assert row["domain"] == domain and int(unused) == row["codes_unused"]
+            assert float(share) == pytest.approx(row["reached_rms_percent"], abs=0.06)
+        assert [float(text) for text in (mean, rms, largest, bits)] == pytest.approx(found, rel=5e-4)
 
 
 @pytest.mark.usefixtures("gl")
