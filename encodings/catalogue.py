@@ -9,6 +9,7 @@ from typing import TypeVar
 from .depth_encoding import DepthEncoding
 from .encoding import Encoding
 from .errors import CatalogueError
+from .frame_encoding import FrameEncoding
 from .light_encoding import LightEncoding
 
 PAIRS = (
@@ -54,7 +55,9 @@ LIGHT_NAMES = (
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
 
-E = TypeVar("E", Encoding, LightEncoding, DepthEncoding)
+FRAME_NAMES = ("smallest_three", "octahedral_angle", "qtangent")
+
+E = TypeVar("E", Encoding, LightEncoding, DepthEncoding, FrameEncoding)
 
 
 def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> dict[str, E]:
@@ -83,3 +86,4 @@ ENCODINGS: dict[str, Encoding] = _load("normals", PAIRS, Encoding)
 ENCODINGS |= {name: _precise(name, ENCODINGS[pair]) for name, pair in PRECISE.items()}
 LIGHT_ENCODINGS: dict[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
 DEPTH_ENCODINGS: dict[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
+FRAME_ENCODINGS: dict[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)

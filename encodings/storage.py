@@ -132,6 +132,16 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
     }
 )
 
+# What holds a tangent frame: four numbers.
+FRAME_STORAGES: Mapping[str, Storage] = MappingProxyType(
+    {
+        **{name: STORAGES[name] for name in ("rgb10a2", "rgba8", "rgba8_snorm", "rgba16f", "rgba32f")},
+        "rgba8_10_10_11_1": _packed("rgba8_10_10_11_1", "10:10:11:1 in RGBA8", "unorm", 10, 10, 11, 1),
+        "rgba16": Storage("rgba16", "RGBA16", "unorm", (16, 16, 16, 16), 0x805B),
+        "rgba16_snorm": Storage("rgba16_snorm", "RGBA16 signed", "snorm", (16, 16, 16, 16), 0x8F9B),
+    }
+)
+
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
 # Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.
 SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)

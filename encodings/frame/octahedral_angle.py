@@ -1,0 +1,75 @@
+"""Octahedral normal, and the tangent's angle around it from a fixed tangent of that normal.
+
+The fixed tangent is that of the normal as it is decoded: no field of tangents is without a seam or a pole, and there a
+normal that was moved by rounding would have another one. -1 and 1 are one angle, so one of 2^n codes is spare.
+"""
+
+from pathlib import Path
+
+from ..elementary import CONSTANTS, atan2_pi, sincos_pi
+from ..frame_encoding import FrameEncoding
+from ..rotation import Frame
+from ..vec import Vec2, Vec3, Vec4, cross, dot, maximum, normalize, select, sign_not_zero
+
+# Where the fixed tangents part, a height on the octahedron: steps of no fixed point or half float come to it, so that
+# both languages, and both ends of a storage, are on one side of it.
+SEAM = -0.3
+
+
+def point(n: Vec3) -> Vec2:
+    """A unit normal's point of the octahedral square."""
+    # p = n.xy / (|n.x| + |n.y| + |n.z|), and for z < 0 (1 - |p.yx|) sign(p)
+    p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)))
+    return select(n.z < 0.0, (1.0 - abs(p.yx)) * sign_not_zero(p), p)
+
+
+def fixed(p: Vec2) -> Frame:
+    """The normal of a point of the square, and its fixed tangent."""
+    # n = (p, 1 - |p.x| - |p.y|), and for z < 0 n.xy - sign(p) (-n.z)
+    z = 1.0 - abs(p.x) - abs(p.y)
+    xy = p - sign_not_zero(p) * maximum(-z, 0.0)
+    n = normalize(Vec3(xy.x, xy.y, z))
+    # s = 1, and -1 below the seam; t = (1 - s n.x^2 / (s + n.z), -s n.x n.y / (s + n.z), -s n.x)
+    s = select(z < SEAM, -1.0, 1.0)
+    a = s * n.x / (s + n.z)
+    return Frame(n, Vec3(1.0 - n.x * a, -n.y * a, -s * n.x), 1.0)
+
+
+def settle(frame: Frame, stored: Vec4) -> Vec4:
+    """The normal as it comes back, and the tangent's angle around it in half turns."""
+    f = fixed(Vec2(stored.x, stored.y))
+    # a = atan2(t' . (n x t), t' . t) / pi
+    angle = atan2_pi(dot(frame.tangent, cross(f.normal, f.tangent)), dot(frame.tangent, f.tangent))
+    return Vec4(stored.x, stored.y, angle, frame.hand)
+
+
+def encode(frame: Frame, least) -> Vec4:
+    """The point of the normal on the square, the tangent's angle in half turns, and the hand."""
+    p = point(frame.normal)
+    return settle(frame, Vec4(p.x, p.y, 0.0, 0.0))
+
+
+def decode(e: Vec4, least) -> Frame:
+    """The frame of a point of the square, an angle and a hand."""
+    f = fixed(Vec2(e.x, e.y))
+    # t' = cos(pi a) t + sin(pi a) (n x t)
+    sine, cosine = sincos_pi(e.z)
+    return Frame(f.normal, cosine * f.tangent + sine * cross(f.normal, f.tangent), sign_not_zero(e.w))
+
+
+ENCODING = FrameEncoding(
+    name="octahedral_angle",
+    title="octahedral normal and the tangent's angle",
+    encode=encode,
+    decode=decode,
+    settle=settle,
+    hand_in=3,
+    levels=(0, 0, 0, 2),
+    storages=("rgb10a2", "rgba8_10_10_11_1", "rgba8", "rgba16", "rgba16f"),
+    citation="J. Ong, Tangent Spaces and Diamond Encoding, 2023; the fixed tangent: T. Duff et al., Building an "
+    "Orthonormal Basis, Revisited, JCGT 6(1), 2017",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 6),
+    ulps_reason="one reciprocal and an arc tangent; a normalise, a division, two sines and their products",
+    constants={"OCTAHEDRAL_ANGLE_SEAM": SEAM, **CONSTANTS},
+)

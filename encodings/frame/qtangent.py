@@ -1,0 +1,43 @@
+"""QTangent: a whole quaternion, its sign the frame's hand.
+
+q and -q are one rotation, so the sign of w is free. It must not be lost where w is 0: there w is kept at the least
+number that has a sign, which costs up to twice that in angle.
+"""
+
+from pathlib import Path
+
+from ..frame_encoding import FrameEncoding
+from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..vec import TINY, Vec4, dot, inversesqrt, maximum, select, sign_not_zero, sqrt
+
+
+def encode(frame: Frame, least) -> Vec4:
+    """The quaternion under the hand's sign, |w| at least `least`."""
+    q = quaternion_of(frame)
+    q = q * sign_not_zero(q.w)
+    # for w < least: (q.xyz sqrt(1 - least^2), least); e = hand q
+    shrunk = q.xyz * sqrt(1.0 - least * least)
+    biased = Vec4(shrunk.x, shrunk.y, shrunk.z, least)
+    return select(q.w < least, biased, q) * frame.hand
+
+
+def decode(e: Vec4, least) -> Frame:
+    """The frame of a quaternion of any length; +z and +x of none."""
+    # q = e / |e|
+    q = e * inversesqrt(maximum(dot(e, e), TINY))
+    return frame_of_quaternion(q, sign_not_zero(e.w))
+
+
+ENCODING = FrameEncoding(
+    name="qtangent",
+    title="quaternion, the hand its sign",
+    encode=encode,
+    decode=decode,
+    hand_in=3,
+    levels=(0, 0, 0, 0),
+    storages=("rgba8_snorm", "rgba8", "rgba16_snorm", "rgba16f"),
+    citation="I. Z. Frey and I. Herzeg, Spherical Skinning with Dual Quaternions and QTangents, SIGGRAPH Talks 2011",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 8),
+    ulps_reason="one normalise; another of numbers that come back shorter, and products of its results, doubled",
+)

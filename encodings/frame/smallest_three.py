@@ -1,0 +1,58 @@
+"""Smallest three: of a quaternion the three smallest components, and which one is the largest.
+
+q and -q are one rotation, so the largest is positive and its square is what is left of 1. The others lie in
+[-1, 1] / sqrt(2). The third of them is kept by its distance from the lower end of that range, and the hand is its sign:
+that takes one bit of its precision, and none beside it.
+"""
+
+import math
+from pathlib import Path
+
+from ..frame_encoding import FrameEncoding
+from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..vec import Vec3, Vec4, dot, index_of, maximum, number_of, select, sign_not_zero, sqrt
+
+RANGE = math.sqrt(0.5)
+
+
+def encode(frame: Frame, least) -> Vec4:
+    """Three components over their range, the third as hand and magnitude; the largest's index of 0 to 3."""
+    q = quaternion_of(frame)
+    a = abs(q)
+    xy, zw = maximum(a.x, a.y), maximum(a.z, a.w)
+    # i = the largest component's index; s = sign(q_i) (the others) sqrt(2)
+    i = select(xy >= zw, select(a.x >= a.y, 0.0, 1.0), select(a.z >= a.w, 2.0, 3.0))
+    rest = select(i < 2.0, Vec3(select(i == 0.0, q.y, q.x), q.z, q.w), Vec3(q.x, q.y, select(i == 2.0, q.w, q.z)))
+    largest = select(i < 2.0, select(i == 0.0, q.x, q.y), select(i == 2.0, q.z, q.w))
+    s = rest * (sign_not_zero(largest) / RANGE)
+    # e = (s.xy, hand (least + (1 - least) (s.z + 1) / 2), i)
+    magnitude = least + (1.0 - least) * maximum(s.z * 0.5 + 0.5, 0.0)
+    return Vec4(s.x, s.y, frame.hand * magnitude, number_of(i, 4))
+
+
+def decode(e: Vec4, least) -> Frame:
+    """The frame of three components and the fourth's index; numbers that no quaternion has give no unit vectors."""
+    # s.z = 2 (|e.z| - least) / (1 - least) - 1; q_i = sqrt(1 - |s|^2 / 2)
+    third = (abs(e.z) - least) / (1.0 - least) * 2.0 - 1.0
+    s = Vec3(e.x, e.y, third) * RANGE
+    largest = sqrt(maximum(1.0 - dot(s, s), 0.0))
+    i = index_of(e.w, 4)
+    first = Vec4(select(i == 0.0, largest, s.x), select(i == 0.0, s.x, largest), s.y, s.z)
+    last = Vec4(s.x, s.y, select(i == 2.0, largest, s.z), select(i == 2.0, s.z, largest))
+    return frame_of_quaternion(select(i < 2.0, first, last), sign_not_zero(e.z))
+
+
+ENCODING = FrameEncoding(
+    name="smallest_three",
+    title="quaternion, the smallest three",
+    encode=encode,
+    decode=decode,
+    hand_in=2,
+    levels=(0, 0, 0, 4),
+    storages=("rgb10a2", "rgba8", "rgba16", "rgba16f"),
+    citation="N. Frykholm, The BitSquid low level animation system, 2009; G. Fiedler, Snapshot Compression, 2015",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(6, 6),
+    ulps_reason="a normalise, a division and a product; a root of what three squares leave of 1, and products, doubled",
+    constants={"SMALLEST_THREE_RANGE": RANGE},
+)
