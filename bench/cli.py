@@ -17,7 +17,7 @@ from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
 from ..reports.plots import PlotError
-from .command_options import CostOptions, DepthOptions, LightsOptions, SuiteOptions, SweepOptions
+from .command_options import CostOptions, DepthOptions, FramesOptions, LightsOptions, SuiteOptions, SweepOptions
 from .errors import MissingError, UsageError
 from .options import QualityOptions, Reading, RenderOptions
 from .output import abandon_output, write
@@ -47,12 +47,15 @@ OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write
 @app.command("list")
 def list_command(
     what: Annotated[
-        str, typer.Argument(help="encodings, storages, depths, normals, layouts, pipelines, scenes, lights, or all.")
+        str,
+        typer.Argument(
+            help="encodings, storages, depths, frames, normals, layouts, pipelines, scenes, lights, or all."
+        ),
     ] = "all",
     format: FormatOption = Format.table,
     output: OutputOption = None,
 ) -> None:
-    """What there is: encodings, storages, depth codes, normal sets, layouts, pipelines, scenes and light buffers."""
+    """What there is: encodings, storages, codes of depth and frames, sets, layouts, pipelines, scenes, lights."""
     from .listing import listing
 
     write(listing(what), format, output)
@@ -170,6 +173,18 @@ def depth(
 
 @app.command()
 @with_options
+def frames(options: FramesOptions, format: FormatOption = Format.table, output: OutputOption = None) -> int:
+    """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost hands.
+
+    A set may be a mesh (glTF, GLB, OBJ, PLY): the frames of its vertices, authored or along its uv.
+    """
+    from .frames_command import FramesRequest, frames_command
+
+    return frames_command(FramesRequest(**vars(options)), format, output)
+
+
+@app.command()
+@with_options
 def cost(
     options: CostOptions,
     seeds: Annotated[bool, typer.Option("--seeds", help="The article's figures beside them.")] = False,
@@ -202,7 +217,7 @@ def run(
         ),
     ] = None,
 ) -> None:
-    """The default suite into a results folder with tables and pictures: normals, images, light, depth, pass times.
+    """The default suite into a results folder with its report: normals, images, light, depth, frames, pass times.
 
     A run that was stopped goes on when the same command is run again.
     """

@@ -94,6 +94,22 @@ class DepthOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FramesOptions:
+    """What `frames` measures: names are comma-separated; no storage is what is usual."""
+
+    encoding: Annotated[str, Option("--encoding", f"Tangent frame codes, {Names}.")] = "all"
+    storage: Annotated[
+        str | None, Option("--storage", f"Frame storages, {Names}. Default: where each code usually lies.")
+    ] = None
+    frames: Annotated[
+        str, Option("--frames", f"Frame sets or mesh files, whose vertices are taken, {Names}.", files=True)
+    ] = "rotations"
+    backend: Backends = "jax,glsl"
+    count: Annotated[int, Option("--count", "Frames in a uniform set.")] = 2**18
+    seed: SetSeed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
 class CostOptions:
     """What `cost` measures: names are comma-separated."""
 
@@ -125,7 +141,7 @@ class SuiteOptions:
     """What `run` measures: tables, comma-separated; normals in a uniform set; and a seed."""
 
     tables: Annotated[
-        str, Option("--tables", "quality, render, cost, lights, depth, passes; comma-separated, or all.")
+        str, Option("--tables", "quality, render, cost, lights, depth, frames, passes; comma-separated, or all.")
     ] = "all"
     count: Count = DEFAULT_COUNT
     seed: SetSeed = 0

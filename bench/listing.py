@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
-from ..encodings.storage import DEPTH_STORAGES, STORAGES
+from ..encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_ENCODINGS
+from ..encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
 from ..gbuffer.layouts import LAYOUTS
 from ..gbuffer.pipelines import PIPELINES
 from ..gbuffer.scenes.catalogue import SCENES
@@ -17,6 +17,7 @@ NORMAL_SETS = {
     "playground": "the seeds' scene rendered at 640 x 480, without its four lamp arms",
 }
 
+FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
 COLUMNS = ("kind", "name", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
@@ -50,6 +51,20 @@ def _depths() -> list[Row]:
             for d in DEPTH_ENCODINGS.values()
         ),
         *(_row("depth storage", s.name, s.title, holds=f"{s.bits} bits") for s in DEPTH_STORAGES.values()),
+    ]
+
+
+def _frames() -> list[Row]:
+    return [
+        *(
+            _row("frame", f.name, f.title, holds=f"usually in {', '.join(f.storages)}") | {"from": f.citation}
+            for f in FRAME_ENCODINGS.values()
+        ),
+        *(
+            _row("frame storage", s.name, f"{s.title}, {s.kind}", holds=f"{':'.join(map(str, s.bits))} bits")
+            for s in FRAME_STORAGES.values()
+        ),
+        *(_row("frame set", name, title) for name, title in FRAME_SETS.items()),
     ]
 
 
@@ -88,6 +103,7 @@ KINDS = {
     "encodings": _encodings,
     "storages": _storages,
     "depths": _depths,
+    "frames": _frames,
     "normals": _normal_sets,
     "layouts": _layouts,
     "pipelines": _pipelines,

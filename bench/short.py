@@ -9,6 +9,7 @@ from ..encodings.catalogue import ENCODINGS
 from . import quality, seeds
 from .cost import OPERATIONS
 from .cost_sheets import article_rows, isa_sheet
+from .frames_command import in_order
 from .rendering import ranked
 from .runs import Row
 
@@ -85,6 +86,15 @@ def _depth_in_short(rows: list[Row]) -> Short:
     yield f"the worst position error, near {rows[0]['near']:g}, far {rows[0]['far']:g}", list(lines.values()), ()
 
 
+def _frames_in_short(rows: list[Row]) -> Short:
+    measured = [row for row in in_order(rows) if row["rotation_rms_deg"] is not None]
+    chosen = [row for row in measured if row["backend"] == measured[0]["backend"]]
+    names = ("encoding", "storage", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
+    if chosen:
+        shown = _columns(chosen, *names, "effective_bits", "limit_rms_deg", "hands_lost")
+        yield f"tangent frames, degrees between the true and the decoded one, by {chosen[0]['backend']}", shown, ()
+
+
 def _cost_in_short(rows: list[Row]) -> Short:
     first = next((row for row in rows if row["stage"]), None)
     if first:
@@ -99,5 +109,6 @@ SHORT = {
     "cost": _cost_in_short,
     "lights": _lights_in_short,
     "depth": _depth_in_short,
+    "frames": _frames_in_short,
     "passes": _passes_in_short,
 }

@@ -18,11 +18,12 @@ from ..gbuffer.layouts import LAYOUTS
 from ..gbuffer.packings import PACKINGS
 from ..gbuffer.pipelines import PIPELINES
 from ..gbuffer.scenes.setting import Setting
-from . import cost, depth, isa, lights, quality, spirv, sweep
+from . import cost, depth, frames, isa, lights, quality, spirv, sweep
 from .command_options import SuiteOptions
 from .commands import Request
 from .depth_command import DepthRequest
 from .errors import MissingError, pick
+from .frames_command import FramesRequest
 from .lights_command import LightsRequest
 from .render_commands import RenderRequest
 from .rendering import Bench, Case, described
@@ -142,6 +143,13 @@ def _depth(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
         yield Step("depth", key, lambda case=case: depth.measure(case))
 
 
+def _frames(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
+    for case in FramesRequest(seed=request.seed).cases():
+        key: Row = {"codec": case.codec.name, "frame_set": case.frame_set.name, "backend": case.backend}
+        key |= {"count": case.frame_set.count, "seed": case.frame_set.seed}
+        yield Step("frames", key, lambda case=case: [frames.measure(case)])
+
+
 def cost_cases() -> list[cost.Case]:
     """Each encoding, and what the storages of the suite and packed words add."""
     packings = [packing for name in PACKED for packing in PACKINGS[name]]
@@ -165,6 +173,7 @@ TABLES: dict[str, Callable[[SuiteRequest, Device | None], Iterator[Step]]] = {
     "cost": _cost,
     "lights": _lights,
     "depth": _depth,
+    "frames": _frames,
     "passes": _passes,
 }
 

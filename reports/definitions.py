@@ -144,6 +144,11 @@ DEFINITIONS = {
     "error_max": "The largest such distance.",
     "half_step": "What half a step of the storage moves the position by at worst.",
     "signs_lost": "Signs beside the depth that came back wrong.",
+    # tangent frames
+    "frame_set": "The set of tangent frames that was measured on.",
+    "codes": "How many codes there are: whatever the stored numbers can be, used or not.",
+    "below_limit": "What so many codes cannot do: then the measure is wrong.",
+    "hands_lost": "Mirrored frames that came back as others, and others as mirrored ones.",
 }
 PATTERNS = {
     r"psnr_seed_db_\w+": "The article's own measure, by that back end.",
@@ -151,6 +156,10 @@ PATTERNS = {
     r"ms_\w+_spread": "Distance of that pass's quartiles, milliseconds.",
     r"ms_\w+": "Milliseconds of that pass, median.",
     r"triangles_\w+": "What that pass sends to the rasteriser.",
+    r"limit_(mean|rms|max)_deg": "The least that so many codes can have, degrees.",
+    r"reached_(mean|rms|max)_percent": "The limit's share of the figure, percent; 100 is ideal.",
+    r"(normal|tangent)_(mean|rms|max)_deg": "Of a tangent frame's normal or tangent: the angle to its decode, degrees.",
+    r"rotation_(mean|rms|max)_deg": "The angle of the rotation from the true frame to the decoded one, degrees.",
     r"at_[\d.e+-]+": "The largest error at that distance.",
     r"\d+_lights": "What is left of the sum of so many lights.",
     r"(model|gl)_(rms|max)": "Error over the pixels: root mean square, or the largest.",

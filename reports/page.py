@@ -35,6 +35,7 @@ NAVIGATION = (
     ("passes", "Passes"),
     ("light", "Light"),
     ("depth", "Depth"),
+    ("frames", "Frames"),
     ("measured", "Measured"),
 )
 

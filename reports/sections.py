@@ -241,6 +241,17 @@ SECTIONS = (
         _depths,
     ),
     Section(
+        "frames",
+        "What tangent frames lose",
+        "A normal, a tangent and the side of the bitangent in one texel: how far is the decoded frame turned?",
+        "frames",
+        "Rotations spread evenly by Haar's measure, half of them mirrored, through each code in its storage as normals "
+        "go. The angle is that of the rotation from the true frame to the decoded one; lost hands are counted. The "
+        "limit is of as many codes: the ball of rotations that is one code's share.",
+        ("frame_set", "count", "backend", "seed", "device", "rounded_by"),
+        no_drawings,
+    ),
+    Section(
         "cost",
         "What it costs",
         "What a current compiler makes of each encoder and decoder, and whether it is worth it.",

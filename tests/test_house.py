@@ -10,17 +10,18 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench import listing, normal_sets, quality
+from normalbench.bench import frame_sets, listing, normal_sets, quality
 from normalbench.encodings.catalogue import (
     DEPTH_ENCODINGS,
     DEPTH_NAMES,
     ENCODINGS,
+    FRAME_ENCODINGS,
     LIGHT_ENCODINGS,
     NAMES,
     PAIRS,
     PRECISE,
 )
-from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
+from normalbench.encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
 from normalbench.gbuffer.layouts import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -60,7 +61,7 @@ def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
         assert tops - sys.stdlib_module_names <= {"encodings", "jax", "numpy"}, path.name
-        others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth)\.", m)]
+        others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth|frame)\.", m)]
         assert not others, f"{path.name} imports {others}"
 
 
@@ -145,7 +146,9 @@ def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
     there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_ENCODINGS}
+    there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
+    assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 
 
 def test_rows_have_the_columns_of_the_table():
@@ -158,7 +161,7 @@ def test_rows_have_the_columns_of_the_table():
 def test_no_runner_asks_for_a_variants_name():
     """A variant's special need is a field on it."""
     for path in SOURCES:
-        if path.parts[-2] not in ("normals", "light", "depth"):
-            depths = (*DEPTH_NAMES, *DEPTH_STORAGES)
+        if path.parts[-2] not in ("normals", "light", "depth", "frame"):
+            depths = (*DEPTH_NAMES, *DEPTH_STORAGES, *FRAME_ENCODINGS, *FRAME_STORAGES)
             for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_ENCODINGS, *SCENES):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"

@@ -166,6 +166,20 @@ def test_the_depth_table_is_what_is_measured(run):
             assert [float(text) for text in shown] == pytest.approx(measured, rel=tolerance), asked
 
 
+def test_the_frames_table_is_what_is_measured(run):
+    """By JAX, on the rows of the command that stands above it; best first, as it prints them."""
+    table = TEXT[TEXT.index("<!-- normalbench frames -->") :].split("\n\n")[0]
+    lines = [[cell.strip(" `%") for cell in line.split("|")[1:-1]] for line in table.splitlines()[3:]]
+    (command,) = re.findall(r"^    normalbench (frames --count .*)$", TEXT, re.M)
+    status, out, _ = run(*command.split(), "--backend", "jax", "--format", "json")
+    rows = [row for row in json.loads(out) if row["bits"] == 32]
+    assert status == 0 and [line[:2] for line in lines] == [[row["encoding"], row["storage"]] for row in rows]
+    angles = ("normal_max_deg", "tangent_max_deg", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
+    for line, row in zip(lines, rows, strict=True):
+        expected = [*(row[name] for name in angles), row["effective_bits"], row["reached_rms_percent"]]
+        assert [float(cell) for cell in line[2:]] == pytest.approx(expected, rel=2e-3, abs=6e-5), line
+
+
 def test_the_cost_table_is_what_is_measured(run):
     table = TEXT[TEXT.index("<!-- normalbench cost -->") :].split("\n\n")[0]
     (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", table)

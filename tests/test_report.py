@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench import cost, depth, lights, quality, rendering, report_command, short, sweep
+from normalbench.bench import cost, depth, frames, lights, quality, rendering, report_command, short, sweep
 from normalbench.bench.normal_sets import hemisphere
 from normalbench.bench.runs import read_run
 from normalbench.encodings.catalogue import ENCODINGS
@@ -258,7 +258,7 @@ def test_pictures_that_do_not_fit_are_named_and_the_articles_come_first(results,
 
 
 def test_every_column_is_defined():
-    tables = (quality, rendering, cost, lights, depth, sweep)
+    tables = (quality, rendering, cost, lights, depth, frames, sweep)
     columns = {column for table in tables for column in table.COLUMNS} - {"angle_counts", "ms_frame_each", "cycles"}
     columns -= {"ns_per_megapixel", "millions_per_second", "spread", "turns", "software"}  # of no run
     assert [column for column in sorted(columns) if not definition(column)] == []
