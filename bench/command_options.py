@@ -105,7 +105,7 @@ class FramesOptions:
         str, Option("--frames", f"Frame sets or mesh files, whose vertices are taken, {Names}.", files=True)
     ] = "rotations"
     backend: Backends = "jax,glsl"
-    count: Annotated[int, Option("--count", "Frames in a uniform set.")] = 2**18
+    count: Annotated[int, Option("--count", "Frames in a uniform set.")] = 2**16
     seed: SetSeed = 0
 
 

@@ -43,6 +43,7 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""
         ["render", "--help"],
         ["sweep", "--help"],
         ["depth", "--help"],
+        ["frames", "--help"],
         ["report", "--help"],
     ],
 )
@@ -319,7 +320,7 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "command", [QUICK, ("lights",), ("depth",), ("render",), ("sweep",), ("run",)], ids=lambda c: c[0]
+    "command", [QUICK, ("lights",), ("depth",), ("frames",), ("render",), ("sweep",), ("run",)], ids=lambda c: c[0]
 )
 def test_a_platform_jax_does_not_know_is_one_line(command):
     done = in_a_process(*command, JAX_PLATFORMS="bogus")
