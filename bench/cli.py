@@ -17,7 +17,15 @@ from typer.exceptions import Abort, TyperException
 
 from ..encodings.errors import CatalogueError
 from ..reports.plots import PlotError
-from .command_options import CostOptions, DepthOptions, FramesOptions, LightsOptions, SuiteOptions, SweepOptions
+from .command_options import (
+    CostOptions,
+    DepthOptions,
+    FramesOptions,
+    LightsOptions,
+    SuiteOptions,
+    SweepOptions,
+    TuneOptions,
+)
 from .errors import MissingError, UsageError
 from .options import QualityOptions, Reading, RenderOptions
 from .output import abandon_output, write
@@ -204,6 +212,27 @@ def cost(
     from .cost_command import CostRequest, cost_command
 
     cost_command(CostRequest(**vars(options)), seeds, disassembly, plot, format, output)
+
+
+@app.command()
+@with_options
+def tune(
+    encoding: Annotated[str, typer.Argument(help="An encoding; `normalbench list encodings` shows them.")],
+    options: TuneOptions,
+    reading: Reading,
+    table: Annotated[
+        Path | None, typer.Option("--table", help="Write a tuned look-up into this file, a NumPy array.")
+    ] = None,
+    format: FormatOption = Format.table,
+    output: OutputOption = None,
+) -> None:
+    """Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out.
+
+    What is found has a name that --encoding and --storage take in every command, such as stereographic:scale=1.31.
+    """
+    from .tune_command import tune_command
+
+    tune_command(encoding, options, reading, table, format, output)
 
 
 @app.command()

@@ -137,6 +137,20 @@ class CostOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TuneOptions:
+    """What `tune` fits, and to what."""
+
+    normals: Annotated[str, Option("--normals", "A normal set or a file of one.", files=True)] = "playground"
+    storage: Annotated[str, Option("--storage", "A storage.")] = "rgba8"
+    parameter: Annotated[
+        str, Option("--parameter", "An encoding's own; bits, table; comma-separated. Default: all there are.")
+    ] = "all"
+    error: Annotated[str, Option("--error", "psnr, rms, mean or max, the largest angle.")] = "psnr"
+    count: Annotated[int, Option("--count", "Normals in a uniform set.")] = 2**20
+    seed: Annotated[int, Option("--seed", "What uniform sets and their halves are made with.")] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
 class SuiteOptions:
     """What `run` measures: tables, comma-separated; normals in a uniform set; and a seed."""
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
-from ..encodings.storage import ROUNDINGS, STORAGES
+from ..encodings.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ..encodings.vec import Vec3
 from ..gbuffer.codec_passes import CodecPasses
 from ..gbuffer.device import Device, FormatError, NoDeviceError, device
@@ -202,10 +202,19 @@ def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
     chosen = encodings_named(encodings)
     return [
         Codec(encoding, storage, rounding)
-        for storage in pick("storage", storages, STORAGES)
+        for storage in storages_named(storages)
         for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
         for encoding in chosen
     ]
+
+
+def storages_named(names: str) -> list[Storage]:
+    """The storages of comma-separated names, of numbers laid across channels by their bits too. Raises UsageError."""
+    try:
+        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+    return pick("storage", names, {**STORAGES, **{name: storage for name, storage in made.items() if storage}})
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -16,6 +16,7 @@ from typing import Any
 from ..encodings.catalogue import ENCODINGS, NAMES
 from ..encodings.encoding import Encoding
 from ..gbuffer.shader import ShaderError, read_shader
+from . import tuned_names
 from .errors import UsageError, pick
 
 # vec2 mine_encode(vec3 n, vec3 view)
@@ -31,7 +32,7 @@ class NoTwinError(Exception):
 
 
 def encodings_named(names: str) -> list[Encoding]:
-    """The encodings that comma-separated names stand for: the catalogue's, or files that end in .glsl.
+    """The encodings that comma-separated names stand for: the catalogue's, tuned ones, or files that end in .glsl.
 
     A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
     is named on standard error and left out.
@@ -57,6 +58,11 @@ def encodings_named(names: str) -> list[Encoding]:
         raise UsageError(complaints[0])
     for line in complaints:
         print(f"normalbench: left out: {' '.join(line.split())}", file=sys.stderr)
+    for word in rest:
+        if tuned_names.MARK in word and word not in found:
+            found[word] = tuned_names.tuned(word)
+            # Layouts know encodings by name.
+            ENCODINGS[found[word].name] = found[word]
     # "all" is the catalogue, whatever files there were before.
     return pick("encoding", ",".join(rest), {**{name: ENCODINGS[name] for name in NAMES}, **found})
 

@@ -3,13 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from .vec import Vec2, Vec3
 
 Code = Vec2 | Vec3
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of an encoding that may be another one: `encode` and `decode` both take it by its name.
+
+    Attributes:
+        name: the keyword, and what it is called on the command line.
+        constant: the GLSL macro for it; what `constants` say of that is the published value.
+        least, most: its range.
+    """
+
+    name: str
+    constant: str
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class LookUp:
+    """A table of an encoding that may be another one: `encode` takes it by the keyword `table`.
+
+    Attributes:
+        sampler: its key in `tables`.
+        levels: how many values a number of the code may have in a storage that it can be fitted to; evenly spread ones,
+            as many for each number.
+        fit: (normals, levels, prior) -> the table with the least squared error on them. Normals are float64 of shape
+            (count, 3); `prior` is how many normals the middle of a texel counts as.
+    """
+
+    sampler: str
+    levels: range
+    fit: Callable[[Any, Any, float], Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +73,8 @@ class Encoding:
         searches: the encoder takes the best of several codes; where two are as good the languages may differ.
         tables: makes the look-up tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
         functions: what the names of its GLSL functions begin with, of a variant that shares another's file.
+        parameters: those of its constants that may have other values.
+        look_up: that one of its tables that may be another one.
     """
 
     name: str
@@ -58,6 +94,8 @@ class Encoding:
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     tables: Callable[[], Mapping[str, Any]] = dict
     functions: str = ""
+    parameters: tuple[Parameter, ...] = ()
+    look_up: LookUp | None = None
 
     @property
     def prefix(self) -> str:
@@ -69,3 +107,28 @@ class Encoding:
         if component >= self.components:
             return 2
         return self.levels[component] if self.levels else 0
+
+    @property
+    def published(self) -> dict[str, float]:
+        """The values of its parameters by their names, as published."""
+        return {p.name: float(self.constants[p.constant]) for p in self.parameters}  # type: ignore[arg-type]
+
+    def with_parameters(self, values: Mapping[str, float]) -> Encoding:
+        """The encoding with other values for some of its parameters, in both languages, under a name that says them."""
+        macros = {p.constant: values[p.name] for p in self.parameters if p.name in values}
+        said = "".join(f":{name}={value:.9g}" for name, value in values.items())
+        made = replace(self, constants={**self.constants, **macros})
+        return made._variant(said, **values)
+
+    def with_table(self, table: Any, said: str) -> Encoding:
+        """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
+        assert self.look_up
+        tables = {**self.tables(), self.look_up.sampler: table}
+        made = replace(self, tables=lambda: tables)._variant(f":table={said}")
+        encode: Callable[..., Any] = self.encode
+        return replace(made, encode=partial(encode, table=table))
+
+    def _variant(self, said: str, **values: float) -> Encoding:
+        encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
+        name, title = self.name + said, f"{self.title}, {said.removeprefix(':').replace(':', ', ')}"
+        return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)

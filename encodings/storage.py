@@ -18,6 +18,7 @@ Numbers in float64 stand for the exact map: the same integers and floats, produc
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -141,6 +142,42 @@ FRAME_STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rgba16_snorm": Storage("rgba16_snorm", "RGBA16 signed", "snorm", (16, 16, 16, 16), 0x8F9B),
     }
 )
+
+
+# Most bits of a number laid across channels, far from the 24 that float32 has; and of such storages by the number of
+# channels what their names begin with.
+MOST_BITS = 20
+ACROSS = ("r8", "rg8", "rgb8", "rgba8")
+
+
+def across(kind: str, bits: tuple[int, ...]) -> Storage:
+    """Numbers of so many bits laid across as few channels of 8 bits as hold them: rg8_9_7.
+
+    Raises:
+        ValueError: no number or a negative one, more than MOST_BITS, or more than 32 altogether; a line.
+    """
+    if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > 32 or len(bits) not in (2, 3, 4):
+        raise ValueError(f"two to four numbers of 1 to {MOST_BITS} bits, 32 altogether, not {':'.join(map(str, bits))}")
+    channels, spread = ACROSS[(sum(bits) - 1) // 8], ":".join(map(str, bits))
+    is_signed = kind == "snorm"
+    name = f"{channels}_{spread.replace(':', '_')}" + ("_snorm" if is_signed else "")
+    return _packed(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
+
+
+def storage_of(name: str) -> Storage | None:
+    """The storage of a name: one of the catalogue's, or numbers laid across channels as `rg8_9_7` has them; else None.
+
+    Raises:
+        ValueError: laid across channels, but not so; a line.
+    """
+    match = re.fullmatch(r"(r|rg|rgb|rgba)8((?:_\d{1,3}){2,})(_snorm)?", name)
+    if name in STORAGES or not match:
+        return STORAGES.get(name)
+    made = across("snorm" if match[3] else "unorm", tuple(map(int, match[2][1:].split("_"))))
+    if made.name != name:
+        raise ValueError(f"{name}: so many bits lie in {made.name}")
+    return made
+
 
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
 # Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.

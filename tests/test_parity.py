@@ -15,7 +15,6 @@ from normalbench.bench.normal_sets import hemisphere, playground, sphere
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
-from normalbench.encodings.normals import stereographic
 from normalbench.encodings.storage import ROUNDINGS, STORAGES
 from normalbench.gbuffer import shader
 from normalbench.gbuffer.codec_passes import CodecPasses, exact_values
@@ -198,7 +197,7 @@ def test_the_stereographic_scale_is_one_field_for_both_languages():
     """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
     psnr = {}
     for scale in (1.0, 1.7777):
-        codec = Codec(stereographic.scaled(scale), STORAGES["rgba8"])
+        codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])
         for backend in ("jax", "glsl"):
             row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
             psnr[scale, backend] = row["psnr_db"]

@@ -7,49 +7,103 @@ multiples of 1/255. The scale puts the largest component right on one of them.
 
 RMS angle in RGBA8 on uniform directions, degrees, by the side of the table: 0.126 for 128, 0.070 for 256, 0.046 for
 512, 0.038 for 1024, 0.0357 for 2048; 0.0348 for the nearest of all codes, 0.184 unscaled. The axes are no better than
-unscaled, 0.32 degrees. The table is for UNORM8 rounded to nearest: elsewhere the scale only takes from the precision.
+unscaled, 0.32 degrees. The table is for UNORM8 rounded to nearest: elsewhere the scale only takes from the precision,
+and a table of its own can be fitted.
 """
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ..encoding import Encoding
+from ..encoding import Encoding, LookUp
 from ..vec import Vec3, jnp, maximum, minimum, unit
 
 SIZE = 1024  # the side of the table
 ROWS = 32  # of the table, made at once
+GROUP = 2**15  # normals that are fitted to at once
+LEVELS = 256  # of UNORM8
 FIXED = 2.0**20  # components become whole numbers of this; times SIZE they fit 32 bits up to a length of 4
+_CENTRE = (np.arange(SIZE, dtype=np.float32) + 0.5) / SIZE
 
 
 def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
-    """The squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor that knows no k."""
-    p, q = (2 * np.floor(c * k / 2) + 1 for c in (x, y))
+    """The squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor that knows no k.
+
+    Codes are counted in half steps: even ones, and odd ones where there is none for 0.
+    """
+    odd = k % 2
+    p, q = (2 * np.floor((c * k + (1 - odd)) / 2) + odd for c in (x, y))
     across = (y * k - q) ** 2 + (p - x * k) ** 2 + (x * q - y * p) ** 2
     return across / (p * p + q * q + k * k)
 
 
-def _best_scales(y: np.ndarray, ratio: np.ndarray) -> np.ndarray:
-    """The k / 255 with the least misfit for the directions (ratio y, y, 1), every k tried."""
-    x = ratio * y
-    least, best = np.full_like(x, np.inf), np.zeros_like(x)
-    for k in range(255, 0, -2):
-        misfit = _misfit(x, y, k)
-        best[misfit < least] = k / 255
-        least = np.minimum(least, misfit)
+def _best_scales(misfit: Callable[[int], np.ndarray], levels: int) -> np.ndarray:
+    """The scales k / (levels - 1) with the least misfit, every k tried. Of equals the largest."""
+    last = levels - 1
+    least = misfit(last)
+    best = np.ones_like(least)
+    for k in range(last - 2, 0, -2):
+        tried = misfit(k)
+        best[tried < least] = k / last
+        least = np.minimum(least, tried)
     return best
 
 
 @cache
-def tables() -> dict[str, np.ndarray]:
-    """The best scale over (middle / largest, least / middle), for the texel's centre.
+def centres(levels: int = LEVELS) -> np.ndarray:
+    """The best scale over (middle / largest, least / middle), for the texel's centre; float32 of shape (SIZE, SIZE, 1).
 
     Some rows at a time, which stay in a core's cache: a third of a second in place of a whole one.
     """
-    centre = (np.arange(SIZE, dtype=np.float32) + 0.5) / SIZE
-    blocks = [_best_scales(*np.meshgrid(centre, rows)) for rows in np.split(centre, SIZE // ROWS)]
-    return {"best_fit_scale": np.concatenate(blocks)[..., None]}
+    blocks = []
+    for rows in np.split(_CENTRE, SIZE // ROWS):
+        y, ratio = np.meshgrid(_CENTRE, rows)
+        blocks.append(_best_scales(partial(_misfit, ratio * y, y), levels))
+    return np.concatenate(blocks)[..., None]
+
+
+def tables() -> dict[str, np.ndarray]:
+    """The table for UNORM8."""
+    return {"best_fit_scale": centres()}
+
+
+def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
+    """The table whose scales have the least squared error on the normals of each texel, for numbers of so many values.
+
+    Args:
+        normals: float64 of shape (count, 3), unit.
+        prior: how many normals the texel's centre counts as; a texel that no normal meets has its centre's scale.
+    """
+    if not len(normals):
+        return centres(levels)
+    x, y, z = np.sort(np.abs(normals), axis=1).T
+    row, column = _place(x, y, z)
+    texel = row * np.int64(SIZE) + column
+    order = np.argsort(texel, kind="stable")
+    met, first = np.unique(texel[order], return_index=True)
+    table = centres(levels).copy()
+    ends = np.append(first[1:], len(order))
+    for part in np.array_split(np.arange(len(met)), min(len(met), 1 + len(order) // GROUP)):
+        chosen = order[first[part[0]] : ends[part[-1]]]
+        starts = first[part] - first[part[0]]
+        ratio, middle = (_CENTRE[c].astype(np.float64) for c in (met[part] // SIZE, met[part] % SIZE))
+        summed = partial(_summed, x[chosen] / z[chosen], y[chosen] / z[chosen], starts, ratio * middle, middle, prior)
+        table.reshape(-1)[met[part]] = _best_scales(summed, levels)
+    return table
+
+
+def _summed(x, y, starts: np.ndarray, centre_x, centre_y, prior: float, k: int) -> np.ndarray:
+    """For each texel the misfits of its normals, and of its centre as often as that counts."""
+    return np.add.reduceat(_misfit(x, y, k), starts) + prior * _misfit(centre_x, centre_y, k)
+
+
+def _place(x, y, z):
+    # As `_texel` has it.
+    x, y, z = ((c * FIXED).astype(np.uint32) for c in (x, y, z))
+    return np.minimum(x * SIZE // np.maximum(y, 1), SIZE - 1), np.minimum(y * SIZE // z, SIZE - 1)
 
 
 def _sorted(a: Vec3) -> Vec3:
@@ -64,11 +118,14 @@ def _texel(a: Vec3):
     return minimum(j, SIZE - 1), minimum(i, SIZE - 1)
 
 
-def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to the vector along it whose UNORM8 code points best; its largest component is the table's scale."""
+def encode(n: Vec3, view: Vec3, table: Any = None) -> Vec3:
+    """Unit normal to the vector along it whose UNORM8 code points best; its largest component is the table's scale.
+
+    Another `table` than the published one is float32 of shape (SIZE, SIZE, 1).
+    """
     # with |n|'s components sorted, x <= y <= z: c = n s(y / z, x / y) / z
     a = _sorted(abs(n))
-    scale = jnp.asarray(tables()["best_fit_scale"][..., 0], a.z.dtype)[_texel(a)]
+    scale = jnp.asarray((centres() if table is None else table)[..., 0], a.z.dtype)[_texel(a)]
     return n * (scale / a.z)
 
 
@@ -90,4 +147,5 @@ ENCODING = Encoding(
     ulps_reason="the same texel, one division and one product; three products summed, one reciprocal root, one product",
     constants={"BEST_FIT_SIZE": SIZE, "BEST_FIT_FIXED": FIXED},
     tables=tables,
+    look_up=LookUp("best_fit_scale", range(2**4 - 1, 2**10 + 1), fit),
 )

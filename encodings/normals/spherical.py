@@ -1,23 +1,30 @@
-"""Spherical coordinates: the angle around Z, and Z itself."""
+"""Spherical coordinates: the angle around Z, and Z itself.
+
+Of a view few normals have a Z near -1: with a bias and a scale the codes for Z lie where normals are.
+"""
 
 from pathlib import Path
 
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..encoding import Encoding
+from ..encoding import Encoding, Parameter
 from ..vec import Vec2, Vec3, maximum, sqrt
 
-
-def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to (atan2(y, x) / pi, z); the poles, where there is no angle, get angle 0."""
-    return Vec2(atan2_pi(n.y, n.x), n.z)
+# As published the whole of Z is stored as it is.
+BIAS, SCALE = 0.0, 1.0
 
 
-def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of the angle pi e.x at height e.y."""
+def encode(n: Vec3, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec2:
+    """Unit normal to (atan2(y, x) / pi, (z - bias) / scale); the poles, where there is no angle, get angle 0."""
+    return Vec2(atan2_pi(n.y, n.x), (n.z - bias) / scale)
+
+
+def decode(e: Vec2, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec3:
+    """The unit normal of the angle pi e.x at height scale e.y + bias; +z or -z where that is beyond 1."""
     s, c = sincos_pi(e.x)
-    # sin(phi) = sqrt(1 - cos^2(phi)), cos(phi) = e.y
-    r = sqrt(maximum(1.0 - e.y * e.y, 0.0))
-    return Vec3(c * r, s * r, e.y)
+    # sin(phi) = sqrt(1 - cos^2(phi)), cos(phi) = scale e.y + bias
+    z = e.y * scale + bias
+    r = sqrt(maximum(1.0 - z * z, 0.0))
+    return Vec3(c * r, s * r, z)
 
 
 ENCODING = Encoding(
@@ -31,5 +38,6 @@ ENCODING = Encoding(
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(2, 2),
     ulps_reason="polynomials of nine and five terms, which a compiler may or may not fuse",
-    constants=CONSTANTS,
+    constants={**CONSTANTS, "SPHERICAL_BIAS": BIAS, "SPHERICAL_SCALE": SCALE},
+    parameters=(Parameter("bias", "SPHERICAL_BIAS", -1.0, 1.0), Parameter("scale", "SPHERICAL_SCALE", 0.01, 2.0)),
 )

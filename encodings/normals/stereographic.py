@@ -1,10 +1,13 @@
-"""Stereographic projection from -z, scaled so that the normals one practically sees fill the unit disk."""
+"""Stereographic projection from -z, scaled so that the normals one practically sees fill the unit disk.
 
-from dataclasses import replace
-from functools import partial
+At scale s the disk reaches 2 atan(s) from +z, so normals that reach an angle t need s = tan(t / 2), and no code is
+spared. A surface that a ray may hit turns at most 90 degrees from it: a view whose corners are f from its axis sees
+normals up to t = 90 degrees + f.
+"""
+
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..encoding import Encoding, Parameter
 from ..vec import Vec2, Vec3, dot, select
 
 # Found by hand in 2010, for that scene and field of view: the disk reaches 121.3 degrees from +z.
@@ -37,15 +40,6 @@ ENCODING = Encoding(
     ulps=(2, 2),
     ulps_reason="one division each way, the encoder's by a sum that is 1 or more on the hemisphere",
     constants={"STEREOGRAPHIC_SCALE": SCALE},
+    # From a disk that ends 1 degree from +z to one that ends 1 degree from -z.
+    parameters=(Parameter("scale", "STEREOGRAPHIC_SCALE", 0.0088, 114.0),),
 )
-
-
-def scaled(scale: float) -> Encoding:
-    """The encoding with another scale, in both languages; the disk then reaches 2 atan(scale) from +z."""
-    return replace(
-        ENCODING,
-        title=f"stereographic, scale {scale:g}",
-        encode=partial(encode, scale=scale),
-        decode=partial(decode, scale=scale),
-        constants={"STEREOGRAPHIC_SCALE": scale},
-    )
