@@ -217,9 +217,10 @@ def test_the_same_is_found_again(run):
     assert rows_of(run, *arguments) == rows_of(run, *arguments)
 
 
-def test_the_scale_for_a_hemisphere_is_1(run):
+def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
+    """A few half steps of 1 / 255, as everywhere: the last ring of normals is clipped for finer steps."""
     rows, _ = rows_of(run, "stereographic", "--normals", "hemisphere", "--count", "65536", "--parameter", "scale")
-    assert rows["scale"]["tuned"] == pytest.approx(1.0, rel=0.02) and "bits_x" not in rows
+    assert 1 - 9 / 255 < rows["scale"]["tuned"] <= 1 + 1 / 255 and "bits_x" not in rows, rows["scale"]
     assert rows["psnr_db"]["gain"] > 4
     assert rows["scale"]["glsl"] == "STEREOGRAPHIC_SCALE"
 

@@ -101,7 +101,7 @@ def _summed(x, y, starts: np.ndarray, centre_x, centre_y, prior: float, k: int) 
 
 
 def _place(x, y, z):
-    # As `_texel` has it.
+    """The texel's row and column, as `_texel` has it."""
     x, y, z = ((c * FIXED).astype(np.uint32) for c in (x, y, z))
     return np.minimum(x * SIZE // np.maximum(y, 1), SIZE - 1), np.minimum(y * SIZE // z, SIZE - 1)
 

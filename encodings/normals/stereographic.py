@@ -12,6 +12,8 @@ from ..vec import Vec2, Vec3, dot, select
 
 # Found by hand in 2010, for that scene and field of view: the disk reaches 121.3 degrees from +z.
 SCALE = 1.7777
+# From a disk that ends 1 degree from +z to one that ends 1 degree from -z.
+SCALES = 0.0088, 114.0
 
 
 def encode(n: Vec3, view: Vec3, scale: float = SCALE) -> Vec2:
@@ -40,6 +42,5 @@ ENCODING = Encoding(
     ulps=(2, 2),
     ulps_reason="one division each way, the encoder's by a sum that is 1 or more on the hemisphere",
     constants={"STEREOGRAPHIC_SCALE": SCALE},
-    # From a disk that ends 1 degree from +z to one that ends 1 degree from -z.
-    parameters=(Parameter("scale", "STEREOGRAPHIC_SCALE", 0.0088, 114.0),),
+    parameters=(Parameter("scale", "STEREOGRAPHIC_SCALE", *SCALES),),
 )
