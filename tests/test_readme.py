@@ -135,6 +135,19 @@ def test_the_light_table_is_what_is_measured():
             assert float(figure) == pytest.approx(found[count], abs=0.0005), f"{name}, {count} lights"
 
 
+def test_the_tune_table_is_what_is_measured(run):
+    """Two of its rows, which stand for those that take longer."""
+    table = TEXT[TEXT.index("<!-- normalbench tune -->") : TEXT.index("## What the picture says")]
+    named, figure = r"`(\w+)` +\| ", r" +([\d.]+) \|"
+    lines = re.findall(rf"^\| {named * 3}[^|]+\|{figure * 3}$", table, re.M)
+    assert len(lines) == 5
+    for encoding, storage, normals, *figures in (lines[0], lines[3]):
+        status, out, _ = run("tune", encoding, "--storage", storage, "--normals", normals, "--format", "json")
+        (row,) = [row for row in json.loads(out) if row["quantity"] == "psnr_db"]
+        measured = [row["published"], row["tuned"], row["gain"]]
+        assert status == 0 and [float(text) for text in figures] == pytest.approx(measured, abs=0.02), encoding
+
+
 @pytest.mark.usefixtures("gl")
 def test_the_light_image_table_is_what_is_measured(run):
     table = TEXT[TEXT.index("<!-- normalbench lights image -->") :]
