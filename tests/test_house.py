@@ -122,7 +122,11 @@ def test_a_depth_encoding_is_complete(name):
     assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
 
 
-TWINS = [*(e.glsl for e in (*ENCODINGS.values(), *DEPTH_ENCODINGS.values())), ROOT / "encodings/position.glsl"]
+KINDS = (ENCODINGS, DEPTH_ENCODINGS, FRAME_ENCODINGS)
+TWINS = [
+    *(e.glsl for kind in KINDS for e in kind.values()),
+    *(ROOT / f"encodings/{n}.glsl" for n in ("position", "rotation")),
+]
 
 
 @pytest.mark.parametrize("path", TWINS, ids=lambda path: path.stem)

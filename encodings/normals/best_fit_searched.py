@@ -56,8 +56,7 @@ ENCODING = Encoding(
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(8, 2),
     ulps_reason="of two codes whose squared angles differ by a thousandth either may be taken; one normalise",
-    # Already whole: what cuts off would cut at random.
-    levels=(LEVELS,) * 3,
+    levels=(LEVELS,) * 3,  # whole already: what cuts off would cut at random
     searches=True,
     constants={"BEST_FIT_LEVELS": LEVELS, "BEST_FIT_BETTER": BETTER},
 )
