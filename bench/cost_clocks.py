@@ -75,7 +75,8 @@ class Timed:
     def __init__(self, field: Field, operation: Operation):
         device, stack = field.device, field.stack
         self._field, self._clock = field, clock(device)
-        self._textures = {"givens": field.points(operation.given), "besides": field.points(operation.beside)}
+        self._textures = {"kernel_givens": field.points(operation.given)}
+        self._textures |= {"kernel_besides": field.points(operation.beside)}
         self._textures |= {name: device.owned(stack, device.upload(t)) for name, t in operation.tables().items()}
         self._passes = [
             device.owned(stack, device.fragment_pass("kernel_repeat.frag", o.defines, o.names))
@@ -95,7 +96,7 @@ class Timed:
         return min(self._milliseconds(self._passes[0]) for _ in range(3))
 
     def _milliseconds(self, passed: moderngl.VertexArray) -> float:
-        turns: Any = passed.program["turns"]
+        turns: Any = passed.program["kernel_turns"]
         turns.value = self.turns
 
         def run() -> None:

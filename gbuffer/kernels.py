@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from ..encodings.catalogue import ENCODINGS
 from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES
 from .codec_passes import encoding_defines
@@ -24,6 +25,8 @@ from .shader import SHADERS, Source
 STAGES: Mapping[str, str] = MappingProxyType({"fragment": "kernel.frag", "compute": "kernel.comp"})
 # Bindings below are left to the look-up tables.
 PLANES, GROUP = 8, 64
+# Of the depths that are packed; what they are changes no count.
+NEAR, FAR = 0.1, 1000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +99,13 @@ class Packing:
         name: what a reader calls it.
         target: the format and the words that fill it.
         numbers: how many of a code's numbers; 0 for a depth.
+        signed: whether the depth carries the sign of the normal's z.
     """
 
     name: str
     target: Target
     numbers: int
+    signed: bool = False
 
     @property
     def channels(self) -> int:
@@ -111,12 +116,14 @@ class Packing:
 
     @property
     def _layout(self) -> Layout:
+        suits = (e for e in ENCODINGS.values() if e.components == self.numbers or not self.numbers)
+        encoding = next(e for e in suits if bool(e.sign_bits) == self.signed)
         # A depth needs a normal beside it to be a layout; that lies in a second target, which no kernel writes.
-        beside = () if self.numbers else (Target("rgba16f", "normal.x normal.y normal.z"),)
-        return Layout(self.name, self.name, (self.target, *beside), "xy" if self.numbers == 2 else "xyz", "")
+        beside = Target("rgba16f", " ".join(f"normal.{axis}" for axis in "xyz"[: encoding.components]))
+        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding.name, "")
 
     def pack(self) -> Operation:
-        """The numbers to a texel; beside them a depth, and the near and the far plane."""
+        """The numbers to a texel; beside them a depth."""
         return Operation("kernel_pack.glsl", max(self.numbers, 2), 3, self.channels, *self._read(), is_portable=False)
 
     def unpack(self) -> Operation:
@@ -130,6 +137,7 @@ class Packing:
         # Rounding is left to the device, as it is wherever the device rounds as asked.
         rounds = (0,) * len(layout.targets)
         needed = {"LOG2_POWER_MAX": CONSTANTS["LOG2_POWER_MAX"], "SIGN_BITS": 0, "FIRST_NUMBER": first}
+        needed |= {"KERNEL_NEAR": NEAR, "KERNEL_FAR": FAR}
         depth = layout.depth_encoding
         defines = {**needed, **depth_defines(depth), **layout_defines(layout, rounds)}
         return defines, {"DEPTH_ENCODING": depth.glsl}
@@ -150,5 +158,7 @@ PACKINGS: Mapping[str, tuple[Packing, ...]] = MappingProxyType(
         "11:10:11": (Packing("rgba8 11:10:11", Target("rgba8", "normal.x:11 normal.y:10 normal.z:11"), 3),),
         "depth16": (Packing("rgba8 depth 8:8", Target("rgba8", "depth:16"), 0),),
         "depth24": (Packing("rgba8 depth 8:8:8", Target("rgba8", "depth:24"), 0),),
+        "depth16_sign": (Packing("rgba8 signed depth 8:8", Target("rgba8", "depth:16"), 0, True),),
+        "depth24_sign": (Packing("rgba8 signed depth 8:8:8", Target("rgba8", "depth:24"), 0, True),),
     }
 )

@@ -1,3 +1,3 @@
 // The operation that does nothing: what is made is what was given, as many numbers as are wanted of it.
 
-MADE operation(GIVEN given, BESIDE beside) { return given.TAKEN; }
+MADE kernel_operation(GIVEN given, BESIDE beside) { return given.TAKEN; }

@@ -1,4 +1,4 @@
 // A normal and its view-space position to a code.
 #include "code.glsl"
 
-MADE operation(GIVEN given, BESIDE beside) { return ENCODE(given, beside); }
+MADE kernel_operation(GIVEN given, BESIDE beside) { return ENCODE(given, beside); }
