@@ -26,15 +26,19 @@ def key_of(*parts: str | bytes) -> str:
     return digest.hexdigest()
 
 
-def read(key: str, columns: set[str]) -> dict[str, Any] | None:
-    """The value of a key, or None where there is none or it is damaged: no mapping with exactly these columns."""
+def read(key: str) -> dict[str, Any] | None:
+    """The value of a key, or None where there is none, or it is not what was written."""
     try:
         kept = json.loads(_path(key).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        value = kept["value"]
+        is_whole = kept["key"] == key and kept["digest"] == _digest(value)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    if not isinstance(kept, dict) or kept.get("key") != key or not isinstance(kept.get("value"), dict):
-        return None
-    return kept["value"] if set(kept["value"]) == columns else None
+    return value if is_whole and isinstance(value, dict) else None
+
+
+def _digest(value: Any) -> str:
+    return key_of(json.dumps(value, sort_keys=True))
 
 
 def write(key: str, value: dict[str, Any]) -> None:
@@ -44,7 +48,7 @@ def write(key: str, value: dict[str, Any]) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
             try:
-                json.dump({"key": key, "value": value}, file)
+                json.dump({"key": key, "digest": _digest(value), "value": value}, file)
                 file.close()
                 Path(file.name).replace(path)
             finally:

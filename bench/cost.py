@@ -14,7 +14,7 @@ from ..gbuffer import kernels
 from ..gbuffer.kernels import Operation, Packing
 from ..gbuffer.shader import ShaderError
 from . import isa, spirv
-from .disassembly import KINDS, kinds
+from .disassembly import KINDS, issue_slots, jumps, kinds
 from .isa import Compiled, Failure, Job, Outcome
 from .metrics import cores
 
@@ -27,13 +27,20 @@ STATISTICS = {
     "sgprs": ("SGPRs",),
     "spills": ("Spilled VGPRs", "Spilled SGPRs"),
     "code_bytes": ("Code size",),
-    "latency": ("Latency",),
-    "inverse_throughput": ("Inverse Throughput",),
 }
-WHOLE = {"kernel_vgprs": ("VGPRs",), "kernel_sgprs": ("SGPRs",)}
+# Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
+# for what: one kernel's less another's is nobody's cost.
+WHOLE = {
+    "kernel_vgprs": ("VGPRs",),
+    "kernel_sgprs": ("SGPRs",),
+    "kernel_latency": ("Latency",),
+    "kernel_inverse_throughput": ("Inverse Throughput",),
+}
+# Of the listing: what adds up, and what makes the other counts static ones.
+LISTED = ("issue_slots", *KINDS, "branches", "loops")
 COLUMNS = (
-    *("measure", "encoding", "storage", "operation", "stage", "family", "instructions", *KINDS, "spirv_instructions"),
-    *("vgprs", "sgprs", "spills", "code_bytes", "latency", "inverse_throughput", *WHOLE, "cycles"),
+    *("measure", "encoding", "storage", "operation", "stage", "family", "instructions", *LISTED, "spirv_instructions"),
+    *("vgprs", "sgprs", "spills", "code_bytes", *WHOLE, "cycles"),
     *("ns_per_megapixel", "millions_per_second", "spread", "turns", "size", "repeats", "software", "clock"),
     *("device", "driver", "compiler", "skipped"),
 )
@@ -93,6 +100,8 @@ def prepare(case: Case, stage: str) -> Prepared | Failure:
         (job, count), (empty, empty_count) = (
             _job(o, stage, operation.is_portable) for o in (operation, operation.empty)
         )
+    except spirv.ToolError as error:
+        return Failure(str(error))
     except ShaderError as error:
         return Failure(f"{case.name}: {error}")
     return Prepared(job, empty, count - empty_count if count is not None and empty_count is not None else None)
@@ -125,7 +134,7 @@ def isa_rows(
         MissingError: there is no GLSL compiler.
     """
     pairs = [(case, stage) for stage in stages for case in chosen]
-    compiler = spirv.title(spirv.compiler())
+    compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
     with ThreadPoolExecutor(cores()) as pool:
@@ -165,9 +174,9 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
         row[column] = _difference(_total(outcome, names), _total(empty, names))
     for column, names in WHOLE.items():
         row[column] = _total(outcome, names)
-    ours, theirs = (_kinds(o) for o in (outcome, empty))
+    ours, theirs = (_listed(o, row["family"]) for o in (outcome, empty))
     if ours and theirs:
-        row |= {kind: ours[kind] - theirs[kind] for kind in KINDS}
+        row |= {column: _difference(ours[column], theirs[column]) for column in LISTED}
     return row | {"device": outcome.device, "driver": f"Mesa {outcome.version}"}, outcome.assembly
 
 
@@ -180,14 +189,33 @@ def _difference(a: float | None, b: float | None) -> float | None:
     return a - b if a is not None and b is not None else None
 
 
-def _kinds(outcome: Compiled) -> dict[str, int] | None:
-    return kinds(outcome.assembly, int(outcome.statistics.get("Instructions", -1)))
+def _listed(outcome: Compiled, family: str) -> dict[str, int | None] | None:
+    """What a kernel's disassembly says; None where there is none, or one that cannot be understood."""
+    counts = kinds(outcome.assembly, int(outcome.statistics.get("Instructions", -1)), family)
+    if counts is None:
+        return None
+    branches, loops = jumps(outcome.assembly)
+    return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+
+
+def static_notes(rows: Iterable[Row]) -> list[str]:
+    """Why counts of some rows are not what a lane runs: a line for loops and one for branches."""
+    notes = {
+        "loops": "contains a loop, whose body counts once, however often it runs",
+        "branches": "contains a branch, both of whose sides count",
+    }
+    found: dict[str, dict[str, None]] = {column: {} for column in notes}
+    for row in rows:
+        column = next((column for column in notes if row[column]), None)
+        if column:
+            found[column][f"{row['encoding'] or row['storage']} {row['operation']}"] = None
+    return [f"static count: {', '.join(found[column])} {note}" for column, note in notes.items() if found[column]]
 
 
 def listing(row: Row, assembly: str) -> tuple[Path, str]:
     """A disassembly's file name, by what the row is about, and its text: what it costs, then the whole kernel."""
     name = str(row["encoding"] or row["storage"]).replace(" ", "-").replace(":", "-")
-    costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *KINDS) if row[column] is not None)
+    costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *LISTED) if row[column] is not None)
     head = f"; {row['encoding'] or row['storage']} {row['operation']}, {row['stage']}, {row['family']}\n"
     head += f"; {row['device']}, {row['driver']}, {row['compiler']}\n; more than the empty kernel: {costs}\n"
     return Path(row["family"]) / f"{row['stage']}-{name}-{row['operation']}.asm", f"{head}{assembly}"

@@ -30,8 +30,9 @@ UNITS = {"isa": ("instructions", "instructions"), "time": ("ns_per_megapixel", "
 ERRORS = {"psnr": "psnr_db", "mean": "angle_mean_deg", "max": "angle_max_deg"}
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = (
-    *("compiler", "driver", "device", "code_bytes", "kernel_sgprs", "sgprs", "spills", "waiting", "kernel_vgprs"),
-    *("wide_product", "scalar", "latency", "memory", "clock", "vgprs"),
+    *("compiler", "driver", "device", "kernel_latency", "kernel_inverse_throughput", "kernel_sgprs", "kernel_vgprs"),
+    *("code_bytes", "sgprs", "spills", "waiting", "quarter_rate", "branches", "conversion", "scalar", "memory"),
+    *("clock", "vgprs", "full_rate"),
     *(name for name in ("GeForce 7800GT", "Radeon HD 3870", "GeForce 6200")),
 )
 

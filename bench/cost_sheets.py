@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import combinations
 
 from ..encodings.codec import Codec
 from ..reports.pareto import Point
@@ -12,8 +12,8 @@ from . import seeds
 from .cost import COLUMNS, PACKING_OPERATIONS, Row
 from .disassembly import names
 
-# What chooses between two numbers or keeps one within bounds.
-GUARDS = ("v_cmp", "v_cndmask", "v_min", "v_max", "v_med")
+# What compares, chooses between two numbers or keeps one within bounds; v_cmpx masks lanes, as the kernel's own does.
+GUARDS = ("v_cmp_", "v_cndmask", "v_min", "v_max", "v_med")
 
 
 def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Row]:
@@ -62,45 +62,46 @@ def article_sheet(article: Sequence[Row]) -> list[Row]:
 
 
 def order_notes(listed: Sequence[tuple[Row, str]], article: Sequence[Row]) -> list[str]:
-    """Where the article's order by instruction slots is not the order by instructions, and why, from the disassembly.
+    """Where the article's order by instruction slots is not the order by instructions, and what the listings hold.
 
     Args:
         listed: rows and their disassembly, of which one stage and family are compared: the first.
     """
     slots = {(r["encoding"], r["operation"]): r["instructions"] for r in article if not r["device"]}
-    known = [(row, text) for row, text in listed if row["encoding"] and row["instructions"] is not None]
+    known = [(r, t) for r, t in listed if (r["encoding"], r["operation"]) in slots and r["instructions"] is not None]
     if not known:
         return []
     stage, family = known[0][0]["stage"], known[0][0]["family"]
     notes = []
     for operation in dict.fromkeys(row["operation"] for row, _ in known):
-        found = {
-            row["encoding"]: (row, text)
-            for row, text in known
-            if (row["stage"], row["family"], row["operation"]) == (stage, family, operation)
-            and (row["encoding"], operation) in slots
-        }
-        ordered = sorted(found, key=lambda name: slots[name, operation])
-        said = ", ".join(f"{n} {slots[n, operation]}/{found[n][0]['instructions']}" for n in ordered)
+        chosen = [(r, t) for r, t in known if (r["stage"], r["family"], r["operation"]) == (stage, family, operation)]
+        ordered = sorted(chosen, key=lambda one: slots[one[0]["encoding"], operation])
+        said = ", ".join(f"{r['encoding']} {slots[r['encoding'], operation]}/{r['instructions']}" for r, _ in ordered)
         notes.append(f"{operation}, ps_3_0 slots / {family} {stage} instructions: {said}")
-        notes += [
-            _why(found[cheap], found[dear], slots)
-            for cheap, dear in pairwise(ordered)
-            if slots[cheap, operation] < slots[dear, operation]
-            and found[cheap][0]["instructions"] > found[dear][0]["instructions"]
-        ]
+        notes += _turned(ordered, {name: count for (name, of), count in slots.items() if of == operation})
     return notes
 
 
-def _why(cheap: tuple[Row, str], dear: tuple[Row, str], slots: dict) -> str:
-    """One line about two encodings that change places."""
-    parts = []
-    for row, text in (cheap, dear):
-        guards = sum(name.startswith(GUARDS) for name in names(text))
-        kinds = f"{guards} of them to choose or to clamp, {row['transcendental'] or 0} transcendental"
-        slot = slots[row["encoding"], row["operation"]]
-        parts.append(f"  {row['encoding']}: {row['instructions']} ({kinds}) for {slot} slots")
-    return "\n".join(["  another order, for a slot computes up to four numbers, an instruction here one:", *parts])
+def _turned(ordered: Sequence[tuple[Row, str]], slots: dict[str, int]) -> list[str]:
+    """Which pairs of rows, in the order of their slots, change places, and a line on each row of such a pair."""
+    pairs = [
+        (cheap, dear)
+        for cheap, dear in combinations(ordered, 2)
+        if slots[cheap[0]["encoding"]] < slots[dear[0]["encoding"]]
+        and cheap[0]["instructions"] > dear[0]["instructions"]
+    ]
+    if not pairs:
+        return []
+    said = ", ".join(f"{cheap[0]['encoding']} and {dear[0]['encoding']}" for cheap, dear in pairs)
+    rows = [one for one in ordered if any(one in pair for pair in pairs)]
+    return [f"  the other way round: {said}", *(_holds(row, text, slots[row["encoding"]]) for row, text in rows)]
+
+
+def _holds(row: Row, text: str, slots: int) -> str:
+    """One line about what a row's listing holds."""
+    guards = sum(name.startswith(GUARDS) for name in names(text))
+    held = f"{guards} to compare, choose or clamp, {row['transcendental'] or 0} transcendental"
+    return f"  {row['encoding']}: {row['instructions']} instructions for {slots} slots, of them {held}"
 
 
 def points(rows: Sequence[Row], column: str, operation: str, errors: Mapping[Codec, float | None]) -> Iterator[Point]:

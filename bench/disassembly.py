@@ -1,26 +1,44 @@
-"""Which kind each instruction of a Radeon's disassembly is of.
+"""What a Radeon's disassembly is made of: which kind each instruction is of, what it takes to issue, where it jumps.
 
-Full-rate and the others that compute run once for each lane; transcendental ones and whole products of 32-bit integers
-at a quarter of the rate. Scalar ones run once for all lanes, beside the others. Memory is loads, stores, interpolation
-and export. Waiting is what the compiler has to say about order: waits, hints, the end.
+Scalar instructions run once for all lanes, beside the others. Memory is loads, stores, interpolation and export.
+Waiting is what the compiler has to say about order: waits, hints, the end. The others run once for each lane, at rates
+that depend on the family.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
-KINDS = ("full_rate", "transcendental", "wide_product", "scalar", "memory", "waiting")
+KINDS = ("full_rate", "conversion", "quarter_rate", "transcendental", "scalar", "memory", "waiting")
 
 _RULES = (
     ("memory", r"v_interp_|lds_|ds_|buffer_|tbuffer_|image_|global_|flat_|scratch_|exp|s_load|s_buffer_load|s_store"),
     ("waiting", r"s_(wait|nop|clause|delay|end|code_end|inst_prefetch|set_inst|setprio|sleep|barrier|ttrace|sendmsg)"),
     ("transcendental", r"v_(s_)?(rcp|rsq|sqrt|log|exp|sin|cos)_"),
-    ("wide_product", r"v_(mul_lo|mul_hi|mad_u64|mad_i64)_"),
+    # From bytes, and into two halves at once, is no conversion of the slow sort.
+    ("conversion", r"v_cvt_(?!f32_ubyte|pk)"),
+    # Products of 32-bit integers.
+    ("quarter_rate", r"v_mul_(lo|hi)_[iu]32(?!_[iu]24)|v_mad_[iu]64_"),
     ("scalar", r"s_"),
     ("full_rate", r"v_"),
 )
-_INSTRUCTION = re.compile(r"^\s+([a-z][a-z0-9_]+)\b")
+# Instructions of a fused multiply-add that Polaris computes at a quarter of the rate; usual ones are v_mad there.
+_SLOW = {"polaris10": r"v_fma_"}
+_INSTRUCTION = re.compile(r"^\s+([a-z][a-z0-9_]+)\b(?:\s+(BB\d+))?")
+_LABEL = re.compile(r"^(BB\d+):")
+
+# What a lane's instruction keeps the vector ALU's issue busy for, in full-rate instructions (4 cycles of a wave on GCN,
+# 1 for 32 lanes on RDNA). GCN: LLVM's scheduling model (SISchedule.td: WriteFloatCvt, WriteTrans32 and
+# WriteQuarterRate32 are 4), which is ACO's but for conversions, at full rate there. RDNA: ACO's (aco_statistics.cpp);
+# conversions are at full rate, and transcendental ones issue once and run 4 cycles in a unit beside.
+_GCN = MappingProxyType({"full_rate": 1, "conversion": 4, "quarter_rate": 4, "transcendental": 4})
+_RDNA = MappingProxyType({"full_rate": 1, "conversion": 1, "quarter_rate": 4, "transcendental": 1})
+SLOTS: Mapping[str, Mapping[str, int]] = MappingProxyType(
+    {"polaris10": _GCN, "vega10": _GCN, "navi10": _RDNA, "navi21": _RDNA, "navi31": _RDNA}
+)
 
 
 def names(assembly: str) -> list[str]:
@@ -28,21 +46,51 @@ def names(assembly: str) -> list[str]:
     return [match[1] for line in assembly.splitlines() if (match := _INSTRUCTION.match(line))]
 
 
-def kind(name: str) -> str:
-    """The kind of an instruction. Raises ValueError for one that is of none."""
+def kind(name: str, family: str = "") -> str:
+    """The kind of an instruction. Raises ValueError for one that is of none, or of doubles, whose rates are others."""
+    if "_f64" in name:
+        raise ValueError(f"{name} computes doubles")
+    if family in _SLOW and re.match(_SLOW[family], name):
+        return "quarter_rate"
     for found, rule in _RULES:
         if re.match(rf"(?:{rule})", name):
             return found
     raise ValueError(f"unknown instruction {name}")
 
 
-def kinds(assembly: str, total: int) -> dict[str, int] | None:
+def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
     """How many instructions of each kind; None where the text is not a listing of `total` instructions that are known.
 
     A driver that was built without a disassembler says so in words instead.
     """
     try:
-        counts = Counter(map(kind, names(assembly)))
+        counts = Counter(kind(name, family) for name in names(assembly))
     except ValueError:
         return None
     return {name: counts[name] for name in KINDS} if counts.total() == total else None
+
+
+def issue_slots(counts: Mapping[str, int], family: str) -> int | None:
+    """What a kernel's lane instructions take of the vector ALU's issue, in full-rate instructions; sums of kernels add
+    up. None for a family whose rates are not known."""
+    rates = SLOTS.get(family)
+    return sum(rate * counts[name] for name, rate in rates.items()) if rates else None
+
+
+def jumps(assembly: str) -> tuple[int, int]:
+    """(branches, loops): conditional jumps ahead, over what not every wave runs; and jumps back."""
+    ahead = back = 0
+    for is_conditional, is_back in _jumps(assembly):
+        back += is_back
+        ahead += is_conditional and not is_back
+    return ahead, back
+
+
+def _jumps(assembly: str) -> Iterator[tuple[bool, bool]]:
+    """Of each jump whether there is a condition, and whether it goes back."""
+    passed: set[str] = set()
+    for line in assembly.splitlines():
+        if label := _LABEL.match(line):
+            passed.add(label[1])
+        elif (match := _INSTRUCTION.match(line)) and match[1].startswith(("s_cbranch", "s_branch")):
+            yield match[1].startswith("s_cbranch"), match[2] in passed

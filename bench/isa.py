@@ -2,25 +2,15 @@
 
 Each family compiles in a child process, because drivers crash and hang: a job that does not come back costs itself,
 with the reason, and the others go on in a fresh child. What was compiled is kept in the user's cache, by the shader,
-the driver's own file and the family.
+the driver's own files and the family.
 """
 
 from __future__ import annotations
 
 import base64
-import json
-import os
-import platform
-import queue
-import signal
-import subprocess
-import sys
-import tempfile
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -29,7 +19,9 @@ from typing import Any
 
 from ..gbuffer.kernels import PLANES
 from . import cache as kept
+from .isa_process import Driver, child
 from .metrics import cores
+from .radv_files import DRIVER, NO_DRIVER, driver_file
 
 # One family for each generation, by every name that a Mesa may have for it.
 FAMILIES: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -41,19 +33,12 @@ FAMILIES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "navi31": ("navi31", "gfx1100"),
     }
 )
-CHILD: Sequence[str] = (sys.executable, "-m", "normalbench.bench.isa_child")
-# Of one job, and of a driver that starts: a thousand times what they take.
-SECONDS = 10.0
 # What RADV says before it gives up.
 REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
-DRIVER = "libvulkan_radeon"
-NO_DRIVER = (
-    f"no RADV: no Vulkan driver file names {DRIVER}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
-)
-# What would have the driver compile in another way than it does for everybody.
-UNWANTED = ("RADV_DEBUG", "RADV_PERFTEST", "ACO_DEBUG", "AMD_DEBUG", "NIR_DEBUG", "VK_INSTANCE_LAYERS", "VK_LAYER_PATH")
+# What decides what a child makes of a job, beside the driver.
+OWN_FILES = ("radv.py", "isa_child.py")
 
 
 @dataclass(frozen=True)
@@ -94,48 +79,29 @@ class Failure:
 Outcome = Compiled | Failure
 
 
-@dataclass(frozen=True)
-class _Driver:
-    """The driver's description for the loader, and what tells its children that nobody waits for them any more."""
-
-    path: Path
-    stop: threading.Event
-
-
 @cache
-def driver_file() -> Path | None:
-    """RADV's own description for the Vulkan loader, or None where there is none."""
-    found = [path for path in _descriptions() if DRIVER in _library(path)]
-    # A machine may have the driver for several architectures; the file's name says for which, if anything does.
-    return next((path for path in found if platform.machine() in path.name), found[0] if found else None)
+def _loaded(path: Path) -> str | Failure:
+    """What differs once the driver or the library that disassembles for it does: their files' names and fingerprints,
+    as a child has them loaded. Empty where it cannot be told, a Failure where the driver cannot be loaded at all."""
+    with child(None, Driver(path, threading.Event()), {}) as (lines, why):
+        line = lines()
+        if line is None:
+            return Failure(why())
+        if "missing" in line or "failed" in line:
+            return Failure(line.get("missing") or line["failed"], "missing" in line)
+        files = line.get("loaded", {})
+    ours = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in OWN_FILES]
+    is_there = any(DRIVER in name for name in files)
+    return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
 
 
-def _descriptions() -> Iterator[Path]:
-    """The files that the loader would look at, those named by its variables first."""
-    for variable in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
-        yield from map(Path, filter(None, os.environ.get(variable, "").split(os.pathsep)))
-    data = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
-    for root in ("~/.local/share", "/etc", *data.split(os.pathsep)):
-        yield from sorted(Path(root).expanduser().glob("vulkan/icd.d/*.json"))
-
-
-def _library(path: Path) -> str:
-    """The driver that a description names; empty where it cannot be read."""
-    try:
-        return str(json.loads(path.read_text(encoding="utf-8"))["ICD"]["library_path"])
-    except (OSError, ValueError, KeyError, TypeError):
-        return ""
-
-
-def _identity(path: Path) -> str | None:
-    """What differs once the driver does: which file, how large and how old; None where the file is not to be found."""
-    library = (path.parent / _library(path)).resolve()
-    try:
-        found = library.stat()
-    except OSError:
-        return None
-    ours = "".join(Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("radv.py", "isa_child.py"))
-    return kept.key_of(str(library), f"{found.st_size} {found.st_mtime_ns}", ours)
+def missing() -> str:
+    """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
+    path = driver_file()
+    if path is None:
+        return NO_DRIVER
+    found = _loaded(path)
+    return found.reason if isinstance(found, Failure) and found.is_missing else ""
 
 
 def compile_all(
@@ -143,10 +109,11 @@ def compile_all(
 ) -> dict[tuple[str, Job], Outcome]:
     """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
     path = driver_file()
-    if path is None:
-        return {(family, job): Failure(NO_DRIVER, True) for family in families for job in jobs}
+    if reason := missing():
+        return {(family, job): Failure(reason, True) for family in families for job in jobs}
+    assert path
     found: dict[tuple[str, Job], Outcome] = {}
-    driver = _Driver(path, threading.Event())
+    driver = Driver(path, threading.Event())
     with ThreadPoolExecutor(cores()) as pool:
         try:
             for family, outcomes in zip(families, pool.map(lambda f: _family(f, driver, jobs), families), strict=True):
@@ -163,28 +130,28 @@ def compile_all(
 def driver_version() -> str:
     """The driver as it names itself for the first family, with Mesa's version; or what is missing, in one line."""
     path = driver_file()
-    if path is None:
-        return NO_DRIVER
-    family = next(iter(FAMILIES))
-    with _child(family, _Driver(path, threading.Event()), {}) as (lines, why):
+    if reason := missing():
+        return reason
+    assert path
+    with child(next(iter(FAMILIES)), Driver(path, threading.Event()), _given({})) as (lines, why):
         line = lines() or {}
         if "device" in line:
             return f"Mesa {line['version']}, {line['device']}"
         return line.get("missing") or line.get("failed") or why()
 
 
-def _family(family: str, driver: _Driver, jobs: Sequence[Job]) -> list[Outcome]:
+def _family(family: str, driver: Driver, jobs: Sequence[Job]) -> list[Outcome]:
     """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
-    identity = _identity(driver.path)
-    keys = [kept.key_of("isa", identity or "", family, job.stage, job.code, job.vertex) for job in jobs]
-    columns = set(Compiled.__dataclass_fields__)
+    identity = _loaded(driver.path)
+    identity = "" if isinstance(identity, Failure) else identity
+    keys = [kept.key_of("isa", identity, family, job.stage, job.code, job.vertex) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
-        if value := kept.read(key, columns):
-            outcomes[key] = Compiled(**value)
-    missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in outcomes}
-    if missing:
-        compiled = _compiled(family, driver, missing)
+        if found := _as_compiled(kept.read(key)):
+            outcomes[key] = found
+    left = {key: job for key, job in zip(keys, jobs, strict=True) if key not in outcomes}
+    if left:
+        compiled = _compiled(family, driver, left)
         for key, outcome in compiled.items():
             if identity and isinstance(outcome, Compiled):
                 kept.write(key, vars(outcome))
@@ -192,7 +159,17 @@ def _family(family: str, driver: _Driver, jobs: Sequence[Job]) -> list[Outcome]:
     return [outcomes[key] for key in keys]
 
 
-def _compiled(family: str, driver: _Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
+    """What was kept; None where it is anything else."""
+    texts, numbers = ("family", "device", "version", "assembly"), (value or {}).get("statistics")
+    if value is None or set(value) != {*texts, "statistics"} or not isinstance(numbers, dict):
+        return None
+    is_sound = all(isinstance(value[text], str) for text in texts)
+    is_sound = is_sound and all(isinstance(number, int | float) for number in numbers.values())
+    return Compiled(**value) if is_sound else None
+
+
+def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
     """A family's outcomes under the first of its names that the driver takes."""
     for name in FAMILIES[family]:
         outcomes = _by_children(name, driver, jobs)
@@ -201,7 +178,7 @@ def _compiled(family: str, driver: _Driver, jobs: Mapping[str, Job]) -> dict[str
     return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(FAMILIES[family])}"))
 
 
-def _by_children(name: str, driver: _Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+def _by_children(name: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
     """Children one after the other until each job has its outcome: whoever leaves a job unanswered is replaced."""
     outcomes: dict[str, Outcome] = {}
     lost = 0
@@ -225,10 +202,10 @@ def _by_children(name: str, driver: _Driver, jobs: Mapping[str, Job]) -> dict[st
     return outcomes
 
 
-def _answers(name: str, driver: _Driver, jobs: Mapping[str, Job]) -> Iterator[str | Failure | tuple[str, Outcome]]:
+def _answers(name: str, driver: Driver, jobs: Mapping[str, Job]) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with _child(name, driver, jobs) as (lines, why):
+    with child(name, driver, _given(jobs)) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -244,90 +221,11 @@ def _answers(name: str, driver: _Driver, jobs: Mapping[str, Job]) -> Iterator[st
         yield Failure(why())
 
 
-Lines = Callable[[], dict[str, Any] | None]
-
-
-@contextmanager
-def _child(name: str, driver: _Driver, jobs: Mapping[str, Job]) -> Iterator[tuple[Lines, Callable[[], str]]]:
-    """A child over jobs: a function that gives its next line, None at its end or when it has been silent for too long,
-    and one that says why it ended. Killed when the block ends."""
-    with tempfile.TemporaryDirectory(prefix="normalbench-") as folder:
-        given, errors = Path(folder) / "jobs.json", Path(folder) / "errors"
-        given.write_text(json.dumps({"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}))
-        with (
-            errors.open("wb") as said,
-            subprocess.Popen(
-                [*CHILD, str(given)],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=said,
-                text=True,
-                env=_environment(name, driver.path, folder),
-            ) as child,
-        ):
-            try:
-                lines: queue.Queue[str | None] = queue.Queue()
-                threading.Thread(target=_read, args=(child.stdout, lines), daemon=True).start()
-                heard = _Heard(lines, driver.stop)
-                yield heard.following, lambda: heard.why(child, errors)
-            finally:
-                child.kill()
-
-
-class _Heard:
-    """What a child says, line by line, as long as it says something."""
-
-    def __init__(self, lines: queue.Queue[str | None], stop: threading.Event):
-        self._lines, self._stop, self._is_silent = lines, stop, False
-
-    def following(self) -> dict[str, Any] | None:
-        """The next line; None at the end, when nothing has come for SECONDS, or when nobody waits any more."""
-        until = time.monotonic() + SECONDS
-        while not self._stop.is_set() and time.monotonic() < until:
-            try:
-                line = self._lines.get(timeout=0.1)
-            except queue.Empty:
-                continue
-            return _parsed(line)
-        self._is_silent = True
-        return None
-
-    def why(self, child: subprocess.Popen[str], errors: Path) -> str:
-        """Why there is no more."""
-        if self._is_silent:
-            return f"the driver did not answer within {SECONDS:g} s"
-        return _why(child.wait(SECONDS), errors.read_text(errors="replace"))
-
-
-def _parsed(line: str | None) -> dict[str, Any] | None:
-    """A child's line; None at the end, and for one that was cut off when the child died."""
-    try:
-        found = json.loads(line or "null")
-    except ValueError:
-        return None
-    return found if isinstance(found, dict) else None
-
-
-def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
-    for line in stream:
-        lines.put(line)
-    lines.put(None)
+def _given(jobs: Mapping[str, Job]) -> dict[str, Any]:
+    """Jobs as a child takes them."""
+    return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
 
 
 def _as_json(key: str, job: Job) -> dict[str, str]:
     code, vertex = (base64.b64encode(part).decode() for part in (job.code, job.vertex))
     return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}
-
-
-def _environment(name: str, path: Path, folder: str) -> dict[str, str]:
-    kept_ones = {key: value for key, value in os.environ.items() if key not in UNWANTED}
-    driver = {"RADV_FORCE_FAMILY": name, "VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path)}
-    # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.
-    return {"XDG_RUNTIME_DIR": folder, **kept_ones, **driver, "MESA_SHADER_CACHE_DISABLE": "true"}
-
-
-def _why(status: int, errors: str) -> str:
-    """How a child ended, and the last that it or its driver said."""
-    how = f"signal {signal.Signals(-status).name}" if status < 0 else f"status {status}"
-    last = [line.strip() for line in errors.splitlines() if line.strip()]
-    return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

@@ -1,10 +1,10 @@
 """A process of its own for a driver that may crash or hang: shaders in, what the compiler made of them out.
 
-    python -m normalbench.bench.isa_child JOBS
+    python -m normalbench.bench.isa_child < JOBS
 
-JOBS is a JSON file: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). To standard
-output go lines of JSON, each as soon as it is known: what the driver is, the key of a job that is begun, and what came
-of it. The driver's family and files come from the environment.
+JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). To standard output
+go lines of JSON, each as soon as it is known: what the driver is, the key of a job that is begun, and what came of it.
+Of an empty mapping, which files the driver consists of. The driver's family and files come from the environment.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import base64
 import json
 import os
 import sys
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
-from .radv import DriverError, MissingDriverError, Radv
+from .radv import DriverError, MissingDriverError, Radv, loaded
 
 
 def _own_output() -> Any:
@@ -36,28 +36,33 @@ def compiled(driver: Radv, job: dict[str, Any], planes: int) -> dict[str, Any]:
     return {"statistics": statistics, "assembly": assembly}
 
 
-def main(arguments: list[str]) -> int:
-    """Compile every job of a file."""
-    given = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
+def main() -> int:
+    """Compile every job that standard input holds."""
+    given = json.load(sys.stdin)
     out = _own_output()
 
     def say(**line: Any) -> None:
         print(json.dumps(line), file=out, flush=True)
 
     try:
-        driver = Radv()
+        if given:
+            _compile_all(given, say)
+        else:
+            say(loaded=loaded())
     except MissingDriverError as error:
         say(missing=str(error))
-        return 0
     except DriverError as error:
         say(failed=str(error))
-        return 0
+    return 0
+
+
+def _compile_all(given: dict[str, Any], say: Callable[..., None]) -> None:
+    driver = Radv()
     say(device=driver.device, version=driver.version)
     for job in given["jobs"]:
         say(begun=job["key"])
         say(key=job["key"], **compiled(driver, job, given["planes"]))
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -6,9 +6,13 @@ No GPU is needed: for a family named by RADV_FORCE_FAMILY it offers a null devic
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from importlib import import_module
+from pathlib import Path
 from typing import Any
+
+from .radv_files import DRIVER
 
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 VULKAN_1_3 = 1 << 22 | 3 << 12
@@ -33,6 +37,38 @@ def _vulkan() -> Any:
         raise MissingDriverError(
             "no Vulkan loader: libvulkan.so.1 cannot be loaded; install it (Debian: apt-get install libvulkan1)"
         ) from error
+
+
+# Of a file's head that tells builds apart: an ELF file's build id, and the places and sizes of its parts.
+HEAD = 4096
+
+
+def loaded() -> dict[str, str]:
+    """The files of the driver, and of the LLVM that disassembles for it, as they are loaded here, and their
+    fingerprints; none where the system does not say what a process has loaded.
+
+    Raises:
+        MissingDriverError: there is no Vulkan loader.
+        DriverError: the loader takes no driver.
+    """
+    _instance(_vulkan())
+    maps = Path("/proc/self/maps")
+    lines = maps.read_text(encoding="utf-8").splitlines() if maps.exists() else []
+    paths = {line[line.index("/") :] for line in lines if "/" in line}
+    return {path: _fingerprint(Path(path)) for path in paths if Path(path).name.startswith((DRIVER, "libLLVM"))}
+
+
+def _fingerprint(path: Path) -> str:
+    with path.open("rb") as file:
+        return f"{path.stat().st_size} {hashlib.sha256(file.read(HEAD)).hexdigest()}"
+
+
+def _instance(vk: Any) -> Any:
+    try:
+        application = vk.VkApplicationInfo(apiVersion=VULKAN_1_3)
+        return vk.vkCreateInstance(vk.VkInstanceCreateInfo(pApplicationInfo=application), None)
+    except vk.VkError as error:
+        raise DriverError(f"the Vulkan loader takes no driver: {type(error).__name__}") from error
 
 
 class Radv:
@@ -63,9 +99,7 @@ class Radv:
     def _physical_device(self) -> Any:
         vk = self._vk
         try:
-            application = vk.VkApplicationInfo(apiVersion=VULKAN_1_3)
-            info = vk.VkInstanceCreateInfo(pApplicationInfo=application)
-            return vk.vkEnumeratePhysicalDevices(vk.vkCreateInstance(info, None))[0]
+            return vk.vkEnumeratePhysicalDevices(_instance(vk))[0]
         except (vk.VkError, IndexError) as error:
             raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
 

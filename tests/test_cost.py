@@ -158,7 +158,7 @@ def test_the_articles_figures_are_whole():
         ("v_dual_mul_f32", "full_rate"),
         ("v_rsq_f32_e64", "transcendental"),
         ("v_s_rcp_f32", "transcendental"),
-        ("v_mul_lo_u32", "wide_product"),
+        ("v_mul_lo_u32", "quarter_rate"),
         ("s_and_b64", "scalar"),
         ("s_load_dwordx4", "memory"),
         ("v_interp_p1_f32_e32", "memory"),

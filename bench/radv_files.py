@@ -1,0 +1,53 @@
+"""Where RADV is on this machine, and the environment that has it compile as it does for everybody."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+DRIVER = "libvulkan_radeon"
+NO_DRIVER = (
+    f"no RADV: no Vulkan driver file names {DRIVER}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
+)
+# What would have the driver compile in another way, or the loader load something else; the session's other variables
+# stay.
+UNWANTED = ("RADV_", "ACO_", "AMD_", "NIR_", "MESA_", "VK_")
+
+
+@cache
+def driver_file() -> Path | None:
+    """RADV's own description for the Vulkan loader, or None where there is none."""
+    found = [path for path in _descriptions() if DRIVER in _library(path)]
+    # A machine may have the driver for several architectures; the file's name says for which, if anything does.
+    return next((path for path in found if platform.machine() in path.name), found[0] if found else None)
+
+
+def _descriptions() -> Iterator[Path]:
+    """The files that the loader would look at, those named by its variables first."""
+    for variable in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
+        yield from map(Path, filter(None, os.environ.get(variable, "").split(os.pathsep)))
+    data = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
+    for root in ("~/.local/share", "/etc", *data.split(os.pathsep)):
+        yield from sorted(Path(root).expanduser().glob("vulkan/icd.d/*.json"))
+
+
+def _library(path: Path) -> str:
+    """The driver that a description names; empty where it cannot be read."""
+    try:
+        return str(json.loads(path.read_text(encoding="utf-8"))["ICD"]["library_path"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
+def environment(path: Path, family: str | None) -> dict[str, str]:
+    """A process's environment in which the loader knows RADV alone, for a family or for what is there."""
+    usual = {key: value for key, value in os.environ.items() if not key.startswith(UNWANTED)}
+    driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
+    driver |= {"RADV_FORCE_FAMILY": family} if family else {}
+    # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.
+    return {"XDG_RUNTIME_DIR": tempfile.gettempdir(), **usual, **driver, "MESA_SHADER_CACHE_DISABLE": "true"}
