@@ -108,8 +108,11 @@ class CostOptions:
     operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
     storage: Annotated[
         str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.")
-    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24"
-    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the target that is timed.")] = "256x256"
+    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
+    size: Annotated[
+        str | None,
+        Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),
+    ] = None
     repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
     count: Annotated[int, Option("--count", "Normals, for JAX and in uniform sets.")] = 2**20
     seed: SetSeed = 0

@@ -41,7 +41,7 @@ LISTED = ("issue_slots", *KINDS, "branches", "loops")
 COLUMNS = (
     *("measure", "encoding", "storage", "operation", "stage", "family", "instructions", *LISTED, "spirv_instructions"),
     *("vgprs", "sgprs", "spills", "code_bytes", *WHOLE, "cycles"),
-    *("ns_per_megapixel", "millions_per_second", "spread", "turns", "size", "repeats", "software", "clock"),
+    *("ns_per_megapixel", "millions_per_second", "ceiling", "spread", "turns", "size", "repeats", "software", "clock"),
     *("device", "driver", "compiler", "skipped"),
 )
 OPERATIONS = ("encode", "decode")

@@ -1,4 +1,4 @@
-"""What an encoding costs by the clock: encode and decode on the GL device, and in JAX."""
+"""What operations cost by the clock of the GL device."""
 
 from __future__ import annotations
 
@@ -6,32 +6,29 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from typing import Any
 
-import jax
-import jax.numpy as jnp
 import moderngl
 import numpy as np
 
-from ..encodings.catalogue import ENCODINGS
 from ..encodings.storage import STORAGES
-from ..encodings.vec import Vec2, Vec3
 from ..gbuffer.device import Device
 from ..gbuffer.kernels import Operation
 from ..gbuffer.render import Clock, clock_of
 from ..gbuffer.shader import ShaderError
 from .cost import Case, Row
-from .metrics import FAST_BLOCK, LANES, compiled
-from .throughput import CORES, Input, make_input, on_all_cores
 
+# The median lies within its interval so surely, whatever the times are distributed like.
+SURE = 0.95
 # A pass takes about so long: a thousand times what starting and finishing it takes.
-PASS_MS = 6.0
+PASS_MS = 8.0
 PASSES = 5
 # More turns a software rasteriser does not take: it leaves a loop after 65535 without a word.
 MOST_TURNS = 2**15
 # The first turn finds look-up tables out of reach, the others where the first has left them.
 LEAST_TURNS = 16
-JAX_SECONDS = 0.03
+# Of the target that is timed. One tile of llvmpipe, which one thread draws: two hinder each other, and on a busy
+# machine medians of three runs were apart by 3 % with it and by 10 % at 256x256. A GPU must be filled.
+SOFTWARE_SIZE, SIZE = "64x64", "1024x1024"
 
 
 PROCESSOR = "processor time of each finished pass"
@@ -69,8 +66,34 @@ class Field:
         return self._points[numbers]
 
 
-class Timed:
-    """One operation beside the empty one, over a whole target. Raises ShaderError where it does not compile."""
+class Pair:
+    """An operation's pass beside the empty one's: turns until they can be told apart from starting them, and what the
+    operation takes more.
+
+    Args:
+        milliseconds: of one pass with so many turns: the operation's for 0, the empty one's for 1.
+        pixels: how many a pass computes.
+    """
+
+    def __init__(self, milliseconds: Callable[[int, int], float], pixels: int):
+        self._milliseconds, self._pixels, self.turns = milliseconds, pixels, LEAST_TURNS
+        for which in (0, 1):
+            milliseconds(which, self.turns)  # a first pass is a warm-up
+        while (taken := min(milliseconds(0, self.turns) for _ in range(3))) < PASS_MS / 2 and self.turns < MOST_TURNS:
+            self.turns = min(int(self.turns * min(max(PASS_MS / max(taken, 1e-3), 1.5), 8)), MOST_TURNS)
+
+    def difference(self) -> float:
+        """Nanoseconds for a million pixels that the operation takes more than the empty one.
+
+        Of a few passes of each, in turns, the shortest: whatever else the machine does only ever makes one longer.
+        """
+        taken = [[self._milliseconds(which, self.turns) for which in (0, 1)] for _ in range(PASSES)]
+        operation, empty = (min(times) for times in zip(*taken, strict=True))
+        return (operation - empty) * 1e6 / (self.turns * self._pixels / 1e6)
+
+
+class Passes:
+    """The passes of an operation and of the empty one over a field. Raises ShaderError where one does not compile."""
 
     def __init__(self, field: Field, operation: Operation):
         device, stack = field.device, field.stack
@@ -82,36 +105,19 @@ class Timed:
             device.owned(stack, device.fragment_pass("kernel_repeat.frag", o.defines, o.names))
             for o in (operation, operation.empty)
         ]
-        self.turns = LEAST_TURNS
-        self._calibrate()
 
-    def _calibrate(self) -> None:
-        """Turns until a pass is long enough to be timed; every first pass is a warm-up."""
-        for passed in self._passes:
-            self._milliseconds(passed)
-        while (taken := self._shortest()) < PASS_MS / 2 and self.turns < MOST_TURNS:
-            self.turns = min(int(self.turns * min(max(PASS_MS / max(taken, 1e-3), 1.5), 8)), MOST_TURNS)
+    def milliseconds(self, which: int, turns: int) -> float:
+        """What one of the two takes."""
+        return self._clock.measure(lambda: self.render(which, turns))
 
-    def _shortest(self) -> float:
-        return min(self._milliseconds(self._passes[0]) for _ in range(3))
-
-    def _milliseconds(self, passed: moderngl.VertexArray) -> float:
-        turns: Any = passed.program["kernel_turns"]
-        turns.value = self.turns
-
-        def run() -> None:
-            self._field.device.render(passed, self._field.targets, **self._textures)
-
-        return self._clock.measure(run)
-
-    def difference(self) -> float:
-        """Nanoseconds for a million pixels that the operation takes more than the empty one.
-
-        Of a few passes of each, in turns, the shortest: whatever else the machine does only ever makes one longer.
-        """
-        taken = [[self._milliseconds(passed) for passed in self._passes] for _ in range(PASSES)]
-        operation, empty = (min(times) for times in zip(*taken, strict=True))
-        return (operation - empty) * 1e6 / (self.turns * math.prod(self._field.size) / 1e6)
+    def render(self, which: int, turns: int, nothing: float = 0.0) -> None:
+        """One of the two into the field's targets. What is added to the inputs at each turn is nothing but for a
+        test."""
+        passed = self._passes[which]
+        for name, value in (("kernel_turns", turns), ("kernel_nothing", nothing)):
+            if name in passed.program:
+                passed.program[name] = value
+        self._field.device.render(passed, self._field.targets, **self._textures)
 
 
 def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
@@ -125,7 +131,7 @@ def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
 def time_rows(
     device: Device, chosen: Sequence[Case], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
 ) -> Iterator[Row]:
-    """Nanoseconds a megapixel of each case: the median of repeated differences, and from the least to the largest.
+    """Nanoseconds a megapixel of each case: the median of repeated differences, and how wide its interval is.
 
     Each repetition goes over all cases, so that what else the machine does is spread over all of them.
     """
@@ -138,85 +144,38 @@ def time_rows(
         "driver": device.version,
     }
     with ExitStack() as stack:
-        field, made = Field(device, stack, size), dict[Case, Timed | str]()
+        field, made = Field(device, stack, size), dict[Case, Pair | str]()
         for case in chosen:
             try:
-                made[case] = Timed(field, case.make())
+                made[case] = Pair(Passes(field, case.make()).milliseconds, math.prod(size))
             except ShaderError as error:
                 made[case] = f"{case.name}: {error}"
             tick(case.name)
         taken: dict[Case, list[float]] = {case: [] for case in chosen}
         for number in range(repeats):
-            for case, timed in made.items():
-                if isinstance(timed, Timed):
-                    taken[case].append(timed.difference())
+            for case, pair in made.items():
+                if isinstance(pair, Pair):
+                    taken[case].append(pair.difference())
             tick(f"repetition {number + 1}")
         device.idle.use()
-    for case, timed in made.items():
-        if isinstance(timed, str):
-            yield case.row("time", **facts, skipped=timed)
+    for case, pair in made.items():
+        if isinstance(pair, str):
+            yield case.row("time", **facts, skipped=pair)
         else:
-            yield case.row("time", **facts, turns=timed.turns, **_summary("ns_per_megapixel", taken[case]))
+            yield case.row("time", **facts, turns=pair.turns, **summary("ns_per_megapixel", taken[case]))
 
 
-def _summary(column: str, taken: Sequence[float]) -> dict[str, float]:
-    """The median, and the distance from the least to the largest: of nine the quartiles are too near each other for
-    another run's median to lie within."""
-    return {column: float(np.median(taken)), "spread": float(np.ptp(taken))}
+def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
+    """The median, and the width of its interval."""
+    low, high = median_interval(taken)
+    return {column: float(np.median(taken)), "spread": high - low}
 
 
-def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[str], None]) -> Iterator[Row]:
-    """Million normals a second of each encoding's case in JAX, on all cores: median, and least to largest.
-
-    Args:
-        count: normals, rounded down to whole blocks, one for each core at least.
-    """
-    data = make_input(max(count // (FAST_BLOCK * CORES), 1) * FAST_BLOCK * CORES)
-    device = f"{jax.devices()[0].device_kind}, {CORES} cores"
-    for case in chosen:
-        if case.encoding is not None:
-            try:
-                taken = _rates(_work(case, data), len(data.n), repeats)
-            except Exception as error:  # whatever a user's own code raises
-                reason = f"{case.name}: {type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"
-                yield case.row("jax", device=device, skipped=reason)
-                continue
-            facts = {"repeats": repeats, "device": device, "driver": f"jax {jax.__version__}", "clock": "wall clock"}
-            yield case.row("jax", **facts, **_summary("millions_per_second", taken))
-        tick(case.name)
-
-
-def _rates(work: Callable[[], object], count: int, repeats: int) -> list[float]:
-    """Million normals a second, `repeats` times, each the fastest call of JAX_SECONDS; the first of all compiles."""
-    work()
-    rates = []
-    for _ in range(repeats):
-        taken: list[float] = []
-        while sum(taken) < JAX_SECONDS:
-            begin = time.perf_counter()
-            work()
-            taken.append(time.perf_counter() - begin)
-        rates.append(count / min(taken) / 1e6)
-    return rates
-
-
-def _work(case: Case, data: Input) -> Callable[[], object]:
-    """An encoding's operation over the data, all that comes out added up, in blocks that stay in a core's cache."""
-    encoding = ENCODINGS[str(case.encoding)]
-    function = {"encode": encoding.encode, "decode": encoding.decode}[case.operation]
-    size = encoding.components + encoding.sign_bits
-
-    def total(given: Any, view: Vec3):
-        def step(carry, block):
-            return carry + sum(function(*block)), None
-
-        blocks = jax.tree.map(lambda a: a.reshape(-1, FAST_BLOCK), (given, view))
-        return jax.lax.scan(step, jnp.zeros(FAST_BLOCK, jnp.float32), blocks)[0].reshape(-1, LANES).sum()
-
-    call = compiled(total)
-
-    def shard(n: Vec3, view: Vec3) -> float:
-        given = n if case.operation == "encode" or size == 3 else Vec2(n.x, n.y)
-        return float(call(given, view))
-
-    return lambda: on_all_cores(shard, data)
+def median_interval(taken: Sequence[float]) -> tuple[float, float]:
+    """Order statistics that the median of what was sampled lies between, SURE to the least: of nine the second and the
+    eighth, of fewer than six the least and the largest, which are less sure."""
+    ordered, count = sorted(taken), len(taken)
+    # The chance that fewer than k of the samples lie below the median.
+    beyond = np.cumsum([math.comb(count, k) for k in range(count)]) / 2.0**count
+    cut = int(np.sum(2 * beyond[: count // 2] <= 1 - SURE))
+    return float(ordered[max(cut - 1, 0)]), float(ordered[count - max(cut, 1)])

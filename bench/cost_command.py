@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
-from ..encodings.storage import STORAGES
 from ..gbuffer.kernels import PACKINGS, STAGES, Packing
-from ..reports import pareto, plots
-from . import cost, cost_clocks, cost_sheets, isa, quality
+from ..reports import plots
+from . import cost, cost_clocks, cost_jax, cost_plot, cost_sheets, isa, quality
 from .command_options import CostOptions
 from .cost import Case, Row
 from .counts import checked_count
@@ -22,12 +20,10 @@ from .normal_sets import NORMAL_SETS, NormalSet
 from .output import check_folder, check_writable, say, whole_file, without, write
 from .progress import progress
 from .render_commands import MAX_REPEATS, checked_target, in_range
+from .throughput import MAX_COUNT
 from .user_encodings import encodings_named
 
 MEASURES = ("isa", "time", "jax")
-# What the plot draws: of each measure a column, and what it counts.
-UNITS = {"isa": ("instructions", "instructions"), "time": ("ns_per_megapixel", "ns a megapixel")}
-ERRORS = {"psnr": "psnr_db", "mean": "angle_mean_deg", "max": "angle_max_deg"}
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = (
     *("compiler", "driver", "device", "kernel_latency", "kernel_inverse_throughput", "kernel_sgprs", "kernel_vgprs"),
@@ -83,9 +79,11 @@ class CostRequest(CostOptions):
         """Raises UsageError for what is unknown or out of range."""
         in_range("--repeats", self.repeats, 2, MAX_REPEATS)
         checked_count(self.count)
+        if "jax" in self.measures and self.count > MAX_COUNT:
+            raise UsageError(f"--count {self.count}: in JAX a count is at most {MAX_COUNT} (2^28)")
         if self.seed < 0:
             raise UsageError(f"--seed {self.seed}: a seed is 0 or more")
-        pick("error", self.error, ERRORS)
+        pick("error", self.error, cost_plot.ERRORS)
         _ = self.cases(), self.stages, self.families, self._makers
         for encoding in self.encodings if "jax" in self.measures or "time" in self.measures else ():
             quality.check_twin(encoding)
@@ -115,8 +113,9 @@ class Measured:
 
     def _time(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
         device = quality.require_device()
-        size, _ = checked_target(request.size, 1, 1, device)
-        chosen = cost.cases(request.encodings, (), request.operations)
+        usual = cost_clocks.SOFTWARE_SIZE if device.is_software else cost_clocks.SIZE
+        size, _ = checked_target(request.size or usual, 1, 1, device)
+        chosen = request.cases()
         with progress(len(chosen) + request.repeats) as tick:
             for row in cost_clocks.time_rows(device, chosen, size, request.repeats, tick):
                 yield row, ""
@@ -124,31 +123,37 @@ class Measured:
     def _jax(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
         quality.require_jax()
         chosen = cost.cases(request.encodings, (), request.operations)
-        with progress(len(chosen)) as tick:
-            for row in cost_clocks.jax_rows(chosen, request.count, request.repeats, tick):
+        with progress(len(chosen) + request.repeats) as tick:
+            for row in cost_jax.jax_rows(chosen, request.count, request.repeats, tick):
                 yield row, ""
 
 
 def cost_command(
     request: CostRequest, seeds: bool, disassembly: Path | None, plot: Path | None, format: str, output: Path | None
 ) -> None:
-    """Measure, write disassembly and plot if asked for, then the rows; raises MissingError in the end where this
+    """Measure, write the rows, then disassembly and plot if asked for; raises MissingError in the end where this
     machine lacks something of what was asked for."""
     request.check()
     _check_outputs(request, disassembly, plot, output)
     measured = Measured(request)
     _say_reasons(measured)
-    if disassembly:
-        write_listings(disassembly, measured.listed)
-    if plot:
-        _plot(request, measured.rows, plot)
     article = cost_sheets.article_rows((e.name for e in request.encodings), request.operations) if seeds else []
     if format == "table" and output is None:
         _show(measured, article)
     else:
         write([*measured.rows, *article], format, output, EXPENDABLE, by="measure")
+    if disassembly:
+        write_listings(disassembly, measured.listed)
+    is_drawn = not plot or _plot(request, measured.rows, plot)
     if measured.missing:
         raise MissingError("; ".join(dict.fromkeys(measured.missing)))
+    if not is_drawn:
+        raise UsageError("--plot: there is nothing to draw; see why above")
+
+
+def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> bool:
+    chosen = cost_plot.storages(request.storage)
+    return cost_plot.draw(rows, request.encodings, chosen, request.normal_sets(), request.error, path)
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
@@ -170,7 +175,7 @@ def _check_outputs(request: CostRequest, disassembly: Path | None, plot: Path | 
         plots.check_format(plot)
         if set(request.measures) == {"jax"}:
             raise UsageError("--plot draws instructions or time; ask for --isa or --time")
-        _codecs(request)
+        cost_plot.storages(request.storage)
 
 
 def _say_reasons(measured: Measured) -> None:
@@ -179,6 +184,8 @@ def _say_reasons(measured: Measured) -> None:
     for reason in reasons:
         if not any(missing in reason for missing in measured.missing):
             print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+    for note in cost.static_notes(measured.rows):
+        print(f"normalbench: {note}", file=sys.stderr)
 
 
 def _show(measured: Measured, article: Sequence[Row]) -> None:
@@ -195,39 +202,3 @@ def _show(measured: Measured, article: Sequence[Row]) -> None:
         if rows:
             say("\n")
             write(without(rows, ("skipped",)), "table", None, EXPENDABLE)
-
-
-def _codecs(request: CostRequest) -> list[Codec]:
-    """What the plot compares: the encodings in the first storage whose error is measured. Raises UsageError."""
-    named = ",".join(STORAGES) if "all" in request.storage else request.storage
-    chosen = next((STORAGES[n.strip()] for n in named.split(",") if n.strip() in STORAGES), None)
-    if chosen is None:
-        raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
-    return quality.fitting(Codec(encoding, chosen) for encoding in request.encodings)[0]
-
-
-def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> None:
-    """Cost against error, a panel for each normal set, measure and operation."""
-    panels, error = [], ERRORS[request.error]
-    for normals in request.normal_sets():
-        codecs = _codecs(request)
-        errors = {codec: quality.measure(quality.Case(codec, normals, "jax"))[error] for codec in codecs}
-        title = f"{codecs[0].storage.title}, {normals.name}"
-        for measure, (column, unit) in UNITS.items():
-            chosen = _one_kind([r for r in rows if r["measure"] == measure and r[column] is not None])
-            for operation in request.operations if chosen else ():
-                points = list(cost_sheets.points(chosen, column, operation, errors))
-                panels.append((f"{operation}, {title}\n{_where(chosen[0])}", unit, points))
-    if not panels:
-        raise UsageError("--plot: there is nothing to draw; see why above")
-    with whole_file(path) as partial:
-        plots.save(pareto.pareto_figure(panels, error), (partial, path.suffix[1:]))
-
-
-def _one_kind(rows: list[Row]) -> list[Row]:
-    """The rows of the first stage and family."""
-    return [r for r in rows if (r["stage"], r["family"]) == (rows[0]["stage"], rows[0]["family"])]
-
-
-def _where(row: Row) -> str:
-    return ", ".join(row[column] for column in ("family", "stage", "driver") if row["family"]) or row["device"]

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 
-from ..encodings.codec import Codec
-from ..reports.pareto import Point
 from . import seeds
-from .cost import COLUMNS, PACKING_OPERATIONS, Row
+from .cost import COLUMNS, Row
 from .disassembly import names
 
 # What compares, chooses between two numbers or keeps one within bounds; v_cmpx masks lanes, as the kernel's own does.
@@ -102,14 +99,3 @@ def _holds(row: Row, text: str, slots: int) -> str:
     guards = sum(name.startswith(GUARDS) for name in names(text))
     held = f"{guards} to compare, choose or clamp, {row['transcendental'] or 0} transcendental"
     return f"  {row['encoding']}: {row['instructions']} instructions for {slots} slots, of them {held}"
-
-
-def points(rows: Sequence[Row], column: str, operation: str, errors: Mapping[Codec, float | None]) -> Iterator[Point]:
-    """Each codec: what its encoding and its storage take together, as far as both are known."""
-    costs = {(row.get("encoding"), row.get("storage"), row.get("operation")): row[column] for row in rows}
-    for codec, error in errors.items():
-        bits = ":".join(map(str, codec.storage.bits[: max(codec.encoding.components, 2)]))
-        packing = (None, f"{codec.storage.name} {bits}", PACKING_OPERATIONS[operation])
-        own = costs.get((codec.encoding.name, None, operation))
-        if own is not None and error is not None and math.isfinite(error):
-            yield codec.encoding.name, own + (costs.get(packing) or 0), error, codec.bits

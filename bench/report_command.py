@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -12,8 +13,10 @@ from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
 from ..reports import drawings, embedded, markdown, page
 from ..reports.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
+from ..reports.pareto import Panel, Point, decibels
 from ..reports.verdict import LEADING, is_count, is_number
-from . import cost_sheets, seeds, sphere_maps
+from . import seeds, sphere_maps
+from .codec_costs import Costs, LeftOutError, Where
 from .cost import OPERATIONS
 from .output import check_folder, check_writable, say, whole_file
 from .runs import Done, Row, read_run, sources
@@ -114,7 +117,7 @@ def gathered(folder: Path, done: Done) -> Found:
         pictures=list(_pictures(folder / IMAGES, quality)),
         originals=_originals(folder / IMAGES, quality),
         maps=list(_maps(folder / MAPS, quality)),
-        fronts=list(_fronts(tables)),
+        fronts=list(_fronts(tables, remarks)),
         listings=_listings(folder / LISTINGS, tables.get("cost", [])),
         remarks=remarks,
     )
@@ -180,23 +183,40 @@ def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
             yield SphereMap(key, count, kept.mean_deg, kept.max_deg, kept.directions)
 
 
-def _fronts(tables: Mapping[str, Sequence[Row]]) -> Iterator[Front]:
-    """Instructions of the last GPU family against errors of normals, of the first set, and of images."""
+def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
+    """Instructions of the last GPU family against errors of normals, of the first set, and of images; which codecs have
+    no place among them is added to the remarks."""
     costs = [row for row in tables.get("cost", ()) if row.get("stage") == STAGE and is_number(row.get("instructions"))]
     costs = drawings.for_drawing([row for row in costs if row.get("family") == costs[-1].get("family")])
+    lost: dict[str, dict[str, None]] = {}
     for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
         rows = [
             row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
         ]
         where = str(rows[0].get(by)) if rows else ""
         errors = {codec: row[LEADING] for row in rows if str(row.get(by)) == where and (codec := _codec(row))}
-        points = {o: list(cost_sheets.points(costs, "instructions", o, errors)) for o in OPERATIONS}
-        panels = [(o, f"instructions to {o}, with its storage's", part) for o, part in points.items() if part]
+        points = {o: list(_points(costs, o, errors, lost)) for o in OPERATIONS} if costs else {}
+        family = f"instructions for {costs[-1].get('family')}, fragment shaders" if costs else ""
+        unit = "instructions to {}, with its storage's"
+        panels = [Panel(f"{o}: {family}", unit.format(o), part) for o, part in points.items() if part]
         if panels:
-            family = f"instructions for {costs[-1].get('family')}, fragment shaders"
-            yield Front(
-                f"PSNR of {what} {drawings.as_text(where)}, dB", [(f"{o}: {family}", u, p) for o, u, p in panels]
-            )
+            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
+    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _points(
+    costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
+) -> Iterator[Point]:
+    """Each codec whose cost is known; the others by the reason why not."""
+    known, where = Costs(costs), Where("isa", costs[-1].get("family"), STAGE)
+    for codec, error in errors.items():
+        try:
+            total = known.of(codec, where, operation, "instructions")
+        except LeftOutError as reason:
+            lost.setdefault(str(reason), {})[codec.name] = None
+            continue
+        if math.isfinite(error):
+            yield Point(codec.encoding.name, total.cost, error, codec.bits, is_starred=total.branches)
 
 
 def _codec(row: Row) -> Codec | None:

@@ -34,7 +34,7 @@ COMMON = (
 # Of render and passes.
 SIZE, LIGHTS, OBJECTS, REPEATS = "640x480", 64, 200, 9
 # Of cost.
-PACKED = ("rgba8", "rg16f", "12:12", "16:16", "11:10:11", "depth16", "depth24")
+PACKED = ("rgba8", "rg16f", "12:12", "16:16", "11:10:11", "depth16", "depth24", "depth24_sign")
 # A scene under few lights, as in seed 003, at one specular power.
 FRAME = ("prepass", "gloss", "47", "320x240")
 

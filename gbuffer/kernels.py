@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..encodings.catalogue import ENCODINGS
+from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES
 from .codec_passes import encoding_defines
@@ -162,3 +163,11 @@ PACKINGS: Mapping[str, tuple[Packing, ...]] = MappingProxyType(
         "depth24_sign": (Packing("rgba8 signed depth 8:8:8", Target("rgba8", "depth:24"), 0, True),),
     }
 )
+# What a code's sign bit costs: a depth that carries it, less one that does not.
+SIGN = (PACKINGS["depth24_sign"][0], PACKINGS["depth24"][0])
+
+
+def packing_of(codec: Codec) -> Packing | None:
+    """The packing that a codec's numbers, but for sign bits, go through."""
+    numbers = max(codec.encoding.components, 2)
+    return next((p for p in PACKINGS.get(codec.storage.name, ()) if p.numbers == numbers), None)

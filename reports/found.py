@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .pareto import Point
+from .pareto import Error, Panel
 
 Row = dict[str, Any]
 
@@ -54,10 +54,10 @@ class PictureSet:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error: panels as `pareto.pareto_plot` takes them, and the error's name."""
+    """Cost against error, as `pareto.pareto_figure` takes them."""
 
-    error: str
-    panels: Sequence[tuple[str, str, Sequence[Point]]]
+    error: Error
+    panels: Sequence[Panel]
 
 
 @dataclass(frozen=True)

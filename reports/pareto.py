@@ -3,90 +3,219 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from .plots import COLOURS, MARKERS, drawn_off_screen
 
-# A name, what it costs, its error, and the bits it takes.
-Point = tuple[str, float, float, int]
 # Where a label may stand around its point, the nearest first: in points, at so many angles.
 DISTANCES, ANGLES = (7, 12, 18, 26, 36, 48, 62), 16
+GREY = "grey: another is no dearer, no worse and takes no more bits"
 
 
-def pareto_figure(panels: Sequence[tuple[str, str, Sequence[Point]]], error: str) -> Any:
+@dataclass(frozen=True)
+class Point:
+    """A codec.
+
+    Attributes:
+        name: its label.
+        cost, error: where it stands.
+        bits: what it occupies.
+        spread: how wide the interval is that the cost is known to lie in.
+        is_starred: whether the cost counts both sides of a branch.
+    """
+
+    name: str
+    cost: float
+    error: float
+    bits: int
+    spread: float = 0.0
+    is_starred: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A title, what the cost is, and points."""
+
+    title: str
+    unit: str
+    points: Sequence[Point]
+
+
+@dataclass(frozen=True)
+class Error:
+    """What codecs lose.
+
+    Attributes:
+        label: what a reader calls it, with its unit.
+        more_is_better: of decibels; angles are better small, and stand on an axis of logarithms.
+        tolerance: what is no difference: so many decibels, such a share of an angle.
+    """
+
+    label: str
+    more_is_better: bool
+    tolerance: float
+
+    def loss(self, error: float) -> float:
+        """Less is better, and `step` is no difference."""
+        return -error if self.more_is_better else math.log(error)
+
+    @property
+    def step(self) -> float:
+        """The tolerance in `loss`."""
+        return self.tolerance if self.more_is_better else math.log1p(self.tolerance)
+
+
+def decibels(label: str) -> Error:
+    """Decibels of what a label says."""
+    return Error(f"{label}, dB", True, 0.05)
+
+
+def degrees(label: str) -> Error:
+    """An angle that a label says."""
+    return Error(f"{label}, degrees", False, 0.01)
+
+
+def pareto_figure(panels: Sequence[Panel], error: Error) -> Any:
     """Cost against error. What another beats is grey; the others are joined by steps, those of as many bits.
 
     Args:
-        panels: a title, what the cost is, and points.
-        error: the error's name; of decibels more are better, of all others less.
+        panels: each with a point at least.
 
     Returns:
         a figure for `plots.save`.
     """
     pyplot = drawn_off_screen()
-    more_is_better, across = "psnr" in error.lower(), min(len(panels), 2)
+    across = min(len(panels), 2 if len(panels) <= 4 else 3)
     down = -(-len(panels) // across)
     figure, axes = pyplot.subplots(
         down, across, figsize=(6.4 * across, 5.2 * down), squeeze=False, layout="constrained"
     )
-    for axis, (title, unit, points) in zip(axes.flat, panels, strict=False):
-        _draw_fronts(axis, points, more_is_better)
-        axis.set_title(title, size=9)
-        axis.set_xlabel(unit)
-        axis.set_ylabel(error.replace("_", " "))
-        axis.grid(alpha=0.3)
+    styles = _styles(panels)
+    for axis, panel in zip(axes.flat, panels, strict=False):
+        _draw(axis, panel, error, styles)
     for axis in axes.flat[len(panels) :]:
         axis.remove()
-    figure.suptitle("grey: another is no dearer, no worse and takes no more bits", size=9)
+    is_starred = any(point.is_starred for panel in panels for point in panel.points)
+    figure.suptitle(GREY + "\n* counts both sides of a branch" * is_starred, size=9)
+    _legend(figure)
     # Labels keep clear of what is drawn, which must stand where it will stand.
     figure.canvas.draw()
-    for axis, (_, _, points) in zip(axes.flat, panels, strict=False):
-        _label(axis, points, more_is_better)
+    for axis, panel in zip(axes.flat, panels, strict=False):
+        _label(axis, panel.points, error)
     return figure
 
 
-def pareto_front(points: Sequence[Point], more_is_better: bool) -> list[Point]:
-    """The points that no other beats, by cost: none is as cheap, as good and as small, and better in one of them."""
-    sign = -1 if more_is_better else 1
-    rated = [((cost, sign * error, bits), (name, cost, error, bits)) for name, cost, error, bits in points]
-
-    def beaten(rating: tuple[float, float, int]) -> bool:
-        return any(o != rating and all(a <= b for a, b in zip(o, rating, strict=True)) for o, _ in rated)
-
-    return [point for rating, point in sorted(rated, key=lambda r: r[0]) if not beaten(rating)]
+def _legend(figure: Any) -> None:
+    """One for all panels, below them."""
+    known = [axis.get_legend_handles_labels() for axis in figure.axes]
+    shown = {label: handle for handles, labels in known for handle, label in zip(handles, labels, strict=True)}
+    labels = sorted(shown, key=lambda label: int(label.split()[0]))
+    handles = [shown[label] for label in labels]
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(shown), fontsize=8)
 
 
-def _draw_fronts(axis: Any, points: Sequence[Point], more_is_better: bool) -> None:
-    front = pareto_front(points, more_is_better)
-    for at, bits in enumerate(sorted({point[3] for point in points})):
-        best, style = [p for p in front if p[3] == bits], {"marker": MARKERS[at % len(MARKERS)], "zorder": 3}
-        beaten = [p for p in points if p[3] == bits and p not in front]
-        colour = COLOURS[at % len(COLOURS)]
-        axis.step([p[1] for p in best], [p[2] for p in best], where="post", color=colour, linewidth=1, alpha=0.5)
-        axis.scatter([p[1] for p in beaten], [p[2] for p in beaten], color="#AAAAAA", s=24, **style)
-        axis.scatter([p[1] for p in best], [p[2] for p in best], color=colour, s=34, label=f"{bits} bits", **style)
+def pareto_front(points: Sequence[Point], error: Error) -> list[Point]:
+    """The points that no other beats, by cost: another does that is in no respect worse, and better in one, both by
+    more than is no difference."""
+    front = [point for point in points if not any(_beats(other, point, error) for other in points)]
+    return sorted(front, key=lambda p: (p.cost, error.loss(p.error), p.bits))
+
+
+def _beats(a: Point, b: Point, error: Error) -> bool:
+    worse_by = (
+        (a.cost - b.cost, (a.spread + b.spread) / 2),
+        (error.loss(a.error) - error.loss(b.error), error.step),
+        (a.bits - b.bits, 0),
+    )
+    return all(by <= nothing for by, nothing in worse_by) and any(by < -nothing for by, nothing in worse_by)
+
+
+def _styles(panels: Sequence[Panel]) -> dict[int, dict[str, str]]:
+    """A colour and a marker for each number of bits, the same in every panel."""
+    bits = sorted({point.bits for panel in panels for point in panel.points})
+    return {b: {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]} for i, b in enumerate(bits)}
+
+
+def _draw(axis: Any, panel: Panel, error: Error, styles: dict[int, dict[str, str]]) -> None:
+    front = pareto_front(panel.points, error)
+    for bits, style in styles.items():
+        best = [p for p in front if p.bits == bits]
+        beaten = [p for p in panel.points if p.bits == bits and p not in front]
+        colour = style["color"]
+        for points, size, shown in ((beaten, 24, "#AAAAAA"), (best, 34, colour)):
+            if points:
+                label = f"{bits} bits" if points is (best or beaten) else None
+                where = [p.cost for p in points], [p.error for p in points]
+                axis.scatter(*where, s=size, color=shown, marker=style["marker"], label=label, zorder=3)
+                _bars(axis, points, shown)
+        axis.plot(*_steps(best), color=colour, linewidth=1, alpha=0.5)
     axis.margins(0.12, 0.1)
-    axis.legend(loc="lower right", fontsize=8)
+    axis.set(xlabel=panel.unit, ylabel=error.label)
+    axis.set_title(panel.title, size=9)
+    if not error.more_is_better:
+        axis.set_yscale("log")
+    axis.grid(alpha=0.3)
 
 
-def _label(axis: Any, points: Sequence[Point], more_is_better: bool) -> None:
-    """Each point's name where it lies over no other point or name, as far as there is such a place."""
-    from matplotlib.transforms import Bbox
+def _bars(axis: Any, points: Sequence[Point], colour: str) -> None:
+    """How surely the costs are known, where that is not exactly."""
+    half = [p.spread / 2 for p in points]
+    if any(half):
+        where = [p.cost for p in points], [p.error for p in points]
+        axis.errorbar(*where, xerr=half, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2)
 
-    front, pixels = pareto_front(points, more_is_better), axis.figure.dpi / 72
-    taken = [axis.get_legend().get_window_extent()]
-    for x, y in axis.transData.transform([point[1:3] for point in points]):
-        taken.append(Bbox.from_bounds(x - 4 * pixels, y - 4 * pixels, 8 * pixels, 8 * pixels))
+
+def _steps(best: Sequence[Point]) -> tuple[list[float], list[float]]:
+    """The corners of steps through points: across to the next one's cost, then to its error."""
+    corners = [(p.cost, p.error) for p in best[:1]]
+    for a, b in pairwise(best):
+        corners += [(b.cost, a.error), (b.cost, b.error)]
+    return [x for x, _ in corners], [y for _, y in corners]
+
+
+def _label(axis: Any, points: Sequence[Point], error: Error) -> None:
+    """Each point's name where it lies over no point, line or other name, as far as there is such a place."""
+    front, pixels = pareto_front(points, error), axis.figure.dpi / 72
+    taken = list(_boxes(axis, points, 4 * pixels))
+    for bits in {p.bits for p in front}:
+        line = axis.transData.transform(list(zip(*_steps([p for p in front if p.bits == bits]), strict=True)))
+        taken += [box for a, b in pairwise(line) for box in _along(a, b, pixels)]
     for point in (*front, *(p for p in points if p not in front)):
         colour = "black" if point in front else "#777777"
         leader = {"arrowstyle": "-", "color": "#BBBBBB", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3}
+        at = (point.cost, point.error)
         written = axis.annotate(
-            point[0], point[1:3], (0, 0), textcoords="offset points", size=7, color=colour, arrowprops=leader
+            point.name + "*" * point.is_starred,
+            at,
+            (0, 0),
+            textcoords="offset points",
+            size=7,
+            color=colour,
+            arrowprops=leader,
         )
         # The layout is done, and is not to be done again around labels.
         written.set_in_layout(False)
         taken.append(_placed(written, taken, axis.bbox))
+
+
+def _boxes(axis: Any, points: Sequence[Point], half: float) -> Iterator[Any]:
+    """What points and their bars cover, in pixels."""
+    from matplotlib.transforms import Bbox
+
+    for p in points:
+        ends = [(p.cost - p.spread / 2, p.error), (p.cost + p.spread / 2, p.error)]
+        (left, y), (right, _) = axis.transData.transform(ends)
+        yield Bbox.from_extents(left - half, y - half, right + half, y + half)
+
+
+def _along(a: Any, b: Any, pixels: float) -> Iterator[Any]:
+    """The box of a line that goes up or across, in pixels."""
+    from matplotlib.transforms import Bbox
+
+    yield Bbox.from_extents(min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])).padded(pixels)
 
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:

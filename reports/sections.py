@@ -139,7 +139,7 @@ def _images(_: Found, rows: Sequence[Row]) -> Iterator[Drawing]:
 
 def _fronts(found: Found, _: Sequence[Row]) -> Iterator[Drawing]:
     for at, front in enumerate(found.fronts):
-        title = f"Instructions against {front.error.removesuffix(', dB')}"
+        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
         said = (
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )
