@@ -29,6 +29,8 @@ _RULES = (
 _SLOW = {"polaris10": r"v_fma_"}
 _INSTRUCTION = re.compile(r"^\s+([a-z][a-z0-9_]+)\b(?:\s+(BB\d+))?")
 _LABEL = re.compile(r"^(BB\d+):")
+# RADV writes an instruction that comes several times in a row once.
+_REPEATED = re.compile(r"^\s*\(then repeated (\d+) times\)")
 
 # What a lane's instruction keeps the vector ALU's issue busy for, in full-rate instructions (4 cycles of a wave on GCN,
 # 1 for 32 lanes on RDNA). GCN: LLVM's scheduling model (SISchedule.td: WriteFloatCvt, WriteTrans32 and
@@ -43,7 +45,13 @@ SLOTS: Mapping[str, Mapping[str, int]] = MappingProxyType(
 
 def names(assembly: str) -> list[str]:
     """The name of each instruction, in order; labels, comments and blank lines are none."""
-    return [match[1] for line in assembly.splitlines() if (match := _INSTRUCTION.match(line))]
+    found: list[str] = []
+    for line in assembly.splitlines():
+        if match := _INSTRUCTION.match(line):
+            found.append(match[1])
+        elif match := _REPEATED.match(line):
+            found += found[-1:] * int(match[1])
+    return found
 
 
 def kind(name: str, family: str = "") -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,7 +21,7 @@ from . import cost, depth, isa, lights, quality, spirv, sweep
 from .command_options import SuiteOptions
 from .commands import Request
 from .depth_command import DepthRequest
-from .errors import UsageError, pick
+from .errors import MissingError, pick
 from .lights_command import LightsRequest
 from .render_commands import RenderRequest
 from .rendering import Bench, Case, described
@@ -44,16 +45,24 @@ class SuiteRequest(SuiteOptions):
     """What to measure: tables, comma-separated; normals in a uniform set; and a seed."""
 
     def steps(self) -> list[Step]:
-        """Every step, in the order of the tables.
+        """Every step, in the order of the tables; which tables this machine cannot measure is said on standard error.
 
         Raises:
-            UsageError: an unknown table or count, or nothing that can be measured without a GL device.
+            UsageError: an unknown table or count.
+            MissingError: this machine can measure none of them.
         """
         names = pick("table", self.tables, {name: name for name in TABLES})
-        gl, _ = quality.found_device()
-        steps = [step for name in names for step in TABLES[name](self, gl)]
+        gl, missing = quality.found_device()
+        steps, reasons = list[Step](), dict[str, list[str]]()
+        for name in names:
+            if reason := LACKS.get(name, lambda _: "")(missing):
+                reasons.setdefault(reason, []).append(name)
+            else:
+                steps += TABLES[name](self, gl)
         if not steps:
-            raise UsageError(f"{', '.join(names)}: nothing of it can be measured without a GL device")
+            raise MissingError("; ".join(reasons))
+        for reason, without in reasons.items():
+            print(f"normalbench: left out: {', '.join(without)}: {reason}", file=sys.stderr)
         return steps
 
     def quality_cases(self) -> list[quality.Case]:
@@ -74,8 +83,7 @@ def _quality(request: SuiteRequest, _: Device | None) -> Iterator[Step]:
 
 def _render(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     """Each encoding in RGBA8 in an otherwise exact frame; times are the passes' affair."""
-    if not gl:
-        return
+    assert gl
     asked = RenderRequest(encoding=",".join(COMMON), size=SIZE, objects=OBJECTS, lights=LIGHTS, seed=request.seed)
     bench = Bench(gl, 0, False)
     for case in asked.cases(gl):
@@ -90,8 +98,7 @@ def _render_key(case: Case) -> Row:
 
 def _passes(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     """Each pipeline in the layout that it is published with."""
-    if not gl:
-        return
+    assert gl
     width, height = map(int, SIZE.split("x"))
     for pipeline in PIPELINES.values():
         targets = max(pipeline.light_targets, default=1)
@@ -146,9 +153,7 @@ def listed_costs(family: str) -> list[tuple[Row, str]]:
 
 
 def _cost(_: SuiteRequest, __: Device | None) -> Iterator[Step]:
-    """What each family's compiler makes of it; a machine without compilers has none."""
-    if isa.driver_file() is None or spirv.version(spirv.COMPILER) is None:
-        return
+    """What each family's compiler makes of it."""
     for family in isa.FAMILIES:
         yield Step("cost", {"family": family}, lambda family=family: [row for row, _ in listed_costs(family)])
 
@@ -161,3 +166,11 @@ TABLES: dict[str, Callable[[SuiteRequest, Device | None], Iterator[Step]]] = {
     "depth": _depth,
     "passes": _passes,
 }
+
+
+def _lacks_compilers(_: str) -> str:
+    return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
+
+
+# Of tables that not every machine can measure: what this one lacks, by why it has no GL device, if it has none.
+LACKS: dict[str, Callable[[str], str]] = {"render": str, "passes": str, "cost": _lacks_compilers}
