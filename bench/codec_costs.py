@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..encodings.codec import Codec
-from ..gbuffer.kernels import SIGN, packing_of
+from ..gbuffer.packings import SIGN, packing_of
 from .cost import PACKING_OPERATIONS, Row
 
 KEY = ("measure", "family", "stage", "operation", "encoding", "storage")
@@ -56,12 +56,10 @@ class Costs:
     def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
         """The keys of the rows that add up to it, each with its sign."""
         kind, packed = (where.measure, where.family, where.stage), PACKING_OPERATIONS[operation]
-        packing = packing_of(codec)
-        if not codec.fits:
-            raise LeftOutError(f"{codec.storage.name} has not the channels")
-        if packing is None:
-            raise LeftOutError(f"what {codec.storage.name} costs is not known")
-        parts = [(1, (*kind, operation, codec.encoding.name, None)), (1, (*kind, packed, None, packing.name))]
+        if codec.misfit:
+            raise LeftOutError(f"{codec.storage.name} does not hold it: {codec.misfit}")
+        name = codec.encoding.name
+        parts = [(1, (*kind, operation, name, None)), (1, (*kind, packed, None, packing_of(codec).name))]
         if codec.encoding.sign_bits:
             parts += [(sign, (*kind, packed, None, one.name)) for sign, one in zip((1, -1), SIGN, strict=True)]
         return parts

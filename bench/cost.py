@@ -11,7 +11,8 @@ from typing import Any
 
 from ..encodings.encoding import Encoding
 from ..gbuffer import kernels
-from ..gbuffer.kernels import Operation, Packing
+from ..gbuffer.kernels import Operation
+from ..gbuffer.packings import Packing
 from ..gbuffer.shader import ShaderError
 from . import isa, spirv
 from .disassembly import KINDS, issue_slots, jumps, kinds

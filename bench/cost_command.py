@@ -9,7 +9,9 @@ from functools import cached_property
 from pathlib import Path
 
 from ..encodings.encoding import Encoding
-from ..gbuffer.kernels import PACKINGS, STAGES, Packing
+from ..encodings.storage import STORAGES, Storage
+from ..gbuffer.kernels import STAGES
+from ..gbuffer.packings import PACKINGS, Packing
 from ..reports import plots
 from . import cost, cost_clocks, cost_jax, cost_plot, cost_sheets, isa, quality
 from .command_options import CostOptions
@@ -62,7 +64,17 @@ class CostRequest(CostOptions):
 
     @cached_property
     def packings(self) -> list[Packing]:
-        return [packing for several in pick("storage", self.storage, PACKINGS) for packing in several]
+        return list(
+            dict.fromkeys(packing for several in pick("storage", self.storage, PACKINGS) for packing in several)
+        )
+
+    @cached_property
+    def drawn_storages(self) -> list[Storage]:
+        """The storages whose error can be measured. Raises UsageError where none is."""
+        found = dict.fromkeys(packing.storage for packing in self.packings if packing.storage)
+        if not found:
+            raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
+        return list(found)
 
     def normal_sets(self) -> list[NormalSet]:
         return [make(self.count, self.seed) for make in self._makers]
@@ -152,8 +164,8 @@ def cost_command(
 
 
 def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> bool:
-    chosen = cost_plot.storages(request.storage)
-    return cost_plot.draw(rows, request.encodings, chosen, request.normal_sets(), request.error, path)
+    sets = request.normal_sets()
+    return cost_plot.draw(rows, request.encodings, request.drawn_storages, sets, request.error, path)
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
@@ -175,7 +187,7 @@ def _check_outputs(request: CostRequest, disassembly: Path | None, plot: Path | 
         plots.check_format(plot)
         if set(request.measures) == {"jax"}:
             raise UsageError("--plot draws instructions or time; ask for --isa or --time")
-        cost_plot.storages(request.storage)
+        _ = request.drawn_storages
 
 
 def _say_reasons(measured: Measured) -> None:

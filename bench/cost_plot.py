@@ -12,12 +12,11 @@ from types import MappingProxyType
 
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
-from ..encodings.storage import STORAGES, Storage
+from ..encodings.storage import Storage
 from ..reports import pareto, plots
 from . import quality
 from .codec_costs import Costs, LeftOutError, Where
 from .cost import Row
-from .errors import UsageError
 from .normal_sets import NormalSet
 from .output import whole_file
 
@@ -50,15 +49,6 @@ class Wanted:
     def name(self) -> str:
         where = (self.where.family, self.where.stage) if self.where.family else (self.where.measure,)
         return " ".join(filter(None, (self.storage.name, self.normals.name, *where, self.operation)))
-
-
-def storages(named: str) -> list[Storage]:
-    """The storages among comma-separated names whose error can be measured. Raises UsageError where none is."""
-    words = [word.strip() for word in named.split(",")]
-    chosen = [storage for name, storage in STORAGES.items() if name in words or "all" in words]
-    if not chosen:
-        raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
-    return chosen
 
 
 def draw(

@@ -13,8 +13,9 @@ from ..encodings.light_encoding import LightEncoding
 from ..encodings.storage import STORAGES
 from ..gbuffer.device import Device
 from ..gbuffer.frame import Plan
-from ..gbuffer.kernels import PACKINGS, STAGES
+from ..gbuffer.kernels import STAGES
 from ..gbuffer.layouts import LAYOUTS
+from ..gbuffer.packings import PACKINGS
 from ..gbuffer.pipelines import PIPELINES
 from ..gbuffer.scenes.setting import Setting
 from . import cost, depth, isa, lights, quality, spirv, sweep

@@ -11,7 +11,8 @@ from normalbench.bench import cost, cost_command, cost_sheets, isa, seeds
 from normalbench.bench.disassembly import KINDS, issue_slots, kind, kinds, names
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer import kernels
-from normalbench.gbuffer.kernels import PACKINGS, STAGES
+from normalbench.gbuffer.kernels import STAGES
+from normalbench.gbuffer.packings import PACKINGS
 
 
 @pytest.fixture(scope="session")
@@ -108,7 +109,8 @@ def test_every_encoding_stage_and_family_has_its_row(whole_table):
     for row, assembly in whole_table:
         assert tuple(row) == cost.COLUMNS
         assert row["skipped"] is None and row["driver"].startswith("Mesa ") and row["instructions"] >= 0, row
-        assert row["encoding"] is None or row["spirv_instructions"] >= 0, row
+        is_counted = row["encoding"] and not row["loops"] and not ENCODINGS[row["encoding"]].is_precise
+        assert not is_counted or row["spirv_instructions"] >= 0, row
         assert assembly
 
 
@@ -118,18 +120,17 @@ def test_the_kinds_add_up_to_the_drivers_own_count(whole_table):
         assert len(names(assembly)) > row["instructions"]
 
 
-ACCESS = re.compile(r"^\s+buffer_(?:load|store)_\w+ v\d+, (v\d+), s\[[\d:]+\], (\S+) offen", re.M)
+STORE = re.compile(r"^\s+buffer_store_\w+ v\d+, (v\d+), s\[[\d:]+\], (\S+) offen", re.M)
 
 
 def test_no_kernel_computes_addresses(whole_table):
-    """Every access of a compute kernel is by the lane's one register and an offset within the instruction."""
+    """Every store of a compute kernel is by the lane's one register and an offset within the instruction."""
     for row, assembly in whole_table:
         if row["stage"] == "compute":
-            addresses = ACCESS.findall(assembly)
-            assert len(addresses) >= 12 and set(addresses) == {("v0", "0")}, (
-                row["encoding"],
-                row["storage"],
-                addresses,
+            stores = STORE.findall(assembly)
+            assert len(stores) >= 7 and len(set(stores)) == 1 and stores[0][1] == "0", (
+                cost.listing(row, "")[0],
+                stores,
             )
 
 
@@ -152,7 +153,7 @@ def test_stages_have_one_count_of_spirv(whole_table):
     for row, _ in whole_table:
         if row["encoding"]:
             found.setdefault((row["encoding"], row["operation"]), set()).add(row["spirv_instructions"])
-    assert all(len(counts) == 1 and None not in counts for counts in found.values()), found
+    assert all(len(counts) == 1 for counts in found.values()), found
 
 
 def instructions(table, operation: str, stage: str = "fragment") -> dict[str, dict[str, int]]:
@@ -191,8 +192,24 @@ def test_storages_cost_what_their_conversion_is(whole_table):
         for count in instructions(whole_table, operation, stage).values():
             assert (count["rgba8 8:8"], count["rgba8 8:8:8"]) == (2, 3)
             assert count["rgba8_snorm 8:8"] == count["rgba8_snorm 8:8:8"] == 0
-            assert count["rgba8 12:12"] > count["rgba8 depth 8:8"] > 3
+            assert min(count["rgb8_12_12 12:12"], count["rgba8 depth 8:8"]) > 3 * count["rgba8 8:8"]
             assert count["rgba8 signed depth 8:8:8"] > count["rgba8 depth 8:8:8"]
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
+    """Of four codes of two numbers each is decoded: what a lane pays to round so."""
+    plain, precise = (ENCODINGS[name] for name in ("octahedral", "octahedral_precise"))
+    chosen = cost.cases([plain, precise], (), cost.OPERATIONS)
+    rows = {
+        (row["encoding"], row["operation"], row["stage"]): row
+        for row, _ in cost.isa_rows(chosen, list(STAGES), ["navi21"], [], lambda _: None)
+    }
+    for stage in STAGES:
+        once, again = (rows[name, "encode", stage] for name in ("octahedral", "octahedral_precise"))
+        decode = rows["octahedral", "decode", stage]["instructions"]
+        assert again["instructions"] > once["instructions"] + 4 * decode and again["spirv_instructions"] is None
+        assert rows["octahedral_precise", "decode", stage]["instructions"] == decode
 
 
 def test_the_far_plane_is_no_lanes_work(whole_table):

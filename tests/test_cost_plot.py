@@ -50,7 +50,7 @@ def test_a_codec_costs_its_encoding_its_storage_and_its_sign(name, total):
         ("xy", "rgba8", "rgba8 8:8", "what rgba8 8:8 costs is not known"),
         ("xy", "rgba8", "xy", "what it costs is not known"),
         ("xy_sign", "rgba8", "rgba8 signed depth 8:8:8", "what rgba8 signed depth 8:8:8 costs is not known"),
-        ("xyz", "rg8", "nothing", "rg8 has not the channels"),
+        ("xyz", "rg8", "nothing", "rg8 does not hold it: 3 components, but RG8 has 2 channels"),
         ("xy", "rg8", "nothing", "what rg8 8:8 costs is not known"),
     ],
 )
@@ -174,7 +174,7 @@ def plotted(rows, tmp_path, capsys, monkeypatch, *storages: str) -> tuple[list[P
     monkeypatch.setattr(cost_plot.pareto, "pareto_figure", lambda made, _: panels.extend(made))
     monkeypatch.setattr(cost_plot.plots, "save", lambda _, file: file[0].write_text("drawn"))
     encodings = [ENCODINGS[name] for name in dict.fromkeys(r["encoding"] for r in rows if r["encoding"])]
-    chosen = cost_plot.storages(",".join(storages or ("rgba8",)))
+    chosen = [STORAGES[name] for name in storages or ("rgba8",)]
     cost_plot.draw(rows, encodings, chosen, [axes()], "psnr", tmp_path / "p.png")
     return panels, capsys.readouterr().err
 
