@@ -18,7 +18,7 @@ from .output import say, say_skipped, whole_file, write
 from .progress import progress
 from .rendering import ranked
 from .report_command import IMAGES, MAPS, PAGE, write_report
-from .runs import Done, Row, Run, Step, opened, read_run, sources, unfinished
+from .runs import Row, Run, Step, opened, read_run, sources, unfinished
 from .short import SHORT
 from .sphere_maps import write_maps
 from .suite import SuiteRequest, listed_costs
@@ -41,22 +41,32 @@ def run_command(request: SuiteRequest, output: Path | None) -> None:
         if run.kept:
             print(f"normalbench: {folder} goes on: {run.kept} of {len(steps)} steps are there", file=sys.stderr)
         try:
-            _measure(run, steps)
+            for name, part in _by_table(steps).items():
+                _show(name, _measure(run, part))
         except (KeyboardInterrupt, SystemExit):
             print(f"normalbench: {run.kept} of {len(steps)} steps are kept; the same command goes on", file=sys.stderr)
             raise
         _complete(run, request)
     done = read_run(folder)
-    _show(done)
     say(f"\nEvery figure, the pictures and the machine they come from: {folder}\n")
     say(f"All of it on one page: {write_report(folder, done, folder / PAGE)}\n")
 
 
-def _measure(run: Run, steps: Sequence[Step]) -> None:
+def _by_table(steps: Sequence[Step]) -> dict[str, list[Step]]:
+    found: dict[str, list[Step]] = {}
+    for step in steps:
+        found.setdefault(step.table, []).append(step)
+    return found
+
+
+def _measure(run: Run, steps: Sequence[Step]) -> list[Row]:
+    """The rows of one table's steps."""
+    rows: list[Row] = []
     with progress(len(steps)) as tick:
         for step in steps:
-            run.rows(step)
+            rows += run.rows(step)
             tick(step.name)
+    return rows
 
 
 def _new_folder() -> Path:
@@ -103,10 +113,9 @@ def _draw(folder: Path, cases: Sequence[quality.Case]) -> None:
         pictures.write_png(partial, pictures.contact_sheet(sheet))
 
 
-def _show(done: Done) -> None:
-    """Each table in short, to standard output."""
-    for name, rows in done.tables.items():
-        say_skipped(rows)
-        for title, part, expendable in SHORT[name](rows):
-            say(f"\n{title}\n\n")
-            write(part, "table", None, expendable)
+def _show(name: str, rows: list[Row]) -> None:
+    """A table in short, to standard output, as soon as it is measured."""
+    say_skipped(rows)
+    for title, part, expendable in SHORT[name](rows):
+        say(f"\n{title}\n\n")
+        write(part, "table", None, expendable)

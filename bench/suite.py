@@ -34,8 +34,9 @@ COMMON = (
     *("xyz", "xyz_renormalised", "xy", "xy_sign", "spherical", "spherical_lut", "spheremap", "spheremap_classic"),
     *("cryengine3", "stereographic", "per_pixel_view", "octahedral", "octahedral_precise", "best_fit"),
 )
-# Of render and passes.
+# Of render and passes; of passes on a software rasteriser, where a frame takes a second, the size is less.
 SIZE, LIGHTS, OBJECTS, REPEATS = "640x480", 64, 200, 9
+SOFTWARE_SIZE = "320x240"
 # Of cost.
 PACKED = ("rgba8", "rg16f", "12:12", "16:16", "11:10:11", "depth16", "depth24", "depth24_sign")
 # A scene under few lights, as in seed 003, at one specular power.
@@ -101,7 +102,7 @@ def _render_key(case: Case) -> Row:
 def _passes(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     """Each pipeline in the layout that it is published with."""
     assert gl
-    width, height = map(int, SIZE.split("x"))
+    width, height = map(int, (SOFTWARE_SIZE if gl.is_software else SIZE).split("x"))
     for pipeline in PIPELINES.values():
         targets = max(pipeline.light_targets, default=1)
         layout, light = LAYOUTS[pipeline.usual_layout], LIGHT_ENCODINGS["rgba16f"]

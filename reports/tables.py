@@ -12,6 +12,8 @@ from typing import Any
 GAP = 2
 # Longer cells are prose and may break between words.
 PROSE = 40
+# What no column of whole numbers in Parquet holds.
+LARGEST = 2**63
 
 
 def text_of(value: Any) -> str:
@@ -52,12 +54,17 @@ def has_parquet() -> bool:
 
 
 def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
-    """The rows as a Parquet file: columns keep their types, nothing is null, infinity stays infinity."""
+    """The rows as a Parquet file: columns keep their types, nothing is null, infinity stays infinity. Whole numbers of
+    more than 64 bits are floats."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    columns = dict.fromkeys(column for row in rows for column in row)
-    pq.write_table(pa.table({column: [row.get(column) for row in rows] for column in columns}), path)
+    names = dict.fromkeys(column for row in rows for column in row)
+    columns = {name: [row.get(name) for row in rows] for name in names}
+    for name, values in columns.items():
+        if any(isinstance(value, int) and abs(value) >= LARGEST for value in values):
+            columns[name] = [None if value is None else float(value) for value in values]
+    pq.write_table(pa.table(columns), path)
 
 
 def to_markdown(rows: Sequence[dict[str, Any]]) -> str:

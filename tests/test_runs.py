@@ -161,6 +161,9 @@ def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, 
     run_command._write_table(tmp_path / "rows", rows)
     table = parquet.read_table(tmp_path / "rows.parquet")
     assert table.to_pylist() == rows
+    run_command._write_table(tmp_path / "wide", [{"codes": 2**130, "bits": None}, {"codes": 3, "bits": 8}])
+    wide = parquet.read_table(tmp_path / "wide.parquet").to_pylist()
+    assert wide == [{"codes": 2.0**130, "bits": None}, {"codes": 3.0, "bits": 8}]
     assert [str(table.schema.field(name).type) for name in ("bits", "psnr_db", "exact")] == ["int64", "double", "bool"]
     monkeypatch.setattr(tables, "find_spec", lambda _: None)
     run_command._write_table(tmp_path / "others", rows)
