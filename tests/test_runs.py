@@ -4,9 +4,11 @@ import json
 import math
 import os
 import random
+import shutil
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -186,9 +188,34 @@ def test_an_unknown_table_is_one_line(run, tmp_path):
     assert not (tmp_path / "run").exists()
 
 
-def test_a_read_only_folder_is_one_line(run, tmp_path):
-    if os.geteuid() == 0:
-        pytest.skip("root writes everywhere")
-    tmp_path.chmod(0o500)
-    status, _, err = run("run", "--tables", "depth", "-o", str(tmp_path / "run"))
-    assert status == 2 and err.count("\n") == 1, err
+@contextmanager
+def read_only(folder: Path):
+    """Nothing in a folder can be changed, by root either."""
+    tool, lock, unlock = ("chattr", "+i", "-i") if os.geteuid() == 0 else ("chmod", "a-w", "u+w")
+    if (
+        not shutil.which(tool)
+        or subprocess.run([tool, "-R", lock, folder], capture_output=True, check=False).returncode
+    ):
+        pytest.skip("root writes everywhere, and this file system cannot forbid it")
+    try:
+        yield
+    finally:
+        subprocess.run([tool, "-R", unlock, folder], check=True)
+
+
+def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path):
+    folder = tmp_path / "parent" / "run"
+    command = ("run", "--tables", "depth", "-o", str(folder))
+    assert run(*command)[0] == 0
+    lines, facts = (folder / ROWS).read_bytes().splitlines(keepends=True), (folder / "run.json").read_text()
+    (folder / ROWS).write_bytes(b"".join(lines[:3]))
+    (folder / "run.json").write_text(facts.replace('"finished": true', '"finished": false'))
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    with read_only(folder.parent):
+        for where in (folder, folder.with_name("other")):
+            status, out, err = run("run", "--tables", "depth", "-o", str(where))
+            assert (status, out, err.count("\n")) == (2, "", 1) and "cannot write" in err, err
+    assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
+    status, _, err = run(*command)
+    assert status == 0 and f"3 of {len(lines)} steps are there" in err
+    assert (folder / ROWS).read_bytes() == b"".join(lines)
