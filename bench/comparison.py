@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -32,10 +32,26 @@ def compared(before: Done, after: Done) -> list[Row]:
                 _change(step["table"], row_name(step["key"]), "", key in ours, key in theirs, "only one has it")
             )
             continue
-        pairs = zip(ours[key]["rows"], theirs[key]["rows"], strict=False)
-        for one, other in pairs:
-            found += _changes(ours[key]["table"], one, other, same_machine)
+        found += _between(ours[key]["table"], *(_by_name(step[key]["rows"]) for step in (ours, theirs)), same_machine)
     return found
+
+
+def _by_name(rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
+    """Rows by what they are called, and of those called alike by their order."""
+    found: dict[tuple[str, int], Row] = {}
+    names = [row_name(row) for row in rows]
+    for at, (name, row) in enumerate(zip(names, rows, strict=True)):
+        found[name, names[:at].count(name)] = row
+    return found
+
+
+def _between(table: str, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
+    """What is another between the rows of one step."""
+    for key in dict.fromkeys([*ours, *theirs]):
+        if key in ours and key in theirs:
+            yield from _changes(table, ours[key], theirs[key], same_machine)
+        else:
+            yield _change(table, key[0], "", key in ours, key in theirs, "only one has it")
 
 
 def _by_key(run: Done) -> dict[str, Row]:

@@ -34,12 +34,17 @@ def has_twin(encoding: Encoding) -> bool:
     return True
 
 
-def supremum(codec: Codec, domain: str | None, s: Statistics) -> Row:
-    """The supremum by search; of a finite set its maximum, as measured. Raises UsageError as `_exactly` does."""
+def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:
+    """The supremum on a set of so much area, by search; of a finite set, whose area is 0, its maximum, as measured.
+
+    Raises UsageError as `_exactly` does.
+    """
     if not domain:
         return {"angle_sup_deg": s.angle_max_deg, "sup_found_by": "every normal", "sup_moved_deg": 0.0}
     if not has_twin(codec.encoding):
         return {"sup_found_by": "nothing: it has no Python twin"}
+    if AREAS[domain] < area:
+        return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
     worst = _exactly(worst_case, codec, domain)
     x, y, z = worst.normal
     row = {"angle_sup_deg": worst.angle_deg, "sup_x": x, "sup_y": y, "sup_z": z}

@@ -82,7 +82,7 @@ def _readable(content: bytes) -> Iterator[Line]:
     for line in content[: content.rfind(b"\n") + 1].splitlines():
         try:
             found = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             continue
         if isinstance(found, dict):
             yield found

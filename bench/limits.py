@@ -17,7 +17,7 @@ NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d+)?|inf", re.IGNORECASE |
 IDENTITY = (
     *("encoding", "storage", "rounding", "normals", "backend", "pipeline", "layout", "scene", "experiment"),
     *("light_buffer", "light_targets", "channel", "order", "colour", "lights", "sum", "peak", "power", "depth"),
-    *("rebuilt", "near", "far", "distance", "frame_set"),
+    *("rebuilt", "near", "far", "distance", "frame_set", "operation", "stage", "family"),
 )
 
 

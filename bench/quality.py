@@ -264,7 +264,7 @@ def _described(case: Case) -> Row:
 def _measured(case: Case, statistics: Statistics) -> Row:
     row = _figures(statistics, case.normal_set.area)
     if case.worst_case:
-        row |= exact_figures.supremum(case.codec, case.domain, statistics)
+        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, statistics)
     if case.codes:
         row |= exact_figures.odd(case.codec, case.domain)
     return row | exact_figures.held(case.codec, case.domain, statistics, row.get("angle_sup_deg"))

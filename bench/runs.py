@@ -79,13 +79,17 @@ def read_run(folder: Path) -> Done:
     Raises:
         UsageError: it is none, or cannot be read.
     """
-    return Done(_facts(folder), _steps(read_lines(folder / ROWS)))
+    lines = read_lines(folder / ROWS)
+    odd = next((at for at, line in enumerate(lines, 1) if not _is_step(line)), None)
+    if odd:
+        raise UsageError(f"{folder / ROWS}: line {odd} is no step of a run; take the line out, or run again")
+    return Done(_facts(folder), lines)
 
 
 def _facts(folder: Path) -> Row:
     try:
         facts = json.loads((folder / RUN).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder} is no results folder: {RUN} cannot be read ({error})") from error
     if not isinstance(facts, dict):
         raise UsageError(f"{folder} is no results folder: {RUN} holds no facts")
@@ -93,7 +97,13 @@ def _facts(folder: Path) -> Row:
 
 
 def _steps(lines: list[Row]) -> list[Row]:
-    return [line for line in lines if {"table", "key", "rows"} <= set(line)]
+    return [line for line in lines if _is_step(line)]
+
+
+def _is_step(line: Row) -> bool:
+    kinds = {"table": str, "key": dict, "rows": list}
+    is_one = all(isinstance(line.get(name), kind) for name, kind in kinds.items())
+    return is_one and all(isinstance(row, dict) for row in line["rows"])
 
 
 class Run:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..encodings.catalogue import NAMES
 from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from . import quality
@@ -22,7 +23,7 @@ from .halves import Halves, halves_of
 from .normal_names import normal_sets_named
 from .options import Reading
 from .output import check_writable, whole_file, write
-from .tuned_names import TABLE
+from .tuned_names import MARK, TABLE
 from .tuning import Tuned, fitted, fitted_table, free_components
 from .user_encodings import encodings_named
 
@@ -60,10 +61,14 @@ def tune_command(
     encoding: str, options: TuneOptions, reading: Reading, table: Path | None, format: str, output: Path | None
 ) -> None:
     """Fit, measure what was held out, and write both. Raises UsageError for what cannot be tuned."""
+    if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
+        raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
     goal = _one("error", pick("error", options.error, {name: name for name in POWERS}))
     if table and not chosen.has_table:
         raise UsageError(f"--table: no look-up of {chosen.codec.name} is tuned")
+    if table and set(str(table)) & {MARK, ","}:
+        raise UsageError(f"--table: {table} could not be named after best_fit:table=; a name without {MARK} and comma")
     for path in filter(None, (table, output)):
         check_writable(path)
     quality.require_jax()

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -116,9 +117,11 @@ def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader
         module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
+        # What it prints is no part of a table.
+        with redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
         return module.encode, module.decode
-    except Exception as error:  # whatever a user's own file raises
+    except (Exception, SystemExit) as error:  # whatever a user's own file raises
         raise UsageError(f"{path}: {type(error).__name__}: {error}") from error
 
 

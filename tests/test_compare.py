@@ -51,6 +51,30 @@ def test_steps_that_one_run_lacks_are_named():
     assert (change["row"], change["before"], change["after"]) == ("a", True, False)
 
 
+def step_of(*rows: dict) -> Done:
+    return Done(MACHINE, [{"table": "cost", "key": {"family": "navi31"}, "rows": list(rows)}])
+
+
+def test_rows_of_one_step_are_paired_by_what_they_are():
+    """A row that one run lacks is named, and moves no other; two rows of one name are paired in their order."""
+    names = [("xyz", "encode"), ("xyz", "decode"), ("octahedral", "encode"), ("octahedral", "encode")]
+    about = [
+        {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "x": x}
+        for x, (e, o) in enumerate(names)
+    ]
+    changes = compared(step_of(*about), step_of(about[0], about[2], about[3] | {"x": 9}))
+    lost, other = sorted(changes, key=lambda change: change["column"])
+    assert (lost["row"], lost["change"]) == ("xyz decode fragment navi31", "only one has it")
+    assert (other["row"], other["before"], other["after"]) == ("octahedral encode fragment navi31", 3, 9)
+
+
+def test_a_small_difference_is_none_however_sure():
+    base = 10 + np.linspace(0, 0.01, 9)
+    for factor, changed in ((1.02, False), (0.98, False), (1.08, True), (0.92, True)):
+        assert mann_whitney(base, base * factor) < 1e-4
+        assert bool(compared(run_of(timed("a", base)), run_of(timed("a", base * factor)))) == changed
+
+
 def test_times_count_beyond_chance_and_a_least_effect_and_on_one_machine():
     rng = np.random.default_rng(0)
     base = 10 + rng.uniform(-0.5, 0.5, 9)

@@ -205,3 +205,14 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     assert rows["jax"]["rotation_max_deg"] < 1 and rows["glsl"]["rotation_max_deg"] is None
     status, _, err = run(*command, "--backend", "glsl")
     assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+
+
+def test_a_lost_hand_counts_whichever_it_was():
+    given = rotations(8, 0).chunk(0)
+    assert set(given.normals[:, 3]) == {-1.0, 1.0}
+    for lost in (given.normals[:, 3] > 0, given.normals[:, 3] < 0):
+        normals = given.normals.copy()
+        normals[lost, 3] *= -1
+        total = frames.Total()
+        total.add(given, Frames(normals, given.tangents))
+        assert total.hands_lost == lost.sum() > 0

@@ -59,6 +59,26 @@ def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
     assert measured == [2] and (folder / ROWS).read_bytes() == whole
 
 
+@pytest.mark.parametrize(
+    "file, text, said",
+    [
+        ("run.json", "[" * 100_000, "is no results folder"),
+        (ROWS, '{"table": "quality", "key": {}, "rows": 3}', "line 1 is no step"),
+        (ROWS, '{"table": ["x"], "key": 3, "rows": []}', "line 1 is no step"),
+        (ROWS, '{"table": "quality", "key": {}, "rows": [1]}', "line 1 is no step"),
+    ],
+)
+def test_a_damaged_folder_is_one_line_and_no_failed_gate(run, tmp_path, file, text, said):
+    folder, gates = tmp_path / "run", tmp_path / "gates.toml"
+    folder.mkdir()
+    (folder / "run.json").write_text(json.dumps(FACTS | {"finished": True}))
+    (folder / file).write_text(text + "\n")
+    gates.write_text('[[gate]]\nencoding = "xyz"\npsnr_db = "at least 1"\n')
+    for command in (["report"], ["compare", str(folder)], ["check", str(gates), "--run"]):
+        status, out, err = run(*command, str(folder))
+        assert (status, out) == (2, "") and said in err and err.count("\n") == 1, (command, err)
+
+
 def test_two_processes_cannot_write_one_folder(tmp_path):
     with opened(tmp_path / "run", FACTS), pytest.raises(UsageError, match="another process writes"):
         opened(tmp_path / "run", FACTS).__enter__()

@@ -305,13 +305,27 @@ def one_direction(tmp_path):
         (["stereographic", "--error", "all"], "one error at a time"),
         (["stereographic", "--table", "x.npy"], "no look-up"),
         (["stereographic", "--seed", "-1"], "--seed -1"),
-        (["stereographic:scale=2", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),
+        (["stereographic", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),
         (["stereographic", "--storage", "rg8_9_9"], "so many bits lie in rgb8_9_9"),
     ],
 )
 def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
     status, out, err = run("tune", *arguments)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["stereographic:scale=1.2"], "tune begins with what was published; name stereographic"),
+        (["best_fit", "--storage", "rgba8", "--table", "my,ta.npy"], "a name without : and comma"),
+    ],
+)
+def test_names_that_could_not_be_given_back_are_refused(run, arguments, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("tune", *arguments, "--normals", "hemisphere", "--count", "4096")
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_set_of_one_normal_is_refused(run, tmp_path):

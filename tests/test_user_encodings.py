@@ -97,6 +97,9 @@ def test_a_missing_file_and_a_twin_that_fails_are_one_line(run, tmp_path):
     (tmp_path / "mine.py").write_text("def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n")
     status, _, err = run("quality", "--encoding", written(tmp_path), *QUICK)
     assert status == 2 and "mine.py: AttributeError" in err and err.count("\n") == 1
+    (tmp_path / "mine.py").write_text("print('hello')\nraise SystemExit(0)\n")
+    status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
+    assert (status, out) == (2, "") and "mine.py: SystemExit" in err
 
 
 def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):
