@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from functools import cache
 from types import MappingProxyType
 
 KINDS = ("full_rate", "conversion", "quarter_rate", "transcendental", "scalar", "memory", "waiting")
@@ -54,6 +55,7 @@ def names(assembly: str) -> list[str]:
     return found
 
 
+@cache
 def kind(name: str, family: str = "") -> str:
     """The kind of an instruction. Raises ValueError for one that is of none, or of doubles, whose rates are others."""
     if "_f64" in name:
