@@ -137,16 +137,17 @@ def test_a_set_that_is_finite_has_its_maximum():
 
 
 def test_the_command_says_where_and_how(run):
-    words = ["--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "sphere", "--backend", "jax"]
+    words = ["--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "sphere,hemisphere", "--backend", "jax"]
     status, out, _ = run("quality", *words, "--count", "100000", "--worst-case", "--codes", "--format", "json")
-    rows = {row["encoding"]: row for row in json.loads(out)}
+    rows = {(row["encoding"], row["normals"]): row for row in json.loads(out)}
     assert status == 0
-    one, half = rows["octahedral"], rows["xy"]
+    one, half, lost = rows["octahedral", "sphere"], rows["xy", "hemisphere"], rows["xy", "sphere"]
     assert one["angle_sup_deg"] == pytest.approx(0.953188, abs=1e-6) and one["angle_sup_deg"] > one["angle_max_deg"]
     assert one["sup_x"] ** 2 + one["sup_y"] ** 2 + one["sup_z"] ** 2 == pytest.approx(1)
     assert (one["domain"], half["domain"]) == ("sphere", "hemisphere") and half["sup_z"] >= 0
     assert one["reached_max_percent"] == pytest.approx(100 * 0.492225 / 0.953188, rel=1e-5)
     assert one["codes_unused"] == 0 and half["codes_unused"] > 0
+    assert lost["angle_sup_deg"] is None and "the set is larger" in lost["sup_found_by"], "half of it has no code"
 
 
 def test_ordinary_rows_do_not_search():
