@@ -14,6 +14,7 @@ from ..encodings.storage import STORAGES
 from ..reports import drawings, embedded, markdown, page
 from ..reports.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
 from ..reports.pareto import Panel, Point, decibels
+from ..reports.tables import LARGEST_WHOLE
 from ..reports.verdict import LEADING, is_count, is_number
 from . import seeds, sphere_maps
 from .codec_costs import Costs, LeftOutError, Where
@@ -30,8 +31,6 @@ KINDS = ("encoded", "decoded", "error", "power")
 PREFERRED = (*seeds.PSNR_DB, "octahedral")
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
-# What no column counts up to.
-LARGEST = 2**63
 # Rows that another version wrote, or somebody's hand.
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
@@ -125,14 +124,13 @@ def gathered(folder: Path, done: Done) -> Found:
     )
 
 
-def _clean(rows: Any) -> list[Row]:
-    """Flat rows of plain text and numbers, whatever the file holds."""
-    found = [plain_text(row) for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
-    return [{column: _flat(value) for column, value in row.items()} for row in found]
+def _clean(rows: Sequence[Row]) -> list[Row]:
+    """Flat rows of plain text and numbers, whatever they hold."""
+    return [{column: _flat(value) for column, value in plain_text(row).items()} for row in rows]
 
 
 def _flat(value: Any) -> Any:
-    is_odd = isinstance(value, list | dict) or (is_count(value) and abs(value) >= LARGEST)
+    is_odd = isinstance(value, list | dict) or (is_count(value) and abs(value) >= LARGEST_WHOLE)
     return str(value) if is_odd else value
 
 

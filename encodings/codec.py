@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 
@@ -15,6 +16,17 @@ from .vec import Vec3, dot, jnp, select
 
 # A number that is not one of few values is not laid into fewer bits.
 LEAST_BITS = 4
+
+
+def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
+    """Why a storage's channels cannot hold numbers of so many values, 0 for any; None where they can."""
+    for channel, count in enumerate(levels):
+        bits = storage.bits[channel]
+        if count > storage.levels(channel):
+            return f"number {channel + 1} has {count} values, more than {storage.title} tells apart"
+        if not count and bits < LEAST_BITS:
+            return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
+    return None
 
 
 @dataclass(frozen=True)
@@ -42,13 +54,7 @@ class Codec:
             return f"{storage.title} is of floats, and {self._rounds} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
-        for channel in range(encoding.components):
-            levels, bits = encoding.levels_of(channel), storage.bits[channel]
-            if levels > storage.levels(channel):
-                return f"number {channel + 1} has {levels} values, more than {storage.title} tells apart"
-            if not levels and bits < LEAST_BITS:
-                return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
-        return None
+        return numbers_misfit(storage, [encoding.levels_of(channel) for channel in range(encoding.components)])
 
     @property
     def _rounds(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .codec import LEAST_BITS
+from .codec import numbers_misfit
 from .frame_encoding import FrameEncoding
 from .rotation import Frame
 from .storage import Storage, store_number
@@ -29,13 +29,7 @@ class FrameCodec:
     @property
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
-        for channel, levels in enumerate(self.encoding.levels):
-            if levels > self.storage.levels(channel):
-                return f"number {channel + 1} has {levels} values, more than {self.storage.title} tells apart"
-            if not levels and self.storage.bits[channel] < LEAST_BITS:
-                bits = self.storage.bits[channel]
-                return f"number {channel + 1} has {bits} bits in {self.storage.title}, which are for one of few values"
-        return None
+        return numbers_misfit(self.storage, self.encoding.levels)
 
     @property
     def bits(self) -> int:

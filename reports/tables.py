@@ -12,8 +12,8 @@ from typing import Any
 GAP = 2
 # Longer cells are prose and may break between words.
 PROSE = 40
-# What no column of whole numbers in Parquet holds.
-LARGEST = 2**63
+# What no column of whole numbers counts up to.
+LARGEST_WHOLE = 2**63
 
 
 def text_of(value: Any) -> str:
@@ -62,7 +62,7 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
     names = dict.fromkeys(column for row in rows for column in row)
     columns = {name: [row.get(name) for row in rows] for name in names}
     for name, values in columns.items():
-        if any(isinstance(value, int) and abs(value) >= LARGEST for value in values):
+        if any(isinstance(value, int) and abs(value) >= LARGEST_WHOLE for value in values):
             columns[name] = [None if value is None else float(value) for value in values]
     pq.write_table(pa.table(columns), path)
 
