@@ -15,9 +15,9 @@ from ..gbuffer.kernels import Operation
 from ..gbuffer.packings import Packing
 from ..gbuffer.shader import ShaderError
 from . import isa, spirv
+from .counts import cores
 from .disassembly import KINDS, issue_slots, jumps, kinds
 from .isa import Compiled, Failure, Job, Outcome
-from .metrics import cores
 
 Row = dict[str, Any]
 

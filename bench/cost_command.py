@@ -1,9 +1,9 @@
-"""What `cost` does."""
+"""What `cost` does. Imports JAX only for what needs it: instructions from the cache are there sooner than it is."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,17 +12,14 @@ from ..encodings.encoding import Encoding
 from ..encodings.storage import STORAGES, Storage
 from ..gbuffer.kernels import STAGES
 from ..gbuffer.packings import PACKINGS, Packing
-from ..reports import plots
-from . import cost, cost_clocks, cost_jax, cost_plot, cost_sheets, isa, quality
+from ..reports import pareto, plots
+from . import cost, cost_sheets, isa, listing
 from .command_options import CostOptions
 from .cost import Case, Row
-from .counts import checked_count
+from .counts import MAX_REPEATS, MAX_TIMED_COUNT, checked_count, in_range
 from .errors import MissingError, UsageError, pick
-from .normal_sets import NORMAL_SETS, NormalSet
 from .output import check_folder, check_writable, say, whole_file, without, write
 from .progress import progress
-from .render_commands import MAX_REPEATS, checked_target, in_range
-from .throughput import MAX_COUNT
 from .user_encodings import encodings_named
 
 MEASURES = ("isa", "time", "jax")
@@ -76,13 +73,6 @@ class CostRequest(CostOptions):
             raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
         return list(found)
 
-    def normal_sets(self) -> list[NormalSet]:
-        return [make(self.count, self.seed) for make in self._makers]
-
-    @cached_property
-    def _makers(self) -> list[Callable[[int, int], NormalSet]]:
-        return pick("normal set", self.normals, NORMAL_SETS)
-
     def cases(self) -> list[Case]:
         """What is compiled: encodings, and what packings add."""
         return cost.cases(self.encodings, self.packings, self.operations)
@@ -91,14 +81,18 @@ class CostRequest(CostOptions):
         """Raises UsageError for what is unknown or out of range."""
         in_range("--repeats", self.repeats, 2, MAX_REPEATS)
         checked_count(self.count)
-        if "jax" in self.measures and self.count > MAX_COUNT:
-            raise UsageError(f"--count {self.count}: in JAX a count is at most {MAX_COUNT} (2^28)")
+        if "jax" in self.measures and self.count > MAX_TIMED_COUNT:
+            raise UsageError(f"--count {self.count}: in JAX a count is at most {MAX_TIMED_COUNT} (2^28)")
         if self.seed < 0:
             raise UsageError(f"--seed {self.seed}: a seed is 0 or more")
-        pick("error", self.error, cost_plot.ERRORS)
-        _ = self.cases(), self.stages, self.families, self._makers
-        for encoding in self.encodings if "jax" in self.measures or "time" in self.measures else ():
-            quality.check_twin(encoding)
+        pick("error", self.error, pareto.ERRORS)
+        pick("normal set", self.normals, listing.NORMAL_SETS)
+        _ = self.cases(), self.stages, self.families
+        if self.measures != ["isa"]:
+            from .quality import check_twin
+
+            for encoding in self.encodings:
+                check_twin(encoding)
 
 
 class Measured:
@@ -124,7 +118,11 @@ class Measured:
             yield from cost.isa_rows(request.cases(), request.stages, request.families, self.missing, tick)
 
     def _time(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
-        device = quality.require_device()
+        from . import cost_clocks
+        from .quality import require_device
+        from .render_commands import checked_target
+
+        device = require_device()
         usual = cost_clocks.SOFTWARE_SIZE if device.is_software else cost_clocks.SIZE
         size, _ = checked_target(request.size or usual, 1, 1, device)
         chosen = request.cases()
@@ -133,10 +131,14 @@ class Measured:
                 yield row, ""
 
     def _jax(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
-        quality.require_jax()
+        from .quality import require_jax
+
+        require_jax()
+        from .cost_jax import jax_rows
+
         chosen = cost.cases(request.encodings, (), request.operations)
         with progress(len(chosen) + request.repeats) as tick:
-            for row in cost_jax.jax_rows(chosen, request.count, request.repeats, tick):
+            for row in jax_rows(chosen, request.count, request.repeats, tick):
                 yield row, ""
 
 
@@ -164,8 +166,11 @@ def cost_command(
 
 
 def _plot(request: CostRequest, rows: Sequence[Row], path: Path) -> bool:
-    sets = request.normal_sets()
-    return cost_plot.draw(rows, request.encodings, request.drawn_storages, sets, request.error, path)
+    from .cost_plot import draw
+    from .normal_sets import NORMAL_SETS
+
+    sets = [make(request.count, request.seed) for make in pick("normal set", request.normals, NORMAL_SETS)]
+    return draw(rows, request.encodings, request.drawn_storages, sets, request.error, path)
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:

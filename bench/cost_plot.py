@@ -20,14 +20,6 @@ from .cost import Row
 from .normal_sets import NormalSet
 from .output import whole_file
 
-# The columns of quality that codecs are compared by.
-ERRORS = MappingProxyType(
-    {
-        "psnr": ("psnr_db", pareto.decibels("PSNR")),
-        "mean": ("angle_mean_deg", pareto.degrees("mean angle")),
-        "max": ("angle_max_deg", pareto.degrees("largest angle")),
-    }
-)
 # Of each measure that is drawn a column, what it is in the plot, and how many of that one of the column's is.
 UNITS = MappingProxyType(
     {"isa": ("instructions", "instructions", 1.0), "time": ("ns_per_megapixel", "ms a megapixel", 1e-6)}
@@ -71,7 +63,7 @@ def draw(
     if not made:
         return False
     with whole_file(path) as partial:
-        plots.save(pareto.pareto_figure(made, ERRORS[error][1]), (partial, path.suffix.lower()[1:]))
+        plots.save(pareto.pareto_figure(made, pareto.ERRORS[error][1]), (partial, path.suffix.lower()[1:]))
     return True
 
 
@@ -93,7 +85,7 @@ class Drawing:
     """Panels of points, and what has none."""
 
     def __init__(self, rows: Sequence[Row], encodings: Sequence[Encoding], error: str):
-        self._encodings, self._column = encodings, ERRORS[error][0]
+        self._encodings, self._column = encodings, pareto.ERRORS[error][0]
         self._rows, self._costs = rows, Costs(rows)
         self._errors: dict[tuple[Codec, str], float | None] = {}
         self._lost: dict[str, dict[str, None]] = {}

@@ -22,12 +22,12 @@ from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures, plots
 from . import depth
 from .command_options import DepthOptions
-from .counts import checked_numbers
+from .counts import checked_numbers, in_range
 from .errors import UsageError, pick
 from .output import check_folder, check_writable, say_skipped, whole_file, write
 from .progress import progress
 from .quality import require_device, require_jax
-from .render_commands import in_range, what_is_left
+from .render_commands import what_is_left
 
 # Nothing nearer or farther; float32 has room on both sides.
 NEAREST, FARTHEST = 1e-6, 1e9

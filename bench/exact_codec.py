@@ -17,7 +17,8 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from ..encodings.vec import Vec2, Vec3, dot, select
-from .metrics import bounded_map, cores
+from .counts import cores
+from .metrics import bounded_map
 
 BLOCK = 2**16
 WAYS = 2**4  # that a climb tries from a normal

@@ -13,13 +13,13 @@ from ..encodings.frame_codec import FrameCodec
 from ..encodings.storage import FRAME_STORAGES
 from . import frames
 from .command_options import FramesOptions
-from .counts import checked_count
+from .counts import checked_count, in_range
 from .errors import pick
 from .frame_sets import frame_sets_named
 from .output import check_writable, say_skipped, write
 from .progress import progress
 from .quality import require_device, require_jax
-from .render_commands import in_range, what_is_left
+from .render_commands import what_is_left
 
 # What a narrow terminal goes without, the first first.
 EXPENDABLE = (

@@ -19,8 +19,8 @@ from typing import Any
 
 from ..gbuffer.kernels import PLANES
 from . import cache as kept
+from .counts import cores
 from .isa_process import Driver, child
-from .metrics import cores
 from .radv_files import DRIVER, NO_DRIVER, driver_file
 
 # One family for each generation, by every name that a Mesa may have for it.

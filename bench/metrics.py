@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..encodings.elementary import atan2_pi
 from ..encodings.vec import Vec3, cross, dot, minimum, select
+from .counts import cores
 
 BLOCK = 2**14
 FAST_BLOCK = 2**15
@@ -335,11 +335,6 @@ def measure_together(
             totals[index].add(part)
             tick(index)
     return [_statistics(pixels, total.sums, total.largest, total.histogram) for total in totals]
-
-
-def cores() -> int:
-    """The cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):

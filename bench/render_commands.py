@@ -18,7 +18,7 @@ from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import check
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures
-from .counts import checked_sides
+from .counts import MAX_REPEATS, checked_sides, in_range
 from .errors import UsageError, pick
 from .image_metrics import require_flip
 from .light_names import light_buffers_named
@@ -31,7 +31,7 @@ from .scene_names import scenes_named
 
 # Every pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
 MAX_SAMPLES = 2**25
-MAX_OBJECTS, MAX_LIGHTS, MAX_FRAMES, MAX_REPEATS = 100_000, 10_000, 1000, 1000
+MAX_OBJECTS, MAX_LIGHTS, MAX_FRAMES = 100_000, 10_000, 1000
 TARGETS = {"1": 1, "2": 2}
 SHADOWS = {"on": True, "off": False}
 # What a narrow terminal goes without, the first first.
@@ -158,12 +158,6 @@ def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
     for reason in reasons:
         print(f"normalbench: left out: {reason}", file=sys.stderr)
     return made
-
-
-def in_range(option: str, value: int, low: int, high: int) -> None:
-    """Raises UsageError where an option's value is out of range."""
-    if not low <= value <= high:
-        raise UsageError(f"{option} {value}: from {low} to {high}")
 
 
 def check_scale(scale: float) -> None:

@@ -12,7 +12,7 @@ from ..gbuffer.pipelines import PIPELINES
 from ..reports import plots
 from . import sweep
 from .command_options import SweepOptions
-from .counts import checked_numbers
+from .counts import MAX_REPEATS, checked_numbers, in_range
 from .errors import pick
 from .journal import Journal
 from .light_names import light_buffers_named
@@ -21,13 +21,11 @@ from .progress import progress
 from .quality import require_device, require_jax
 from .render_commands import (
     MAX_OBJECTS,
-    MAX_REPEATS,
     SHADOWS,
     TARGETS,
     check_scale,
     checked_setting,
     checked_target,
-    in_range,
     layouts_named,
     suited,
     what_is_left,

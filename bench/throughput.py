@@ -27,16 +27,16 @@ from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
 from ..encodings.vec import Vec3
 from . import numpy_baseline as baseline
+from .counts import MAX_TIMED_COUNT, cores
 from .doctor import machine
 from .errors import UsageError, pick
-from .metrics import FAST_BLOCK, LANES, Meter, compiled, cores, squared_errors
+from .metrics import FAST_BLOCK, LANES, Meter, compiled, squared_errors
 from .normal_sets import NormalSet, from_arrays
 
 BLOCK = 2**14
 CORES = cores()
 LONG_ENOUGH = 1.0
 STATISTICS = ("moments", "row")
-MAX_COUNT = 2**28
 
 
 @dataclass(frozen=True)
@@ -139,8 +139,8 @@ def main(arguments: list[str] | None = None) -> int:
     whole = FAST_BLOCK * CORES
     try:
         names = pick("encoding", options.encoding, {name: name for name in ENCODINGS if name in baseline.BASELINES})
-        if not whole <= options.count <= MAX_COUNT:
-            raise UsageError(f"--count {options.count}: a count is {whole} to {MAX_COUNT} (2^28)")
+        if not whole <= options.count <= MAX_TIMED_COUNT:
+            raise UsageError(f"--count {options.count}: a count is {whole} to {MAX_TIMED_COUNT} (2^28)")
     except UsageError as error:
         print(f"throughput: {error}", file=sys.stderr)
         return error.exit_code

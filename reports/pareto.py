@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Any
 
 from .plots import COLOURS, MARKERS, drawn_off_screen
@@ -73,9 +74,14 @@ def decibels(label: str) -> Error:
     return Error(f"{label}, dB", True, 0.05)
 
 
-def degrees(label: str) -> Error:
-    """An angle that a label says."""
-    return Error(f"{label}, degrees", False, 0.01)
+# The columns of quality that codecs are compared by.
+ERRORS = MappingProxyType(
+    {
+        "psnr": ("psnr_db", decibels("PSNR")),
+        "mean": ("angle_mean_deg", Error("mean angle, degrees", False, 0.01)),
+        "max": ("angle_max_deg", Error("largest angle, degrees", False, 0.01)),
+    }
+)
 
 
 def pareto_figure(panels: Sequence[Panel], error: Error) -> Any:
