@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -175,7 +175,9 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
         row[column] = _difference(_total(outcome, names), _total(empty, names))
     for column, names in WHOLE.items():
         row[column] = _total(outcome, names)
-    ours, theirs = (_listed(o, row["family"]) for o in (outcome, empty))
+    ours, theirs = (
+        _listed(o.assembly, int(o.statistics.get("Instructions", -1)), row["family"]) for o in (outcome, empty)
+    )
     if ours and theirs:
         row |= {column: _difference(ours[column], theirs[column]) for column in LISTED}
     return row | {"device": outcome.device, "driver": f"Mesa {outcome.version}"}, outcome.assembly
@@ -190,12 +192,13 @@ def _difference(a: float | None, b: float | None) -> float | None:
     return a - b if a is not None and b is not None else None
 
 
-def _listed(outcome: Compiled, family: str) -> dict[str, int | None] | None:
+@cache
+def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
     """What a kernel's disassembly says; None where there is none, or one that cannot be understood."""
-    counts = kinds(outcome.assembly, int(outcome.statistics.get("Instructions", -1)), family)
+    counts = kinds(assembly, total, family)
     if counts is None:
         return None
-    branches, loops = jumps(outcome.assembly)
+    branches, loops = jumps(assembly)
     return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
 
 
