@@ -11,7 +11,8 @@ import itertools
 
 import numpy as np
 
-from .exact_codec import BLOCK, ExactCodec, on_all_cores
+from .cores import on_all_cores
+from .exact_codec import BLOCK, ExactCodec
 
 ALL_CORNERS, SOME_CORNERS, NEAREST, NONE = "all corners", "corners", "nearest codes", ""
 # Cells whose corners are all tried; codes whose convex hull is computed; the sides of a plane that is climbed over.

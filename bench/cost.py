@@ -15,7 +15,7 @@ from ..gbuffer.kernels import Operation
 from ..gbuffer.packings import Packing
 from ..gbuffer.shader import ShaderError
 from . import isa, spirv
-from .counts import cores
+from .cores import cores
 from .disassembly import KINDS, issue_slots, jumps, kinds
 from .isa import Compiled, Failure, Job, Outcome
 

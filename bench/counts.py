@@ -1,8 +1,7 @@
-"""How many there may be of what: normals of a set, sides of an image, repetitions, cores. Imports nothing heavy."""
+"""How many there may be of what: normals of a set, sides of an image, repetitions. Imports nothing heavy."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable
 from typing import TypeVar
@@ -16,11 +15,6 @@ MAX_COUNT = 2**32
 # Held in memory at once, where JAX is timed.
 MAX_TIMED_COUNT = 2**28
 MAX_REPEATS = 1000
-
-
-def cores() -> int:
-    """The cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def in_range(option: str, value: int, low: int, high: int) -> None:

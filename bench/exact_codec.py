@@ -6,10 +6,8 @@ normals, from normals to codes, and from normals to how far off they come back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from functools import cached_property, partial, reduce
-from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -17,13 +15,10 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from ..encodings.vec import Vec2, Vec3, dot, select
-from .counts import cores
-from .metrics import bounded_map
 
 BLOCK = 2**16
 WAYS = 2**4  # that a climb tries from a normal
 TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
-T = TypeVar("T")
 
 
 def ahead(like) -> Vec3:
@@ -170,9 +165,3 @@ class ExactCodec:
 def degrees(chord2: float) -> float:
     """The angle of a chord of the unit sphere, from its square."""
     return float(np.degrees(2 * np.arcsin(np.sqrt(max(chord2, 0.0)) / 2)))
-
-
-def on_all_cores(function: Callable[[Any], T], items: Iterable) -> Iterator[T]:
-    """What a function makes of each item, in order, a few at a time."""
-    with ThreadPoolExecutor(cores()) as pool:
-        yield from bounded_map(pool, function, items)

@@ -19,7 +19,7 @@ from typing import Any
 
 from ..gbuffer.kernels import PLANES
 from . import cache as kept
-from .counts import cores
+from .cores import cores
 from .isa_process import Driver, child
 from .radv_files import DRIVER, NO_DRIVER, driver_file
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from threading import Lock
 from typing import Any, NamedTuple
@@ -23,7 +22,7 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..encodings.elementary import atan2_pi
 from ..encodings.vec import Vec3, cross, dot, minimum, select
-from .counts import cores
+from .cores import on_all_cores
 
 BLOCK = 2**14
 FAST_BLOCK = 2**15
@@ -329,23 +328,11 @@ def measure_together(
     totals = [Total() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
     work = ((meter, once) for once in map(Once, loads) for meter in meters)
-    with ThreadPoolExecutor(cores()) as pool:
-        for part in bounded_map(pool, lambda item: item[0].one(item[1]), work):
-            index = next(whose)
-            totals[index].add(part)
-            tick(index)
+    for part in on_all_cores(lambda item: item[0].one(item[1]), work):
+        index = next(whose)
+        totals[index].add(part)
+        tick(index)
     return [_statistics(pixels, total.sums, total.largest, total.histogram) for total in totals]
-
-
-def bounded_map(pool: ThreadPoolExecutor, function, items: Iterable):
-    """`pool.map` in order, but with a few items under way at once, so that any number of them is constant memory."""
-    ahead: list = []
-    for item in items:
-        ahead.append(pool.submit(function, item))
-        if len(ahead) >= 4:
-            yield ahead.pop(0).result()
-    for future in ahead:
-        yield future.result()
 
 
 def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:

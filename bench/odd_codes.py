@@ -19,7 +19,8 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from .cells import sides
-from .exact_codec import BLOCK, ExactCodec, on_all_cores
+from .cores import on_all_cores
+from .exact_codec import BLOCK, ExactCodec
 from .worst_case import spread
 
 MOST_CODES = 2**24

@@ -27,7 +27,8 @@ from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
 from ..encodings.vec import Vec3
 from . import numpy_baseline as baseline
-from .counts import MAX_TIMED_COUNT, cores
+from .cores import cores
+from .counts import MAX_TIMED_COUNT
 from .doctor import machine
 from .errors import UsageError, pick
 from .metrics import FAST_BLOCK, LANES, Meter, compiled, squared_errors

@@ -24,7 +24,8 @@ import numpy as np
 
 from ..encodings.codec import Codec
 from . import cells
-from .exact_codec import BLOCK, WAYS, ExactCodec, degrees, on_all_cores
+from .cores import on_all_cores
+from .exact_codec import BLOCK, WAYS, ExactCodec, degrees
 
 SAMPLES = 2**23
 # Starts kept, directions tried from each, and steps of a round; a block is starts times directions.

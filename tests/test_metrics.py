@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
 from normalbench.bench import counts, metrics, quality
-from normalbench.bench.metrics import Meter, angle_between, bounded_map, compiled, psnr_db, squared_errors
+from normalbench.bench.cores import cores, on_all_cores
+from normalbench.bench.metrics import Meter, angle_between, compiled, psnr_db, squared_errors
 from normalbench.bench.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.numpy_baseline import angles, whole_row
 from normalbench.encodings import vec
@@ -165,14 +166,11 @@ def test_the_largest_count_can_be_addressed():
 
 
 def test_work_in_flight_is_bounded():
-    from concurrent.futures import ThreadPoolExecutor
-
     taken = []
-    with ThreadPoolExecutor(2) as pool:
-        results = bounded_map(pool, lambda i: i, (taken.append(i) or i for i in range(100)))
-        assert next(results) == 0
-        assert len(taken) <= 4
-        assert list(results) == list(range(1, 100))
+    results = on_all_cores(lambda i: i, (taken.append(i) or i for i in range(1000)))
+    assert next(results) == 0
+    assert len(taken) <= 2 * cores()
+    assert list(results) == list(range(1, 1000))
 
 
 def rows_of(normals, names=("octahedral", "spherical", "xyz")) -> list[dict]:

@@ -1,0 +1,31 @@
+"""Work shared among the cores. Imports nothing heavy."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+T = TypeVar("T")
+Item = TypeVar("Item")
+
+
+def cores() -> int:
+    """The cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def on_all_cores(function: Callable[[Item], T], items: Iterable[Item]) -> Iterator[T]:
+    """What a function makes of each item, in order; few items are under way at once, so that any number of them is
+    constant memory. The iterable is run in the calling thread."""
+    # Half of the threads wait: for the kernel to clear memory, and for the one that asks for the results.
+    threads, ahead = 2 * cores(), deque()
+    with ThreadPoolExecutor(threads) as pool:
+        for item in items:
+            ahead.append(pool.submit(function, item))
+            if len(ahead) >= threads:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
