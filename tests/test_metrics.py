@@ -201,11 +201,11 @@ def test_a_chunk_is_made_once_for_all_codecs():
 
 
 def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
-    """One thread or four: the same bits. Blocks of another size: the last digits of the sums, and the same maximum."""
+    """Of one core or of four: the same bits. Blocks of another size: the last digits of the sums, and the same maximum."""
     normals = sphere(5 * CHUNK + 99)
     usual = rows_of(normals)
     for threads in (1, 4):
-        monkeypatch.setattr(metrics, "cores", lambda threads=threads: threads)
+        monkeypatch.setattr("normalbench.bench.cores.cores", lambda threads=threads: threads)
         assert rows_of(normals) == usual
     for block, lanes in ((2**12, 64), (2**16, 512)):
         monkeypatch.setattr(metrics, "BLOCK", block)
