@@ -201,7 +201,7 @@ def test_a_chunk_is_made_once_for_all_codecs():
 
 
 def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
-    """Of one core or of four: the same bits. Blocks of another size: the last digits of the sums, and the same maximum."""
+    """One core or four: the same bits. Blocks of another size: the last digits of the sums, and the same maximum."""
     normals = sphere(5 * CHUNK + 99)
     usual = rows_of(normals)
     for threads in (1, 4):
