@@ -6,11 +6,13 @@ catalogue, so that an encoding that cannot be imported is said in one line.
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 from typer.exceptions import Abort, TyperException
@@ -354,5 +356,16 @@ def main() -> int:
         return UsageError.exit_code
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def program() -> NoReturn:
+    """`main` as a process of its own, which an interruption ends at once: what is computed in other threads cannot be
+    stopped, and the interpreter, tidying up beneath them, has crashed."""
+    try:
+        status = main()
+    except SystemExit as end:
+        status = end.code
+    if ending and isinstance(status, int):
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            with suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(status)
+    sys.exit(status)
