@@ -7,7 +7,7 @@ normals, from normals to codes, and from normals to how far off they come back.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property, partial, reduce
+from functools import cached_property, reduce
 
 import jax
 import jax.numpy as jnp
@@ -16,7 +16,7 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..encodings.vec import Vec2, Vec3, dot, select
 
-BLOCK = 2**16
+BLOCK = 2**15
 WAYS = 2**4  # that a climb tries from a normal
 TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
 
@@ -31,27 +31,6 @@ def _toward(v: Vec3) -> Vec3:
     length2 = dot(v, v)
     is_direction = (length2 > 0.0) & jnp.isfinite(length2)
     return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
-
-
-@partial(jax.jit, static_argnames="is_half")
-def _around(n, sizes, step, *, is_half: bool):
-    n = Vec3(*n)
-    # Two axes across n (J. Frisvad 2012, T. Duff et al. 2017).
-    sign = jnp.where(n.z < 0.0, -1.0, 1.0)
-    a = -1.0 / (sign + n.z)
-    b = n.x * n.y * a
-    u, v = Vec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3(b, sign + n.y * n.y * a, -n.y)
-    way = jnp.arange(WAYS, dtype=jnp.float64)[:, None]
-    lane = jnp.arange(sizes.shape[0], dtype=jnp.float64)[None, :]
-    turns = 2.0 * jnp.pi * (way / WAYS + 0.6180339887 * step + 0.7548776662 * lane)
-    reach = sizes[None, :] * 0.4 ** (way % 4.0)
-    p = Vec3(
-        *(
-            c[None, :] + jnp.cos(turns) * reach * d[None, :] + jnp.sin(turns) * reach * e[None, :]
-            for c, d, e in zip(n, u, v, strict=True)
-        )
-    )
-    return jnp.stack(_toward(p._replace(z=jnp.maximum(p.z, 0.0)) if is_half else p))
 
 
 class ExactCodec:
@@ -104,17 +83,18 @@ class ExactCodec:
 
         corner, centre = at(*edges), at(*numbers)
         n, decoded = (Vec3(*self._traced_normals(code)) for code in (corner, centre))
-        back = self.codec.encoding.encode(n, ahead(n.z))
         inside = (n.z >= 0.0) if self.is_half else True
-        for mine, its in zip(corner, back, strict=True):
+        is_precise = self.codec.encoding.is_precise
+        for mine, its in zip(corner, () if is_precise else self.codec.encoding.encode(n, ahead(n.z)), strict=False):
             inside &= abs(mine - its) < TOLERANCE
         rows, columns = n.z.shape
         around = (Vec3(*(c[i : i + rows, j : j + columns] for c in decoded)) for i in (0, 1) for j in (0, 1))
-        chords = reduce(jnp.maximum, (dot(n - d, n - d) for d in around))
+        chords = reduce(jnp.minimum if is_precise else jnp.maximum, (dot(n - d, n - d) for d in around))
         return jnp.where(inside, chords, -1.0)
 
     def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
-        """Squared chords from the corners of a plane's cells to the farthest of the four codes around.
+        """Squared chords from the corners of a plane's cells to the farthest of the four codes around, which each have
+        normals there; of precise rounding to the nearest, which all of them have.
 
         Args:
             edges: where cells end, in each of the two free components.
@@ -154,8 +134,21 @@ class ExactCodec:
 
     def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
         """WAYS unit normals around each: four sizes all around, turned at each step; shape (3, WAYS, count)."""
-        with jax.enable_x64(True):
-            return np.asarray(_around(n, sizes, np.float64(step), is_half=self.is_half))
+        x, y, z = n
+        # Two axes across n (J. Frisvad 2012, T. Duff et al. 2017).
+        sign = np.where(z < 0.0, -1.0, 1.0)
+        a = -1.0 / (sign + z)
+        b = x * y * a
+        u, v = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x]), np.stack([b, sign + y * y * a, -y])
+        way, turn = np.arange(WAYS)[:, None], 2.0 * np.pi * (0.6180339887 * step + 0.7548776662 * np.arange(len(sizes)))
+        reach, angle = sizes * 0.4 ** (way % 4), 2.0 * np.pi / WAYS * way
+        # cos(a + b), sin(a + b) from those of each way and of each lane, which are fewer.
+        along = reach * (np.cos(angle) * np.cos(turn) - np.sin(angle) * np.sin(turn))
+        aside = reach * (np.sin(angle) * np.cos(turn) + np.cos(angle) * np.sin(turn))
+        around = n[:, None] + along * u[:, None] + aside * v[:, None]
+        if self.is_half:
+            np.maximum(around[2], 0.0, out=around[2])
+        return around / np.linalg.norm(around, axis=0)
 
     def angle_deg(self, n: np.ndarray) -> float:
         """The angle of one normal, shape (3,), in degrees."""

@@ -18,7 +18,8 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, partial, reduce
+from operator import add
 
 import numpy as np
 
@@ -27,14 +28,17 @@ from . import cells
 from .cores import on_all_cores
 from .exact_codec import BLOCK, WAYS, ExactCodec, degrees
 
-SAMPLES = 2**23
-# Starts kept, directions tried from each, and steps of a round; a block is starts times directions.
-STARTS, STEPS = BLOCK // WAYS, 80
+# Starts that fill a block with what is tried around them, and steps of a round.
+LANES, STEPS = BLOCK // WAYS, 80
+# Directions looked at, and the worst of them kept: where nothing is known of the cells but what these find; and where
+# corners are known, or an encoder that searches takes its time.
+WIDE, NARROW = (2**23, 2 * LANES), (2**20, LANES)
+KEPT = 2**8  # of a round, for the next
 FIRST_SIZES = (0.25, 0.02)  # of a round's steps, in the error
 GROW, SHRINK = 1.5, 0.55
 LEAST = 1e-10  # of a step, in the error; then a climb is over
 # Rounds from the best alone, until one moves it no more than that, relatively.
-LAST_ROUNDS, SETTLED = 12, 1e-9
+LAST_ROUNDS, SETTLED = 12, 1e-8
 CLIMBING = "climbing"
 # A start this near the result, relatively, is what found it.
 SAME = 1e-6
@@ -69,10 +73,14 @@ class Starts:
         kept = np.argsort(-self.chords, kind="stable")[:count]
         return Starts(self.chords[kept], self.normals[:, kept])
 
-    def filled(self) -> Starts:
-        """STARTS of them, each as often as it takes: climbs differ by where in the block they start."""
-        index = np.arange(STARTS) % len(self.chords)
+    def filled(self, count: int) -> Starts:
+        """So many of them, each as often as it takes: climbs differ by where in the block they start."""
+        index = np.arange(count) % len(self.chords)
         return Starts(self.chords[index], self.normals[:, index])
+
+    def __getitem__(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """The chords and normals of some."""
+        return self.chords[part], self.normals[:, part]
 
     def __add__(self, other: Starts) -> Starts:
         return Starts(*(np.concatenate(pair, axis=-1) for pair in zip(_fields(self), _fields(other), strict=True)))
@@ -87,15 +95,15 @@ def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     """The largest error over the sphere, or over z >= 0, with eye rays straight ahead."""
     exact = ExactCodec(codec, is_half)
     way, normals = cells.corners(exact)
-    ours = Starts(exact.chords(normals), normals).best(STARTS) if way else None
-    samples = SAMPLES // (8 if way in (cells.ALL_CORNERS, cells.NEAREST) else 1)
-    starts = _worst_of(exact, itertools.chain(spread(samples, is_half), _special(is_half)))
+    samples, count = NARROW if way in (cells.ALL_CORNERS, cells.NEAREST) or codec.encoding.searches else WIDE
+    ours = Starts(exact.chords(normals), normals).best(count) if way else None
+    starts = _worst_of(exact, itertools.chain(spread(samples, is_half), _special(is_half)), count)
     starts = starts + ours if ours else starts
     for size in FIRST_SIZES:
-        starts = _climb(exact, starts.best(STARTS).filled(), size).best(STARTS // WAYS)
+        starts = _climb(exact, starts.best(count).filled(count), size).best(KEPT)
     angle, moved, last = degrees(starts.chords[0]), math.inf, starts.best(1)
     for _ in range(LAST_ROUNDS):
-        last = _climb(exact, last.filled(), np.geomspace(1e-9, 1.0, STARTS)).best(1)
+        last = _climb(exact, last.filled(LANES), np.geomspace(1e-9, 1.0, LANES)).best(1)
         moved, angle = degrees(last.chords[0]) - angle, degrees(last.chords[0])
         if moved <= SETTLED * angle:
             break
@@ -104,8 +112,8 @@ def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     return Worst(angle, (x, y, z), way if is_ours else CLIMBING, moved)
 
 
-def _worst_of(exact: ExactCodec, blocks: Iterable[Callable[[], np.ndarray]]) -> Starts:
-    """The worst of normals that come in blocks of shape (3, up to BLOCK)."""
+def _worst_of(exact: ExactCodec, blocks: Iterable[Callable[[], np.ndarray]], count: int) -> Starts:
+    """The worst of normals that come in blocks of shape (3, up to BLOCK), at most `count`."""
 
     def peaks(block: Callable[[], np.ndarray]) -> Starts:
         normals = block()
@@ -114,7 +122,7 @@ def _worst_of(exact: ExactCodec, blocks: Iterable[Callable[[], np.ndarray]]) -> 
 
     best = Starts(np.empty(0), np.empty((3, 0)))
     for found in on_all_cores(peaks, blocks):
-        best = (best + found).best(STARTS)
+        best = (best + found).best(count)
     return best
 
 
@@ -162,16 +170,21 @@ def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
 
 
 def _climb(exact: ExactCodec, starts: Starts, first) -> Starts:
-    """STARTS normals, each moved to the worst of WAYS around it, in steps that shrink where none is worse.
+    """Normals, a multiple of LANES, each moved to the worst of WAYS around it; steps shrink where none is worse.
 
     `first` is the size of the first step in the error, for all or for each.
     """
-    chords, normals = starts.chords, starts.normals
-    errors = np.sqrt(np.maximum(chords, 0.0))
-    sizes, lane = first * errors, np.arange(STARTS)
+    sizes = first * np.sqrt(np.maximum(starts.chords, 0.0))
+    parts = (slice(begin, begin + LANES) for begin in range(0, len(sizes), LANES))
+    return reduce(add, on_all_cores(lambda part: _climb_from(exact, *starts[part], sizes[part]), parts))
+
+
+def _climb_from(exact: ExactCodec, chords: np.ndarray, normals: np.ndarray, sizes: np.ndarray) -> Starts:
+    """LANES normals, moved by steps of these sizes to begin with."""
+    errors, lane = np.sqrt(np.maximum(chords, 0.0)), np.arange(LANES)
     for step in range(STEPS):
         around = exact.around(normals, sizes, step)
-        found = exact.chords(around.reshape(3, BLOCK)).reshape(WAYS, STARTS)
+        found = exact.chords(around.reshape(3, BLOCK)).reshape(WAYS, LANES)
         way = found.argmax(axis=0)
         worst = found[way, lane]
         is_worse = worst > chords
