@@ -13,7 +13,7 @@ import numpy as np
 from ..encodings.codec import Codec
 from ..reports import pictures
 from . import quality, seeds
-from .counts import checked_count
+from .counts import check_seed, checked_count
 from .errors import UsageError, pick
 from .normal_names import normal_sets_named
 from .options import AS_USUAL, QualityOptions, Reading
@@ -44,8 +44,7 @@ class Request(QualityOptions):
         """One case for each row. Raises UsageError for unknown names, and MissingError where only GLSL is asked for
         and there is no GL device. Codecs that do not fit are named on standard error."""
         count = checked_count(self.count)
-        if self.seed < 0:
-            raise UsageError(f"--seed {self.seed}: a seed is 0 or more")
+        check_seed(self.seed)
         codecs = quality.codecs_named(self.encoding, self.storage, self.rounding)
         backends = pick("back end", self.backend, {name: name for name in quality.BACKENDS})
         codecs, left_out = quality.fitting(codecs)

@@ -16,7 +16,7 @@ from ..reports import pareto, plots
 from . import cost, cost_sheets, isa, listing
 from .command_options import CostOptions
 from .cost import Case, Row
-from .counts import MAX_REPEATS, MAX_TIMED_COUNT, checked_count, in_range
+from .counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from .errors import MissingError, UsageError, pick
 from .output import check_folder, check_writable, say, whole_file, without, write
 from .progress import progress
@@ -83,8 +83,7 @@ class CostRequest(CostOptions):
         checked_count(self.count)
         if "jax" in self.measures and self.count > MAX_TIMED_COUNT:
             raise UsageError(f"--count {self.count}: in JAX a count is at most {MAX_TIMED_COUNT} (2^28)")
-        if self.seed < 0:
-            raise UsageError(f"--seed {self.seed}: a seed is 0 or more")
+        check_seed(self.seed)
         pick("error", self.error, pareto.ERRORS)
         pick("normal set", self.normals, listing.NORMAL_SETS)
         _ = self.cases(), self.stages, self.families

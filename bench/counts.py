@@ -30,6 +30,11 @@ def checked_count(count: int) -> int:
     return count
 
 
+def check_seed(seed: int) -> None:
+    """Raises UsageError where nothing can be made with it: it is kept in 64 bits."""
+    in_range("--seed", seed, 0, 2**63 - 1)
+
+
 def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
     """Width and height of "WxH". Raises UsageError for what is no size, or beyond the most that `where` can do."""
     match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())

@@ -22,7 +22,7 @@ from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures, plots
 from . import depth
 from .command_options import DepthOptions
-from .counts import checked_numbers, in_range
+from .counts import check_seed, checked_numbers, in_range
 from .errors import UsageError, pick
 from .output import check_folder, check_writable, say_skipped, whole_file, write
 from .progress import progress
@@ -52,7 +52,7 @@ class DepthRequest(DepthOptions):
             UsageError: unknown names, or numbers beyond what is possible.
             MissingError: only GLSL is asked for and there is no GL device.
         """
-        in_range("--seed", self.seed, 0, 2**63 - 1)
+        check_seed(self.seed)
         if not 1 <= self.fov <= 170:
             raise UsageError(f"--fov {self.fov:g}: degrees from 1 to 170")
         cameras = [Camera(near, far, self.fov, depth.ASPECT) for near, far in self._ranges()]

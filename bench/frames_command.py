@@ -13,7 +13,7 @@ from ..encodings.frame_codec import FrameCodec
 from ..encodings.storage import FRAME_STORAGES
 from . import frames
 from .command_options import FramesOptions
-from .counts import checked_count, in_range
+from .counts import check_seed, checked_count
 from .errors import pick
 from .frame_sets import frame_sets_named
 from .output import check_writable, say_skipped, write
@@ -40,7 +40,7 @@ class FramesRequest(FramesOptions):
             UsageError: unknown names, a file that cannot be read, or nothing that fits.
             MissingError: only GLSL is asked for and there is no GL device.
         """
-        in_range("--seed", self.seed, 0, 2**63 - 1)
+        check_seed(self.seed)
         count = checked_count(self.count)
         codecs = self._codecs()
         backends = pick("back end", self.backend, {name: name for name in frames.BACKENDS})

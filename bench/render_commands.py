@@ -18,7 +18,7 @@ from ..gbuffer.pipelines import PIPELINES, Pipeline
 from ..gbuffer.render import check
 from ..gbuffer.scenes.setting import Setting
 from ..reports import pictures
-from .counts import MAX_REPEATS, checked_sides, in_range
+from .counts import MAX_REPEATS, check_seed, checked_sides, in_range
 from .errors import UsageError, pick
 from .image_metrics import require_flip
 from .light_names import light_buffers_named
@@ -170,7 +170,7 @@ def checked_setting(objects: int, lights: int, seed: int) -> Setting:
     """The scenes' setting. Raises UsageError for counts that no scene has."""
     in_range("--objects", objects, 1, MAX_OBJECTS)
     in_range("--lights", lights, 0, MAX_LIGHTS)
-    in_range("--seed", seed, 0, 2**63 - 1)
+    check_seed(seed)
     return Setting(objects, lights, seed)
 
 

@@ -16,7 +16,7 @@ from ..encodings.codec import Codec
 from ..encodings.encoding import Encoding
 from . import quality
 from .command_options import TuneOptions
-from .counts import checked_count
+from .counts import check_seed, checked_count
 from .errors import UsageError, pick
 from .expected_errors import POWERS
 from .halves import Halves, halves_of
@@ -118,8 +118,7 @@ def _one(what: str, found: list[Any]) -> Any:
 
 
 def _halves(chosen: Chosen, options: TuneOptions, reading: Reading) -> Halves:
-    if options.seed < 0:
-        raise UsageError(f"--seed {options.seed}: a seed is 0 or more")
+    check_seed(options.seed)
     needs_rays = chosen.codec.encoding.domain == "view"
     sets = normal_sets_named(options.normals, checked_count(options.count), options.seed, reading, needs_rays)
     return halves_of(_one("normal set", sets), options.seed, by_tiles=chosen.has_table)
