@@ -26,7 +26,7 @@ def tuned(word: str) -> Encoding:
     values: dict[str, str] = {}
     for setting in settings:
         key, is_set, value = setting.partition("=")
-        if not is_set or key in values:
+        if not (is_set and value) or key in values:
             raise UsageError(f"{word}: after {name} come parameters, each once, such as {_example(encoding)}")
         values[key] = value
     table = values.pop(TABLE, None) if encoding.look_up else None

@@ -341,6 +341,7 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("stereographic:bias=1", "no parameter 'bias'; known: scale"),
         ("stereographic:scale", "each once, such as stereographic:scale=1.7777"),
         ("stereographic:scale=1:scale=2", "each once"),
+        ("best_fit:table=", "each once, such as best_fit:table=FILE.npy"),
         ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: none"),
         ("all:scale=1", "unknown encoding 'all'"),
         ("best_fit:table=missing.npy", "cannot read missing.npy: No such file"),
