@@ -68,6 +68,11 @@ class Storage:
         return self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
 
     @property
+    def is_exact(self) -> bool:
+        """Whether a number in float32 comes back as it was."""
+        return self.kind == "float" and min(self.bits) == 32
+
+    @property
     def target(self) -> Storage:
         """The format of the render target: another one where numbers are laid across its channels."""
         return STORAGES["rgba8"] if self.is_packed else self

@@ -149,7 +149,7 @@ DEFINITIONS = {
     "sup_found_by": "How the supremum was found: corners of all cells, nearest codes, or climbing from the worst.",
     "sup_moved_deg": "How much the last round of that search still raised it, degrees.",
     "codes_unused": "Codes that no normal of the domain is given, as far as was tried.",
-    "codes_duplicate": "Codes less distinct directions: how many could be spared.",
+    "codes_duplicate": "All codes, used or not, less distinct directions: how many could be spared.",
     "codes_unstable": "Used codes whose normal has another code.",
     # tangent frames
     "frame_set": "The set of tangent frames that was measured on.",

@@ -81,6 +81,36 @@ def test_a_lattices_worst_is_its_covering_radius():
     assert worst.found_by == "nearest codes"
 
 
+@pytest.mark.parametrize(
+    ("encoding", "where", "sup"),
+    [
+        ("octahedral_precise", "rg8", 0.6354766834),
+        ("octahedral_precise", "rg8_snorm", 0.6379930671),
+        ("equal_area_octahedral_precise", "rg8", 0.6355206575),
+        ("equal_area_octahedral_precise", "rg8_snorm", 0.5839288567),
+    ],
+)
+def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where, sup):
+    """By climbing from 6 million directions in NumPy's float64, written by somebody else."""
+    assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
+
+
+@pytest.mark.parametrize("is_half", [False, True])
+def test_what_is_tried_around_a_normal_lies_across_it_at_four_distances(is_half):
+    """Unit normals at the tangents of the sizes, in sixteen directions; on z >= 0 where that is the domain."""
+    random = np.random.default_rng(3)
+    n = random.normal(size=(3, 64))
+    n /= np.linalg.norm(n, axis=0)
+    n[2] = np.abs(n[2]) + 0.1 if is_half else n[2]
+    n /= np.linalg.norm(n, axis=0)
+    around = ExactCodec(codec_of("octahedral", "rg8"), is_half).around(n, np.full(64, 1e-2), 5)
+    assert np.linalg.norm(around, axis=0) == pytest.approx(1, abs=1e-14)
+    tangents = np.linalg.norm(np.cross(around, n[:, None], axis=0), axis=0) / (around * n[:, None]).sum(axis=0)
+    assert tangents == pytest.approx(np.tile([[1e-2], [4e-3], [1.6e-3], [6.4e-4]], (4, 64)), rel=1e-9)
+    # All around: each set of four sums to nothing.
+    assert (around - n[:, None])[:, ::4].mean(axis=1) == pytest.approx(0, abs=1e-4)
+
+
 def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_sign():
     """The sign of z makes the sphere two hemispheres: the same worst case."""
     half, whole = worst_case(codec_of("xy", "rg8"), True), worst_case(codec_of("xy_sign", "rg8"))
@@ -97,6 +127,8 @@ SEARCHED = [
     codec_of("spherical", "rg8_snorm", "truncate"),
     codec_of("octahedral", "rg16"),
     codec_of("best_fit", "rgba8"),
+    codec_of("octahedral_precise", "rg8"),
+    codec_of("equal_area_octahedral_precise", "rg8_snorm"),
 ]
 
 
