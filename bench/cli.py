@@ -358,7 +358,7 @@ def main() -> int:
 
 def program() -> NoReturn:
     """`main` as a process of its own, which an interruption ends at once: what is computed in other threads cannot be
-    stopped, and the interpreter, tidying up beneath them, has crashed."""
+    stopped, and the interpreter should not tidy up beneath them."""
     try:
         status = main()
     except SystemExit as end:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
@@ -15,7 +14,7 @@ from ..gbuffer.kernels import Operation
 from ..gbuffer.packings import Packing
 from ..gbuffer.shader import ShaderError
 from . import isa, spirv
-from .cores import cores
+from .cores import on_all_cores
 from .disassembly import KINDS, issue_slots, jumps, kinds
 from .isa import Compiled, Failure, Job, Outcome
 
@@ -138,8 +137,7 @@ def isa_rows(
     compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
-    with ThreadPoolExecutor(cores()) as pool:
-        prepared = list(pool.map(lambda pair: prepare(*pair), pairs))
+    prepared = list(on_all_cores(lambda pair: prepare(*pair), pairs))
     jobs = list(dict.fromkeys(job for p in prepared if isinstance(p, Prepared) for job in (p.job, p.empty)))
     outcomes = isa.compile_all(jobs, families, tick)
     lacks += dict.fromkeys(o.reason for o in outcomes.values() if isinstance(o, Failure) and o.is_missing)

@@ -130,11 +130,10 @@ class Measured:
                 yield row, ""
 
     def _jax(self, request: CostRequest) -> Iterator[tuple[Row, str]]:
+        from .cost_jax import jax_rows
         from .quality import require_jax
 
         require_jax()
-        from .cost_jax import jax_rows
-
         chosen = cost.cases(request.encodings, (), request.operations)
         with progress(len(chosen) + request.repeats) as tick:
             for row in jax_rows(chosen, request.count, request.repeats, tick):

@@ -85,7 +85,9 @@ class ExactCodec:
         n, decoded = (Vec3(*self._traced_normals(code)) for code in (corner, centre))
         inside = (n.z >= 0.0) if self.is_half else True
         is_precise = self.codec.encoding.is_precise
-        for mine, its in zip(corner, () if is_precise else self.codec.encoding.encode(n, ahead(n.z)), strict=False):
+        # Precise rounding takes the nearest code, whichever the corner's normal is encoded to.
+        back = corner if is_precise else self.codec.encoding.encode(n, ahead(n.z))
+        for mine, its in zip(corner, back, strict=True):
             inside &= abs(mine - its) < TOLERANCE
         rows, columns = n.z.shape
         around = (Vec3(*(c[i : i + rows, j : j + columns] for c in decoded)) for i in (0, 1) for j in (0, 1))

@@ -15,7 +15,6 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import jax
@@ -27,7 +26,7 @@ from ..encodings.codec import Codec
 from ..encodings.storage import STORAGES
 from ..encodings.vec import Vec3
 from . import numpy_baseline as baseline
-from .cores import cores
+from .cores import cores, on_all_cores
 from .counts import MAX_TIMED_COUNT
 from .doctor import machine
 from .errors import UsageError, pick
@@ -88,13 +87,12 @@ def reading(data: Input) -> Callable[[], object]:
         return jax.lax.scan(step, jnp.zeros(FAST_BLOCK, jnp.float32), blocks)[0].reshape(-1, LANES).sum()
 
     call = compiled(total)
-    return lambda: on_all_cores(lambda n, _: float(call(n)), data)
+    return lambda: _by_shards(lambda n, _: float(call(n)), data)
 
 
-def on_all_cores(function, data: Input) -> list:
+def _by_shards(function, data: Input) -> list:
     """What a function makes of each shard's planes, side by side."""
-    with ThreadPoolExecutor(CORES) as pool:
-        return list(pool.map(lambda shard: function(*shard), data.shards))
+    return list(on_all_cores(lambda shard: function(*shard), data.shards))
 
 
 def _numpy_blocked(round_trip, statistics, data: Input) -> list:
@@ -114,7 +112,7 @@ def compare(name: str, statistics: str, data: Input, read: float) -> dict[str, o
         project = rate(lambda: meter.measure(normals.loads(), count), count)
     else:
         errors = squared_errors(codec)
-        project = rate(lambda: on_all_cores(errors, data), count)
+        project = rate(lambda: _by_shards(errors, data), count)
     numpy = rate(lambda: summary(data.n, by_numpy(data.n, data.view, baseline.quantise_unorm)), count)
     blocked = rate(lambda: _numpy_blocked(by_numpy, summary, data), count)
     return {

@@ -70,17 +70,14 @@ class Starts:
 
     def best(self, count: int) -> Starts:
         """The worst of them, at most `count`."""
-        kept = np.argsort(-self.chords, kind="stable")[:count]
-        return Starts(self.chords[kept], self.normals[:, kept])
+        return self[np.argsort(-self.chords, kind="stable")[:count]]
 
     def filled(self, count: int) -> Starts:
         """So many of them, each as often as it takes: climbs differ by where in the block they start."""
-        index = np.arange(count) % len(self.chords)
-        return Starts(self.chords[index], self.normals[:, index])
+        return self[np.arange(count) % len(self.chords)]
 
-    def __getitem__(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
-        """The chords and normals of some."""
-        return self.chords[part], self.normals[:, part]
+    def __getitem__(self, which: slice | np.ndarray) -> Starts:
+        return Starts(self.chords[which], self.normals[:, which])
 
     def __add__(self, other: Starts) -> Starts:
         return Starts(*(np.concatenate(pair, axis=-1) for pair in zip(_fields(self), _fields(other), strict=True)))
@@ -176,11 +173,12 @@ def _climb(exact: ExactCodec, starts: Starts, first) -> Starts:
     """
     sizes = first * np.sqrt(np.maximum(starts.chords, 0.0))
     parts = (slice(begin, begin + LANES) for begin in range(0, len(sizes), LANES))
-    return reduce(add, on_all_cores(lambda part: _climb_from(exact, *starts[part], sizes[part]), parts))
+    return reduce(add, on_all_cores(lambda part: _climb_from(exact, starts[part], sizes[part]), parts))
 
 
-def _climb_from(exact: ExactCodec, chords: np.ndarray, normals: np.ndarray, sizes: np.ndarray) -> Starts:
+def _climb_from(exact: ExactCodec, starts: Starts, sizes: np.ndarray) -> Starts:
     """LANES normals, moved by steps of these sizes to begin with."""
+    chords, normals = starts.chords, starts.normals
     errors, lane = np.sqrt(np.maximum(chords, 0.0)), np.arange(LANES)
     for step in range(STEPS):
         around = exact.around(normals, sizes, step)
