@@ -1,5 +1,5 @@
 """`python -m normalbench.bench` is `normalbench`."""
 
-from .cli import program
+from .cli.app import program
 
 program()

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from .passes import (
+from .passes.passes import (
     Stage,
     forward,
     forward_lights,

@@ -11,10 +11,10 @@ import moderngl
 import numpy as np
 
 from ..encodings.storage import FORMATS, R32F, SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
-from .device import Device, read_pixels
-from .frame import Frame, Plan
-from .layout import DEPTH_STENCIL_BYTES, LayoutError
-from .passes import Run, unpacked
+from .frame.frame import Frame, Plan
+from .gl.device import Device, read_pixels
+from .layouts.layout import DEPTH_STENCIL_BYTES, LayoutError
+from .passes.passes import Run, unpacked
 from .pipelines import Pipeline
 from .scenes.scene import Scene
 

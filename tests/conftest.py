@@ -8,9 +8,10 @@ import sys
 import jax
 import pytest
 
-from normalbench.bench import cli, isa, spirv
+from normalbench.bench.cli import app as cli
+from normalbench.bench.isa import isa, spirv
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
-from normalbench.gbuffer.device import NoDeviceError, device
+from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")

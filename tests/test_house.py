@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench import frame_sets, listing, normal_sets, quality
+from normalbench.bench.cli import listing
+from normalbench.bench.normals import normal_sets
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.tangent_frames import sets as frame_sets
 from normalbench.encodings.catalogue import (
     DEPTH_ENCODINGS,
     DEPTH_NAMES,
@@ -22,7 +25,7 @@ from normalbench.encodings.catalogue import (
     PRECISE,
 )
 from normalbench.encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
-from normalbench.gbuffer.layouts import LAYOUTS
+from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
 

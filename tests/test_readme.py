@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench import cli, seeds
-from normalbench.bench.code_limits import HEMISPHERE, SPHERE, code_limit
-from normalbench.bench.light_sums import Adder, equal_lights
+from normalbench.bench.cli import app as cli
+from normalbench.bench.metrics import published as seeds
+from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.tables.lights.sums import Adder, equal_lights
 from normalbench.encodings.catalogue import LIGHT_ENCODINGS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.mesh import sphere

@@ -1,0 +1,1 @@
+"""Codecs as they are named: the catalogue's, tuned ones, and users' own."""

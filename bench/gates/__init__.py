@@ -1,0 +1,1 @@
+"""Thresholds and baselines that rows are held to."""

@@ -1,0 +1,128 @@
+"""Baselines: rows as they once were, in a file that is compared with, and written on request only."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...reports.tables import to_json
+from ..options.option import MEASURED, fields_of
+from ..output.errors import UsageError
+from ..output.writing import whole_file
+from ..results.comparison import NOT_COMPARED, difference, same
+from .limits import row_name
+
+Row = dict[str, Any]
+Entry = dict[str, Any]
+# How a row was measured, which is no figure of it.
+HOW = ("device", "rounded_by")
+
+
+def entry(table: str, asked: Mapping[str, Any], row: Row) -> Entry:
+    """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked."""
+    known = fields_of(*MEASURED[table])
+    key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
+    (plain,) = json.loads(
+        to_json([{name: figure for name, figure in row.items() if not name.startswith(NOT_COMPARED)}])
+    )
+    return {"table": table, "key": key, "row": plain}
+
+
+def read_baseline(path: Path) -> dict[str, Entry]:
+    """The entries of a file, by their keys. Raises UsageError where it is no baseline."""
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(entries, list) or not all(_is_entry(one) for one in entries):
+            raise ValueError("it holds something else")
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{path} is no baseline: {error}") from error
+    return {_text(one): one for one in entries}
+
+
+def _is_entry(value: Any) -> bool:
+    return isinstance(value, dict) and isinstance(value.get("row"), dict) and {"table", "key"} <= set(value)
+
+
+def _text(one: Entry) -> str:
+    return json.dumps([one["table"], one["key"]], sort_keys=True)
+
+
+def write_baseline(path: Path, dumped: Sequence[str]) -> None:
+    """What was measured, as `dumped`, in place of what the file says of it; its other entries stay.
+
+    Raises:
+        UsageError: the file holds something else, two rows have one key, or it cannot be written.
+    """
+    kept = Baseline(path, True)
+    for one in (one for text in dumped for one in json.loads(text)):
+        kept.record(one)
+    entries = (read_baseline(path) if path.exists() else {}) | kept.recorded
+    with whole_file(path) as partial:
+        lines = (json.dumps(entries[text]) for text in sorted(entries))
+        partial.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
+
+
+@dataclass
+class Baseline:
+    """A file of entries; what is recorded is written by `write_baseline`, once."""
+
+    path: Path
+    writes: bool
+    recorded: dict[str, Entry] = field(default_factory=dict)
+    _read: dict[str, Entry] | None = None
+
+    def record(self, one: Entry) -> None:
+        """Keep a row for writing. Raises UsageError where another is asked for by the same."""
+        before = self.recorded.setdefault(_text(one), one)
+        if list(changes(before["row"], one["row"], {})):
+            raise UsageError(f"two rows of a baseline are called {row_name(one['row'])}; rename one")
+
+    def differences(self, one: Entry, tolerances: Mapping[str, float]) -> list[str]:
+        """What a row and its entry say differently, a line for each column.
+
+        Raises:
+            AssertionError: the file has no such row.
+            UsageError: it is no baseline.
+        """
+        if self._read is None:
+            self._read = read_baseline(self.path) if self.path.exists() else {}
+        before = self._read.get(_text(one))
+        if before is None:
+            name = row_name(one["row"])
+            raise AssertionError(f"{self.path} has no row {name}; --normalbench-write-baseline writes it")
+        found = list(changes(before["row"], one["row"], tolerances))
+        devices = [row.get("device") for row in (before["row"], one["row"])]
+        if found and devices[0] != devices[1]:
+            found.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
+        return found
+
+    def dumped(self) -> str:
+        """What was recorded, as text; none for nothing."""
+        return json.dumps(list(self.recorded.values())) if self.recorded else ""
+
+
+def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
+    """A line for each column that differs by more than is tolerated, which is nothing where nothing is said."""
+    for column in dict.fromkeys([*before, *after]):
+        one, other = before.get(column), after.get(column)
+        if column not in HOW and not same(one, other) and not _near(one, other, tolerances.get(column, 0.0)):
+            allowed = f", tolerated {tolerances[column]:g}" if column in tolerances else ""
+            yield f"{column} is {other}, the baseline says {one} ({difference(one, other)}{allowed})"
+
+
+def _near(one: Any, other: Any, tolerance: float) -> bool:
+    return isinstance(one, int | float) and isinstance(other, int | float) and abs(one - other) <= tolerance
+
+
+def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:
+    """Raises UsageError for a column that there is not, or what is no tolerance."""
+    for column, value in tolerances.items():
+        if column not in columns:
+            raise UsageError(f"no column {column!r}; there are {', '.join(columns)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
+            raise UsageError(f"{column}: a tolerance is a number from 0, not {value!r}")
+    return dict(tolerances)

@@ -1,0 +1,136 @@
+"""Gates: what figures a team's choices must keep, from a TOML file, measured and held against."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..output.errors import UsageError
+from ..results.runs import Row, read_run
+from .limits import Limit, row_name, split_limits
+from .measured import TABLES, Found, measured, with_their_options
+
+MAX_GATES = 1000
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Rows of a table, and what they must keep.
+
+    Attributes:
+        table: "quality" or "render", which are measured; or any table of a run.
+        options: what chooses the rows, columns' values, and for a measured table the command's options.
+        limits: one for each column.
+        place: file and number, for messages.
+    """
+
+    table: str
+    options: Mapping[str, Any]
+    limits: tuple[Limit, ...]
+    place: str
+
+
+def read_gates(path: Path) -> list[Gate]:
+    """The gates of a TOML file: `[[gate]]` tables with options and, for columns, "at least 47.5" or "at most 0.95".
+
+    Raises:
+        UsageError: it cannot be read, or says something else; one line with the place.
+    """
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{path}: cannot be read as gates: {error}") from error
+    found = data.get("gate")
+    if set(data) != {"gate"} or not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
+        raise UsageError(f"{path}: gates are [[gate]] tables, and nothing else is there")
+    if not 1 <= len(found) <= MAX_GATES:
+        raise UsageError(f"{path}: {len(found)} gates; from 1 to {MAX_GATES}")
+    return [_gate(f"{path}, gate {number}", values) for number, values in enumerate(found, 1)]
+
+
+def _gate(place: str, values: dict[str, Any]) -> Gate:
+    try:
+        for name, value in values.items():
+            if not isinstance(value, str | int | float):
+                raise UsageError(f"{name} is {value!r}; a text or a number would do")
+        options, limits = split_limits(values)
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from error
+    return Gate(str(options.pop("table", "quality")), options, limits, place)
+
+
+Measure = Callable[[Gate], list[Found]]
+
+
+def measured_for(gate: Gate) -> list[Found]:
+    """The rows of a gate, measured now.
+
+    Raises:
+        UsageError: a table, an option or a name that there is not; one line with the gate's place.
+        MissingError: this machine lacks what they need.
+    """
+    if gate.table not in TABLES:
+        raise UsageError(
+            f"{gate.place}: table {gate.table!r} is not measured here, only {', '.join(TABLES)}; name a --run"
+        )
+    try:
+        return measured(gate.table, with_their_options(gate.table, gate.options, gate.limits))
+    except UsageError as error:
+        raise UsageError(f"{gate.place}: {error}") from error
+
+
+def _rows_of_run(run: Path) -> Measure:
+    done = read_run(run)
+
+    def rows(gate: Gate) -> list[Found]:
+        if gate.table not in done.tables:
+            raise UsageError(f"{gate.place}: {run} has no table {gate.table!r}; it has {', '.join(done.tables)}")
+        found = [row for row in done.tables[gate.table] if all(_is(row.get(n), v) for n, v in gate.options.items())]
+        if not found:
+            raise UsageError(f"{gate.place}: {run} has no row with {dict(gate.options)!r}")
+        return [Found(row, lambda: None) for row in found]
+
+    return rows
+
+
+def _is(value: Any, asked: Any) -> bool:
+    """Whether a row's value is what was asked for: one of the names, where those are comma-separated."""
+    return value in [word.strip() for word in asked.split(",")] if isinstance(asked, str) else value == asked
+
+
+def checked(gates: list[Gate], run: Path | None, tick: Callable[[str], None]) -> Iterator[Row]:
+    """A row for each limit on each row of each gate: the figure, the limit, whether it holds, or the worst normal.
+
+    Args:
+        run: a results folder to take the figures from; None to measure them.
+
+    Raises:
+        UsageError: a table, option or column that there is not.
+        MissingError: a table needs a GL device and there is none.
+    """
+    measure = _rows_of_run(run) if run else measured_for
+    for gate in gates:
+        found = measure(gate)
+        yield from (_held(gate, one, limit) for one in found for limit in gate.limits)
+        tick(gate.place)
+
+
+def _held(gate: Gate, found: Found, limit: Limit) -> Row:
+    try:
+        broken = limit.broken_by(found.row)
+    except UsageError as error:
+        raise UsageError(f"{gate.place}: {gate.table}: {error}") from error
+    return {
+        "gate": gate.place.rsplit(" ", 1)[-1],
+        "table": gate.table,
+        "row": row_name(found.row),
+        "column": limit.column,
+        "figure": found.row[limit.column],
+        "limit": str(limit),
+        "holds": "FAIL" if broken else "pass",
+        "worst_normal": str(found.worst) if broken and found.worst else None,
+        "skipped": found.row.get("skipped"),
+    }

@@ -1,0 +1,1 @@
+"""What GPU compilers make of GLSL, in processes of their own."""

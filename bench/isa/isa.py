@@ -1,0 +1,231 @@
+"""What Mesa's compiler makes of shaders for GPUs that are not there, family by family.
+
+Each family compiles in a child process, because drivers crash and hang: a job that does not come back costs itself,
+with the reason, and the others go on in a fresh child. What was compiled is kept in the user's cache, by the shader,
+the driver's own files and the family.
+"""
+
+from __future__ import annotations
+
+import base64
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ...gbuffer.defines.kernels import PLANES
+from ..machine.cores import cores
+from ..output import cache as kept
+from .process import Driver, child
+from .radv_files import DRIVER, NO_DRIVER, driver_file
+
+# One family for each generation, by every name that a Mesa may have for it.
+FAMILIES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "polaris10": ("polaris10",),
+        "vega10": ("vega10",),
+        "navi10": ("navi10",),
+        "navi21": ("navi21",),
+        "navi31": ("navi31", "gfx1100"),
+    }
+)
+# What RADV says before it gives up.
+REFUSAL = "Unknown family"
+# After so many jobs that were never answered a family is given up.
+MOST_LOST = 5
+# What decides what a child makes of a job, beside the driver.
+OWN_FILES = ("radv.py", "child.py")
+
+
+@dataclass(frozen=True)
+class Job:
+    """A shader to compile: "compute" or "fragment", as SPIR-V, and the vertex shader before it."""
+
+    stage: str
+    code: bytes
+    vertex: bytes
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """What came of a job.
+
+    Attributes:
+        family: the name that the driver took.
+        device, version: what the driver calls the device, and Mesa's version.
+        statistics: the driver's, by its own names.
+        assembly: the disassembly, empty where the driver has none.
+    """
+
+    family: str
+    device: str
+    version: str
+    statistics: dict[str, float]
+    assembly: str
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why nothing came of a job, in one line; and whether a package is missing."""
+
+    reason: str
+    is_missing: bool = False
+
+
+Outcome = Compiled | Failure
+
+
+@cache
+def _loaded(path: Path) -> str | Failure:
+    """What differs once the driver or the library that disassembles for it does: their files' names and fingerprints,
+    as a child has them loaded. Empty where it cannot be told, a Failure where the driver cannot be loaded at all."""
+    with child(None, Driver(path, threading.Event()), {}) as (lines, why):
+        line = lines()
+        if line is None:
+            return Failure(why())
+        if "missing" in line or "failed" in line:
+            return Failure(line.get("missing") or line["failed"], "missing" in line)
+        files = line.get("loaded", {})
+    ours = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in OWN_FILES]
+    is_there = any(DRIVER in name for name in files)
+    return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
+
+
+def missing() -> str:
+    """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
+    path = driver_file()
+    if path is None:
+        return NO_DRIVER
+    found = _loaded(path)
+    return found.reason if isinstance(found, Failure) and found.is_missing else ""
+
+
+def compile_all(
+    jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
+) -> dict[tuple[str, Job], Outcome]:
+    """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
+    path = driver_file()
+    if reason := missing():
+        return {(family, job): Failure(reason, True) for family in families for job in jobs}
+    assert path
+    found: dict[tuple[str, Job], Outcome] = {}
+    driver = Driver(path, threading.Event())
+    with ThreadPoolExecutor(cores()) as pool:
+        try:
+            for family, outcomes in zip(families, pool.map(lambda f: _family(f, driver, jobs), families), strict=True):
+                found |= {(family, job): outcome for job, outcome in zip(jobs, outcomes, strict=True)}
+                tick(family)
+        except BaseException:
+            # An interrupted command ends at once, whatever a driver does.
+            driver.stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return found
+
+
+def driver_version() -> str:
+    """The driver as it names itself for the first family, with Mesa's version; or what is missing, in one line."""
+    path = driver_file()
+    if reason := missing():
+        return reason
+    assert path
+    with child(next(iter(FAMILIES)), Driver(path, threading.Event()), _given({})) as (lines, why):
+        line = lines() or {}
+        if "device" in line:
+            return f"Mesa {line['version']}, {line['device']}"
+        return line.get("missing") or line.get("failed") or why()
+
+
+def _family(family: str, driver: Driver, jobs: Sequence[Job]) -> list[Outcome]:
+    """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
+    identity = _loaded(driver.path)
+    identity = "" if isinstance(identity, Failure) else identity
+    keys = [kept.key_of("isa", identity, family, job.stage, job.code, job.vertex) for job in jobs]
+    outcomes: dict[str, Outcome] = {}
+    for key in keys if identity else ():
+        if found := _as_compiled(kept.read(key)):
+            outcomes[key] = found
+    left = {key: job for key, job in zip(keys, jobs, strict=True) if key not in outcomes}
+    if left:
+        compiled = _compiled(family, driver, left)
+        for key, outcome in compiled.items():
+            if identity and isinstance(outcome, Compiled):
+                kept.write(key, vars(outcome))
+        outcomes |= compiled
+    return [outcomes[key] for key in keys]
+
+
+def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
+    """What was kept; None where it is anything else."""
+    texts, numbers = ("family", "device", "version", "assembly"), (value or {}).get("statistics")
+    if value is None or set(value) != {*texts, "statistics"} or not isinstance(numbers, dict):
+        return None
+    is_sound = all(isinstance(value[text], str) for text in texts)
+    is_sound = is_sound and all(isinstance(number, int | float) for number in numbers.values())
+    return Compiled(**value) if is_sound else None
+
+
+def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+    """A family's outcomes under the first of its names that the driver takes."""
+    for name in FAMILIES[family]:
+        outcomes = _by_children(name, driver, jobs)
+        if not all(isinstance(o, Failure) and REFUSAL in o.reason for o in outcomes.values()):
+            return outcomes
+    return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(FAMILIES[family])}"))
+
+
+def _by_children(name: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+    """Children one after the other until each job has its outcome: whoever leaves a job unanswered is replaced."""
+    outcomes: dict[str, Outcome] = {}
+    lost = 0
+    while len(outcomes) < len(jobs):
+        left = {key: job for key, job in jobs.items() if key not in outcomes}
+        begun, end = "", Failure("the driver ended without a word")
+        for line in _answers(name, driver, left):
+            if isinstance(line, Failure):
+                end = line
+            elif isinstance(line, str):
+                begun = line
+            else:
+                key, outcome = line
+                outcomes[key], begun = outcome, ""
+        if len(outcomes) == len(jobs):
+            break
+        lost += 1
+        if not begun or lost >= MOST_LOST or driver.stop.is_set():
+            return dict.fromkeys(left, end) | outcomes
+        outcomes[begun] = end
+    return outcomes
+
+
+def _answers(name: str, driver: Driver, jobs: Mapping[str, Job]) -> Iterator[str | Failure | tuple[str, Outcome]]:
+    """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
+    facts: dict[str, str] = {}
+    with child(name, driver, _given(jobs)) as (lines, why):
+        while (line := lines()) is not None:
+            if "missing" in line or ("failed" in line and "key" not in line):
+                yield Failure(line.get("missing") or line["failed"], "missing" in line)
+                return
+            if "device" in line:
+                facts = {"family": name, "device": line["device"], "version": line["version"]}
+            elif "begun" in line:
+                yield line["begun"]
+            elif "failed" in line:
+                yield line["key"], Failure(line["failed"])
+            else:
+                yield line["key"], Compiled(**facts, statistics=line["statistics"], assembly=line["assembly"])
+        yield Failure(why())
+
+
+def _given(jobs: Mapping[str, Job]) -> dict[str, Any]:
+    """Jobs as a child takes them."""
+    return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
+
+
+def _as_json(key: str, job: Job) -> dict[str, str]:
+    code, vertex = (base64.b64encode(part).decode() for part in (job.code, job.vertex))
+    return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}

@@ -1,0 +1,1 @@
+"""Angles, images, theoretical bounds and published figures."""

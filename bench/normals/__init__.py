@@ -1,0 +1,1 @@
+"""Sets of normals: uniform ones, scenes and captured frames."""

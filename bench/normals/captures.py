@@ -1,0 +1,266 @@
+"""Captured frames as sets of normals: which channels, what they mean, what is background, and what is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from ..options.option import Reading
+from ..output.errors import UsageError, pick
+from .normal_sets import NormalSet, from_arrays
+from .pixel_files import READERS, Pixels, read_pixels, refused
+
+# Shorter is no direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
+BACKGROUND = 0.02
+# 8 bits cut off are up to 0.014 off, a filter at an edge more.
+UNIT_WITHIN = 0.05
+# And that is what few normals, at edges, may be beyond.
+OFF_UNIT_SHARE = 0.01
+# Lengths this near to 1 are rounding of float32: such normals are measured as they are.
+ROUNDING = 1e-6
+ROTATION_WITHIN = 1e-3
+AXES = ("XYZ", "xyz", "RGB", "rgb")
+NORMAL_WORDS = re.compile(r"n|nrm.*|.*norm.*", re.IGNORECASE)
+# A left-handed view space, z into the screen, as Direct3D and most engines on it have it.
+SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
+    {"view": np.eye(3), "view-left-handed": np.diag([1.0, 1.0, -1.0]), "world": None}
+)
+
+
+def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
+    """The normals of an image file, and what is to be said of them.
+
+    Raises:
+        UsageError: it cannot be read, or does not hold unit normals as `reading` says.
+        MissingError: reading it needs a package that is not installed.
+    """
+    to_view = view_matrix(reading)
+    _check_numbers(reading)
+    pixels = read_pixels(path, lambda names: chosen_channels(path, names, reading.channels))
+    surface = _mask(path, reading, pixels.shape)
+    n, covered, notes = _directions(path, pixels, surface, reading)
+    not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
+    n = np.where(covered, n, 0)
+    if to_view is not None:
+        n = np.tensordot(to_view, n, 1)
+    notes += _which_way(n[2][covered], reading.space)
+    shape = pixels.shape if len(pixels.shape) == 2 else None
+    n = np.moveaxis(n, 0, -1).astype(np.float32)
+    made = from_arrays(path.name, f"normals of {path.name}", n, _rays(n, reading.fov), covered, shape, not_finite)
+    return made, notes
+
+
+def _check_numbers(reading: Reading) -> None:
+    if not 0 <= reading.nan_share <= 1:
+        raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
+    if reading.fov is not None and not 1 <= reading.fov <= 175:
+        raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
+
+
+# Channels
+
+
+def _layers(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
+    """Three channels that belong together, with their layer's name: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2."""
+    known = set(names)
+    for name in names:
+        stem, axis = name[:-1], name[-1:]
+        for axes in AXES:
+            three = [stem + other for other in axes]
+            if axis == axes[0] and known.issuperset(three):
+                yield stem.rstrip("._"), three
+    if known.issuperset("012"):
+        yield "", list("012")
+
+
+def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
+    """Three channels: those asked for, or those that are called like normals, or the only ones, or R, G and B.
+
+    Raises:
+        UsageError: there are none, or several that could be meant.
+    """
+    layers = dict(_layers(names))
+    shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
+    if asked is not None:
+        words = [word.strip() for word in asked.split(",")]
+        if len(words) == 1 and words[0] in layers:
+            return layers[words[0]]
+        if len(words) == 3 and set(words) <= set(names):
+            return words
+        raise refused(path, f"no channels {asked!r}; it has {shown}", "--channels takes a layer, or x,y,z by name")
+    likely = [layer for layer in layers if NORMAL_WORDS.fullmatch(re.split(r"[._ ]", layer)[-1])]
+    if len(likely) > 1:
+        raise refused(path, f"layers {', '.join(likely)} may all be normals", f"--channels {likely[0]} names one")
+    if likely or "" in layers or len(layers) == 1:
+        return layers[likely[0] if likely else "" if "" in layers else next(iter(layers))]
+    raise refused(path, f"no channels that are called like normals; it has {shown}", "--channels x,y,z names three")
+
+
+# What is surface
+
+
+def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
+    """Where there is surface as far as a mask says, bool of the image's shape."""
+    asked = reading.mask
+    if asked is None:
+        return np.ones(shape, bool)
+    named = Path(asked)
+    if named.suffix.lower() in READERS:
+        where, found = f"--mask {named}", _mask_of_file(named)
+        found = found.reshape(-1) if len(shape) == 1 else found
+    else:
+        where, found = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
+    if found.shape != shape:
+        sides = " x ".join(map(str, found.shape))
+        raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "one of one size")
+    return np.isfinite(found) & (found != 0)
+
+
+def _mask_of_file(path: Path) -> np.ndarray:
+    """The first channel of an image, (height, width)."""
+    if path.suffix.lower() != ".npy":
+        return read_pixels(path, lambda names: names[:1]).planes[0]
+    found = read_pixels(path, lambda names: names).planes
+    # An array of (height, width) comes as `width` channels of `height` numbers.
+    return found[0] if found.ndim == 3 else found.T
+
+
+def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
+    if asked not in names:
+        raise refused(path, f"no channel {asked!r} for a mask; it has {', '.join(names[:40])}", "or --mask FILE")
+    return [asked]
+
+
+def _directions(
+    path: Path, pixels: Pixels, surface: np.ndarray, reading: Reading
+) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Normals as planes, unit where they count; where they do; and what is to be said of them."""
+    stored = pixels.planes if pixels.full is None else pixels.planes / pixels.planes.dtype.type(pixels.full)
+    unpack = pixels.full is not None if reading.unpack is None else reading.unpack
+    # What a cleared target holds is background however it is packed.
+    surface = surface & (stored != 0).any(axis=0)
+    finite = np.asarray(np.isfinite(stored).all(axis=0))
+    _check_finite(path, surface, finite, reading.nan_share)
+    n = stored * 2 - 1 if unpack else stored
+    length = _lengths(n)
+    covered = surface & finite & (length >= BACKGROUND)
+    if not covered.any():
+        raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
+    notes = [] if reading.normalise else _checked_unit(path, stored, length, covered, unpack)
+    far = covered & (abs(length - 1) > ROUNDING)
+    return np.divide(n, length, out=n.copy(), where=far), covered, notes
+
+
+def _lengths(n: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore", over="ignore"):
+        squares = sum(np.square(plane, dtype=np.float64) for plane in n)
+        return np.sqrt(squares).astype(n.dtype)
+
+
+def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: float) -> None:
+    bad = surface & ~finite
+    count, most = int(bad.sum()), max(int(surface.sum()), 1)
+    if count > share * most:
+        first = ", ".join(f"{word} {at}" for word, at in zip(("row", "column"), np.argwhere(bad)[0], strict=False))
+        needed = math.ceil(1e6 * count / most) / 1e6
+        raise refused(
+            path,
+            f"{count} of {most} normals are NaN or infinite, the first at {first}",
+            f"--nan-share {needed:g} masks and counts them, --mask leaves them out",
+        )
+
+
+def _checked_unit(path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, unpacked: bool) -> list[str]:
+    """What is to be said where a few normals are not unit. Raises UsageError where more are, with the option that would
+    read them."""
+    off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
+    if off <= OFF_UNIT_SHARE:
+        return [f"{off:.3%} of the normals are not unit: normalised"] if off > 0 else []
+    found = stored[:, covered]
+    other = _lengths(found if unpacked else found * 2 - 1)
+    fits = np.mean(abs(other - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE
+    low, high = (float(f(found)) for f in (np.min, np.max))
+    said = f"{off:.1%} of the normals are not unit"
+    if fits and not unpacked and low >= 0:
+        raise refused(path, f"{said}, all components are in [{low:.3g}, {high:.3g}]: packed", "--unpack reads them")
+    if fits and unpacked:
+        raise refused(path, f"{said} when unpacked, but are as they stand", "leave --unpack out, or --no-unpack")
+    median = float(np.median(length[covered]))
+    raise refused(
+        path,
+        f"{said}: lengths {length[covered].min():.3g} to {length[covered].max():.3g}, median {median:.3g}, "
+        f"components in [{low:.3g}, {high:.3g}]",
+        "--normalise takes them all the same; --channels names others",
+    )
+
+
+# Where they point
+
+
+def view_matrix(reading: Reading) -> np.ndarray | None:
+    """What turns the file's normals to view space, (3, 3) for column vectors; None where they are there.
+
+    Raises:
+        UsageError: an unknown space, world space without a matrix, or a matrix that is no rotation.
+    """
+    matrix = pick("space", reading.space, dict(zip(SPACES, SPACES.items(), strict=True)))
+    if len(matrix) != 1:
+        raise UsageError(f"--space {reading.space}: one of {', '.join(SPACES)}")
+    ((name, known),) = matrix
+    if known is not None:
+        if reading.view_matrix is not None:
+            raise UsageError(f"--view-matrix turns world space to view space; --space {name} needs none")
+        return None if np.array_equal(known, np.eye(3)) else known
+    if reading.view_matrix is None:
+        raise UsageError(
+            f"--space {name} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which turn world "
+            "space to view space: x right, y up, z towards the viewer"
+        )
+    return _rotation(reading.view_matrix)
+
+
+def _rotation(text: str) -> np.ndarray:
+    said = f"--view-matrix {text}"
+    try:
+        if re.search(r"[^-+0-9.eE,;\s]", text):
+            text = Path(text).read_text(encoding="utf-8")[:4096]
+        numbers = [float(word) for word in re.split(r"[\s,;\[\]()]+", text) if word]
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{said}: neither numbers nor a text file of numbers ({error})") from error
+    if len(numbers) not in (9, 16):
+        raise UsageError(f"{said}: {len(numbers)} numbers; 9 or 16, row by row")
+    side = math.isqrt(len(numbers))
+    linear = np.array(numbers).reshape(side, side)[:3, :3]
+    square = linear @ linear.T
+    scale = np.trace(square) / 3
+    if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
+        raise UsageError(f"{said}: no rotation: its rows are not at right angles, or of different lengths")
+    return linear / math.sqrt(scale)
+
+
+def _which_way(z: np.ndarray, space: str) -> list[str]:
+    """What is to be said of normals that face away: what one sees faces the viewer, give or take interpolation."""
+    away = float(np.mean(z < 0))
+    if away <= 0.9:
+        return []
+    other = next(name for name in SPACES if name != space)
+    remedy = f"is it --space {other}, or world?" if SPACES[space] is not None else "check --view-matrix"
+    return [f"{away:.0%} of the normals face away from the viewer: {remedy}"]
+
+
+def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:
+    """View-space positions one unit away, (..., 3): through each pixel's centre, or straight ahead."""
+    view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    if fov is None or n.ndim != 3:
+        return view
+    height, width = n.shape[:2]
+    half = math.tan(math.radians(fov) / 2)
+    view = view.copy()
+    view[..., 0] = ((np.arange(width) + 0.5) / width * 2 - 1) * half * width / height
+    view[..., 1] = ((1 - (np.arange(height) + 0.5) / height * 2) * half)[:, None]
+    return view

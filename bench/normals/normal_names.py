@@ -1,0 +1,72 @@
+"""Sets of normals as they are named: those there are, and users' captures and meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from ...gbuffer.scenes.files import read as files
+from ..options.counts import checked_sides
+from ..options.option import Reading
+from ..options.scene_names import mesh_file, say_notes
+from ..output.errors import UsageError, pick_or_read
+from .captures import capture
+from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from .pixel_files import MAX_PIXELS
+from .pixel_files import READERS as IMAGES
+
+MAX_SIDE = 16384
+ENDINGS = (*IMAGES, *files.READERS)
+
+
+def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs_rays: bool = False) -> list[NormalSet]:
+    """The sets that comma-separated names stand for: those of the catalogue, captures, or meshes seen by a camera.
+
+    Where something to be measured `needs_rays`, a capture without any is named on standard error.
+
+    Raises:
+        UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
+        MissingError: reading a file needs a package that is not installed.
+    """
+
+    typed = [Path(word.strip()).suffix.lower() for word in names.split(",")]
+    if reading != Reading(size=reading.size) and not any(ending in IMAGES for ending in typed):
+        raise UsageError(f"options of captures are given, but --normals {names} names none ({', '.join(IMAGES)})")
+
+    notes: dict[Path, list[str]] = {}
+
+    def read(path: Path) -> Callable[[int, int], NormalSet]:
+        if path.suffix.lower() in IMAGES:
+            made, notes[path] = capture(path, reading)
+            if needs_rays and reading.fov is None:
+                notes[path].append("without --fov, rays are parallel for codes that need them")
+        else:
+            made, notes[path] = mesh_set(path, reading.size)
+        return given(made)
+
+    made = [make(count, seed) for make in pick_or_read("normal set", names, NORMAL_SETS, ENDINGS, read)]
+    say_notes(notes)
+    return made
+
+
+def given(made: NormalSet) -> Callable[[int, int], NormalSet]:
+    """A set that is what it is, whatever count and seed are asked for."""
+    return lambda *_: made
+
+
+def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
+    """The meshes of a file as its camera sees them, or one that frames them; and what is to be said of them.
+
+    Raises UsageError.
+    """
+    sides = checked_sides(size, MAX_SIDE, "for the picture of a mesh")
+    if math.prod(sides) > MAX_PIXELS:
+        raise UsageError(f"--size {size}: {math.prod(sides)} pixels; the most is {MAX_PIXELS} (2^25)")
+    file = mesh_file(path)
+    seen = files.seen(file, sides)
+    if not seen.covered.any():
+        raise UsageError(f"{path}: its camera sees nothing; move it, or leave it out to have everything framed")
+    notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
+    made = from_arrays(path.name, f"the meshes of {path.name}", seen.normals, seen.positions, seen.covered, sides[::-1])
+    return made, notes

@@ -1,0 +1,182 @@
+"""The sets of normals to measure on, made or read a chunk at a time so that any count fits in memory."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ...encodings.elementary import sincos_pi
+from ...encodings.vec import Vec3, from_array, sqrt
+from ..options.counts import DEFAULT_COUNT
+
+CHUNK_WIDTH = 512
+CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
+
+# R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32; odd,
+# so that neither coordinate repeats before 2^32.
+PLASTIC = 1.3247179572447460
+STEPS = tuple(round(2**32 / PLASTIC**k) | 1 for k in (1, 2))
+
+
+class Chunk(NamedTuple):
+    """CHUNK normals: unit normals and view-space positions as planes, and which of them count."""
+
+    n: Vec3
+    view: Vec3
+    covered: Any
+
+
+@dataclass(frozen=True)
+class NormalSet:
+    """A set of normals.
+
+    Attributes:
+        name: the catalogue's key.
+        title: what a reader calls it.
+        area: steradians it covers uniformly, or None where it is not uniform.
+        count: how many normals, background included.
+        shape: (height, width) of a set that is an image, else None.
+        seed: what the set was made with.
+        chunk: start index -> Chunk.
+        background: how many of them are of no surface and do not count; None where there can be none.
+        not_finite: how many of a file's were NaN or infinite, which do not count either.
+    """
+
+    name: str
+    title: str
+    area: float | None
+    count: int
+    shape: tuple[int, int] | None
+    seed: int
+    chunk: Callable[[int], Chunk]
+    background: int | None = None
+    not_finite: int | None = None
+
+    @property
+    def starts(self) -> range:
+        """Where its chunks start."""
+        return range(0, self.count, CHUNK)
+
+    def loads(self) -> Iterator[Callable[[], Chunk]]:
+        """For each chunk, in order, a function that gives it."""
+        return (partial(self.chunk, start) for start in self.starts)
+
+
+def _straight_ahead(like) -> Vec3:
+    return Vec3(jnp.zeros_like(like), jnp.zeros_like(like), jnp.full_like(like, -1.0))
+
+
+def _unit_interval(index, step: int, offset):
+    """The fraction of offset + index * step in units of 2^-32, exact in float64; never 0 or 1."""
+    fixed = index * jnp.uint32(step) + offset
+    return (fixed.astype(jnp.float64) + 0.5) * 2.0**-32
+
+
+@partial(jax.jit, static_argnames="whole")
+def _uniform(start, count, offsets, *, whole: bool) -> Chunk:
+    """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes).
+
+    Computed in float64 and rounded once, so that x, y and z carry independent rounding errors as any normal does: some
+    encodings subtract z from 1, and live or die by them.
+    """
+    lane = jnp.arange(CHUNK, dtype=jnp.uint32)
+    u, v = (_unit_interval(start + lane, step, offset) for step, offset in zip(STEPS, offsets, strict=True))
+    # 1 - z^2 as a product, which does not cancel near the poles.
+    z, r = (1.0 - 2.0 * u, 2.0 * sqrt(u * (1.0 - u))) if whole else (u, sqrt((1.0 - u) * (1.0 + u)))
+    # An angle in half turns, in [-1, 1].
+    sine, cosine = sincos_pi(2.0 * (v - jnp.round(v)))
+    n = Vec3(*(c.astype(jnp.float32) for c in (cosine * r, sine * r, z)))
+    return Chunk(n, _straight_ahead(n.z), lane < count)
+
+
+def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> NormalSet:
+    offsets = np.random.default_rng(seed).integers(0, 2**32, 2, dtype=np.uint32)
+
+    def chunk(start: int) -> Chunk:
+        with jax.enable_x64(True):
+            return _uniform(np.uint32(start), np.uint32(min(count - start, CHUNK)), tuple(offsets), whole=whole)
+
+    return NormalSet(name, title, (4 if whole else 2) * math.pi, count, None, seed, chunk)
+
+
+def sphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
+    """`count` directions spread evenly over the sphere, a low-discrepancy sequence shifted by the seed."""
+    return _make_uniform("sphere", "uniform sphere", True, count, seed)
+
+
+def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
+    """`count` directions spread evenly over z >= 0."""
+    return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
+
+
+def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite: int | None = None) -> NormalSet:
+    """A set of given normals.
+
+    Args:
+        n, view: float32 arrays of shape (..., 3).
+        covered: which of them count, bool of shape (...).
+        not_finite: how many of those that do not are NaN or infinite in the file they come from.
+    """
+    count = covered.size
+    background = count - int(np.count_nonzero(covered)) - (not_finite or 0)
+    chunks = [
+        _padded_chunk(*(np.asarray(a).reshape(count, -1)[start : start + CHUNK] for a in (n, view, covered)))
+        for start in range(0, count, CHUNK)
+    ]
+    return NormalSet(
+        name,
+        title,
+        None,
+        count,
+        shape,
+        0,
+        lambda start: chunks[start // CHUNK],
+        background if shape else None,
+        not_finite,
+    )
+
+
+def _padded_chunk(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> Chunk:
+    """Part of a set as a whole chunk; what is missing does not count."""
+    missing = CHUNK - len(n)
+    n, view = (np.pad(np.asarray(a, np.float32), ((0, missing), (0, 0)), mode="edge") for a in (n, view))
+    planes = (jnp.asarray(np.ascontiguousarray(plane)) for plane in view.T)
+    return Chunk(from_array(n), Vec3(*planes), jnp.asarray(np.pad(covered[:, 0], (0, missing))))
+
+
+def axes(count: int = 0, seed: int = 0) -> NormalSet:
+    """The six axis directions, with both zeros and one to three units in the last place of 1 around each."""
+    ulp = float(np.spacing(np.float32(1)))
+    near = [0.0, -0.0, *(s * k * ulp for k in (1, 2, 3) for s in (1, -1))]
+    sides = itertools.product(range(3), (1.0, -1.0), near, near)
+    n = np.array([np.insert([a, b], axis, side) for axis, side, a, b in sides], np.float32)
+    view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    return from_arrays("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
+
+
+def playground(count: int = 0, seed: int = 0) -> NormalSet:
+    """The seeds' scene as its camera sees it, 640 x 480."""
+    return _playground()
+
+
+@cache
+def _playground() -> NormalSet:
+    from ...gbuffer.scenes.playground import TITLE
+    from ...gbuffer.scenes.playground import playground as rendered
+
+    seen = rendered()
+    return from_arrays("playground", TITLE, seen.normals, seen.positions, seen.covered, seen.covered.shape)
+
+
+NORMAL_SETS: Mapping[str, Callable[[int, int], NormalSet]] = MappingProxyType(
+    {"sphere": sphere, "hemisphere": hemisphere, "axes": axes, "playground": playground}
+)

@@ -1,0 +1,1 @@
+"""Options as types, and things chosen by name."""

@@ -1,0 +1,56 @@
+"""How many there may be of what: normals of a set, sides of an image, repetitions. Imports nothing heavy."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import TypeVar
+
+from ..output.errors import UsageError
+
+N = TypeVar("N", int, float)
+
+DEFAULT_COUNT = 2**22
+MAX_COUNT = 2**32
+# Held in memory at once, where JAX is timed.
+MAX_TIMED_COUNT = 2**28
+MAX_REPEATS = 1000
+
+
+def in_range(option: str, value: int, low: int, high: int) -> None:
+    """Raises UsageError where an option's value is out of range."""
+    if not low <= value <= high:
+        raise UsageError(f"{option} {value}: from {low} to {high}")
+
+
+def checked_count(count: int) -> int:
+    """The count itself. Raises UsageError where no set has that many."""
+    if not 1 <= count <= MAX_COUNT:
+        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^32)")
+    return count
+
+
+def check_seed(seed: int) -> None:
+    """Raises UsageError where nothing can be made with it: it is kept in 64 bits."""
+    in_range("--seed", seed, 0, 2**63 - 1)
+
+
+def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
+    """Width and height of "WxH". Raises UsageError for what is no size, or beyond the most that `where` can do."""
+    match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
+    if not match or not all(1 <= int(side) <= most for side in match.groups()):
+        raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")
+    return int(match[1]), int(match[2])
+
+
+def checked_numbers(option: str, text: str, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
+    """Comma-separated numbers, each once. Raises UsageError for none, or one that is none or out of range."""
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    try:
+        found = tuple(dict.fromkeys(map(kind, words)))
+    except ValueError:
+        found = ()
+    if not found or not all(least <= number <= most for number in found):
+        what = "whole numbers" if kind is int else "numbers"
+        raise UsageError(f"{option} {text}: {what} from {least:g} to {most:g}, comma-separated")
+    return found

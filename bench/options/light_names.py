@@ -1,0 +1,39 @@
+"""Light buffers by name, over the range that a name may give."""
+
+from __future__ import annotations
+
+import math
+
+from ...encodings.catalogue import LIGHT_ENCODINGS
+from ...encodings.light_encoding import LightEncoding
+from ..output.errors import UsageError, pick
+
+LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
+
+
+def light_buffers_named(names: str) -> list[LightEncoding]:
+    """The light encodings that comma-separated names stand for; `linear:1` is one over the range [0, 1].
+
+    Raises:
+        UsageError: an unknown name, or a range that is none or that the encoding does not have.
+    """
+    words = dict.fromkeys(name.strip() for name in names.split(","))
+    ranged = {word: _ranged(word) for word in words if ":" in word}
+    chosen = pick("light buffer", names, {**LIGHT_ENCODINGS, **ranged})
+    return list({encoding.name: encoding for encoding in chosen}.values())
+
+
+def _ranged(word: str) -> LightEncoding:
+    name, _, text = word.partition(":")
+    known = {name: encoding for name, encoding in LIGHT_ENCODINGS.items() if encoding.ranged}
+    encoding = known.get(name)
+    if not encoding or not encoding.ranged:
+        raise UsageError(f"light buffer {word}: of {', '.join(known)} the range may be given, as in linear:1")
+    try:
+        limit = float(text)
+    except ValueError:
+        limit = math.nan
+    if not LEAST_RANGE <= limit <= MOST_LIGHT:
+        raise UsageError(f"light buffer {word}: a range is {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in {name}:1")
+    # As its name has it: two ranges that are called the same are the same.
+    return encoding.ranged(float(f"{limit:g}"))

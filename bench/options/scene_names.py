@@ -1,0 +1,47 @@
+"""Scenes as they are named: those there are, and users' mesh files."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+from ...gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ...gbuffer.scenes.files.mesh_file import MeshFile
+from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
+from ...gbuffer.scenes.files.source import SceneFileError
+from ..output.errors import UsageError, pick_or_read
+
+
+def scenes_named(names: str) -> list[SceneMaker]:
+    """The scenes that comma-separated names stand for: those of the catalogue, or mesh files.
+
+    Raises:
+        UsageError: an unknown name, or a file that cannot be read.
+    """
+    notes: dict[Path, Sequence[str]] = {}
+
+    def scene_of(path: Path) -> SceneMaker:
+        file = mesh_file(path)
+        notes[path] = file.notes
+        return SceneMaker(path.name, f"the meshes of {path.name}", partial(file_scene, file), FRAMES)
+
+    made = pick_or_read("scene", names, SCENES, READERS, scene_of)
+    say_notes(notes)
+    return made
+
+
+def mesh_file(path: Path) -> MeshFile:
+    """A mesh file. Raises UsageError."""
+    try:
+        return read_mesh_file(path)
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
+
+
+def say_notes(notes: Mapping[Path, Sequence[str]]) -> None:
+    """What is to be said of files, a line each, on standard error; once all are read, as an error is one line alone."""
+    for path, said in notes.items():
+        if said:
+            print(f"normalbench: {path}: {'; '.join(said)}", file=sys.stderr)

@@ -1,0 +1,122 @@
+"""Writing what was measured: whole or not at all, and one line when it cannot be."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ...reports import tables
+from .errors import UsageError
+
+
+def check_writable(path: Path) -> None:
+    """Raises UsageError where a file of this name cannot be written; asked before anything is measured."""
+    try:
+        if path.is_dir():
+            raise UsageError(f"{path} is a folder; name a file")
+        if is_special(path):
+            return
+        # Asked of what it will be called while it is written, so that a name that is too long is noticed.
+        _partial(path).exists()
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+    check_folder(path.resolve().parent)
+
+
+def _partial(path: Path) -> Path:
+    """What a file or folder is called while it is being written; no two processes share it."""
+    return path.with_name(f".{path.name}.{os.getpid()}.partial")
+
+
+def check_folder(folder: Path) -> None:
+    """Raises UsageError where no file can be made in a folder, or the folder cannot be made. Leaves nothing behind."""
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        raise UsageError(f"cannot write to {folder}: {error.strerror or error}") from error
+
+
+def is_special(path: Path) -> bool:
+    """A pipe or a device: what is written there goes through, and the name must stay what it is."""
+    return path.exists() and not path.is_file()
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A name to write to that becomes `path` when all is well and vanishes otherwise.
+
+    Missing folders are made. A link's target is written, not the link.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    path = path.resolve()
+    partial = path if is_special(path) else _partial(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield partial
+        if partial != path:
+            partial.replace(path)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        if partial != path:
+            partial.unlink(missing_ok=True)
+
+
+def say(text: str) -> None:
+    """Text to standard output; a reader that has seen enough and gone is no error."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        abandon_output()
+
+
+def abandon_output() -> None:
+    """Whatever is still to come goes nowhere; Python flushes once more at exit, and would complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def write(
+    rows: Sequence[dict[str, Any]],
+    format: str,
+    output: Path | None,
+    expendable: Sequence[str] = (),
+    by: str | None = None,
+) -> None:
+    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
+
+    For people, rows that differ in column `by` are tables of their own.
+    """
+    if output is None:
+        width = shutil.get_terminal_size((120, 40)).columns
+        say(tables.written(rows, format, width, expendable, by))
+        return
+    check_writable(output)
+    with whole_file(output) as partial:
+        partial.write_text(tables.written(rows, format, by=by), encoding="utf-8")
+
+
+def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:
+    """The rows less some of their columns."""
+    return [{column: value for column, value in row.items() if column not in hidden} for row in rows]
+
+
+def say_skipped(rows: Sequence[dict[str, Any]]) -> None:
+    """Why rows have no figures, each reason once, to standard error. Raises UsageError where none has any."""
+    reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
+    if reasons and all(row.get("skipped") for row in rows):
+        raise UsageError(next(iter(reasons)))
+    for reason in reasons:
+        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)

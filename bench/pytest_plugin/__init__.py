@@ -1,0 +1,1 @@
+"""The pytest plugin: a fixture, a marker and files of gates."""

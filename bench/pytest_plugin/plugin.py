@@ -1,0 +1,178 @@
+"""The pytest plugin: measures a codec once a session, and holds it to limits or to a baseline.
+
+    def test_normals(normalbench):
+        row = normalbench.quality(encoding="octahedral", storage="rgba8")
+        row.assert_that(psnr_db="at least 49.5", angle_max_deg="at most 0.96")
+
+Nothing heavy is imported before something is measured, so that a run of tests that does not use it pays for a few
+options alone. With xdist every worker measures what its own tests ask for, at most once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from ..options.option import MEASURED, Field, fields_of
+from ..output.errors import UsageError
+
+if TYPE_CHECKING:
+    from .session import Normalbench, Session
+
+MARKER = (
+    'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options, which are '
+    "those of normalbench quality or render, and hold columns of the rows to limits before the test runs."
+)
+REQUIRE_GL, BASELINE, WRITE_BASELINE = "require_gl", "baseline", "write_baseline"
+KEPT = "normalbench_baseline"
+SESSION = pytest.StashKey["Session"]()
+REPORTED = pytest.StashKey[list[str]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("normalbench", "normalbench: for tests that do not say otherwise")
+    for name, fields in _mirrored().items():
+        group.addoption(_flag(name), dest=_destination(name), default=None, **_parsed(fields))
+    group.addoption(
+        _flag(REQUIRE_GL), action="store_true", help="Without a GL driver fail tests that need one. Default: skip them."
+    )
+    group.addoption(_flag(BASELINE), metavar="FILE", help="What .matches_baseline() compares rows with.")
+    group.addoption(_flag(WRITE_BASELINE), action="store_true", help="Write the baseline instead of comparing with it.")
+
+
+def _mirrored() -> dict[str, list[Field]]:
+    """The options of all measured tables by name; two tables may have one of the same name."""
+    found: dict[str, list[Field]] = {}
+    for group in (group for groups in MEASURED.values() for group in groups):
+        for name, field in fields_of(group).items():
+            found.setdefault(name, []).append(field)
+    return found
+
+
+def _flag(name: str) -> str:
+    return f"--{_destination(name)}".replace("_", "-")
+
+
+def _destination(name: str) -> str:
+    return f"normalbench_{name}"
+
+
+def _parsed(fields: list[Field]) -> dict[str, Any]:
+    """How argparse takes an option."""
+    kind, said = fields[0].kind, " ".join(dict.fromkeys(field.option.help for field in fields))
+    if kind is bool:
+        return {"action": argparse.BooleanOptionalAction, "help": said}
+    return {"type": kind, "metavar": kind.__name__.upper(), "help": said}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", MARKER)
+    if config.getoption(_destination(WRITE_BASELINE)):
+        _check_baseline(_baseline_path(config))
+
+
+def _baseline_path(config: pytest.Config) -> Path | None:
+    named = config.getoption(_destination(BASELINE))
+    return config.invocation_params.dir / named if named else None
+
+
+def _check_baseline(path: Path | None) -> None:
+    """Said before anything is measured. Raises pytest.UsageError where it could not be written afterwards."""
+    from ..output.writing import check_writable
+
+    if not path:
+        raise pytest.UsageError(f"{_flag(WRITE_BASELINE)} needs {_flag(BASELINE)} FILE")
+    try:
+        check_writable(path)
+    except UsageError as error:
+        raise pytest.UsageError(str(error)) from error
+
+
+def session_of(config: pytest.Config) -> Session:
+    """The one of this process, made when it is first asked for."""
+    if SESSION not in config.stash:
+        from ..gates.baseline import Baseline
+        from .session import Session
+
+        usual, path = {name: config.getoption(_destination(name)) for name in _mirrored()}, _baseline_path(config)
+        config.stash[SESSION] = Session(
+            usual={name: value for name, value in usual.items() if value is not None},
+            typed_in=config.invocation_params.dir,
+            require_gl=bool(config.getoption(_destination(REQUIRE_GL))),
+            baseline=Baseline(path, bool(config.getoption(_destination(WRITE_BASELINE)))) if path else None,
+        )
+    return config.stash[SESSION]
+
+
+@pytest.fixture
+def normalbench(request: pytest.FixtureRequest) -> Normalbench:
+    """Measures codecs: .quality(...) and .render(...) give rows to hold to limits; files lie beside the test's own."""
+    from .session import Normalbench
+
+    return Normalbench(session_of(request.config), request.path.parent)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> None:
+    """Hold what the test's markers name before the test itself."""
+    said = [said for mark in item.iter_markers("normalbench") if (said := _broken(item, mark))]
+    if said:
+        pytest.fail("\n".join(said), pytrace=False)
+
+
+def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
+    from .session import Normalbench
+
+    try:
+        Normalbench(session_of(item.config), item.path.parent).hold_mark(mark.args, mark.kwargs)
+    except (AssertionError, UsageError) as error:
+        return str(error)
+    return ""
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """A file of gates, where it is named on the command line: a test for each gate."""
+    if file_path.suffix == ".toml" and _is_named(file_path, parent.config):
+        from .gate_files import GateFile
+
+        return GateFile.from_parent(parent, path=file_path)
+    return None
+
+
+def _is_named(path: Path, config: pytest.Config) -> bool:
+    # Session.isinitpath forgets a file that lies in a folder that is named as well.
+    here = config.invocation_params.dir
+    return str(path) in [os.path.abspath(here / word.partition("::")[0]) for word in config.args]  # noqa: PTH100 # no link
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """A worker of xdist is done: what it measured for the baseline is written here, once, with the others'."""
+    if text := getattr(node, "workeroutput", {}).get(KEPT):
+        node.config.stash.setdefault(REPORTED, []).append(text)
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Write the baseline whole, or hand what belongs there to the process that does."""
+    config, path = session.config, _baseline_path(session.config)
+    if exitstatus not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or not path:
+        return
+    own = config.stash[SESSION].baseline if SESSION in config.stash else None
+    dumped = [*config.stash.get(REPORTED, []), own.dumped() if own else ""]
+    if hasattr(config, "workeroutput"):
+        config.workeroutput[KEPT] = "".join(dumped)  # pyright: ignore[reportAttributeAccessIssue] # of xdist's workers
+    elif any(dumped):
+        _write(path, [text for text in dumped if text])
+
+
+def _write(path: Path, dumped: list[str]) -> None:
+    from ..gates.baseline import write_baseline
+
+    try:
+        write_baseline(path, dumped)
+    except UsageError as error:
+        pytest.exit(str(error), returncode=2)

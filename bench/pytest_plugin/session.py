@@ -1,0 +1,234 @@
+"""What the pytest plugin measures, once a session, and what a test may do with it."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, NoReturn, ParamSpec, TypeVar
+
+import pytest
+
+from ...encodings.errors import CatalogueError
+from ..gates.baseline import Baseline, checked_tolerances, entry
+from ..gates.limits import Limit, limit, row_name, split_limits
+from ..gates.measured import Found, measured, with_their_options
+from ..options.option import MEASURED, checked_options, fields_of
+from ..output.errors import MissingError, UsageError
+from ..results.runs import Row
+from ..tables.quality.measure import found_device
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def ends_here(method: Callable[P, T]) -> Callable[P, T]:
+    """What a test calls: the traceback of what it did wrong, or of a limit that is broken, ends in the test."""
+
+    @functools.wraps(method)
+    def call(*arguments: P.args, **named: P.kwargs) -> T:
+        __tracebackhide__ = True
+        try:
+            return method(*arguments, **named)
+        except AssertionError as error:
+            raise AssertionError(str(error)) from None
+        except (UsageError, CatalogueError) as error:
+            raise UsageError(str(error)) from None
+
+    return call
+
+
+@dataclass
+class Session:
+    """Everything that a session of tests has measured.
+
+    Attributes:
+        usual: options for tests that do not say otherwise, as typed in folder `typed_in`.
+        require_gl: whether a missing GL driver fails a test that needs one, and does not skip it.
+        baseline: the file to compare with; None where none was named.
+    """
+
+    usual: Mapping[str, Any]
+    typed_in: Path
+    require_gl: bool
+    baseline: Baseline | None
+    _found: dict[str, list[Found]] = field(default_factory=dict, repr=False)
+
+    def measured(self, table: str, values: Mapping[str, Any], folder: Path) -> Measured:
+        """Rows of a table, measured now or before; files are looked for in a folder.
+
+        Raises:
+            UsageError, MissingError: see measured.measured.
+        """
+        known = fields_of(*MEASURED[table])
+        usual = {name: value for name, value in self.usual.items() if name in known}
+        asked = checked_options(table, {**usual, **values})
+        options = _located(table, asked, values, folder, self.typed_in)
+        key = json.dumps([table, str(Path.cwd()), options], sort_keys=True)
+        if key not in self._found:
+            self._found[key] = measured(table, options)
+        return Measured(self, table, asked, self._found[key])
+
+    def lacking(self, error: MissingError) -> NoReturn:
+        """This machine has no GL driver: skip the test, or fail it. What else it may lack can be installed by pip."""
+        if str(error) == found_device()[1] and not self.require_gl:
+            pytest.skip(str(error))
+        pytest.fail(str(error), pytrace=False)
+
+
+def _located(
+    table: str, asked: Mapping[str, Any], said: Mapping[str, Any], folder: Path, typed_in: Path
+) -> dict[str, Any]:
+    """The options, words that are files by their paths from here: a test's beside it, others where they were typed."""
+    known, found = fields_of(*MEASURED[table]), dict(asked)
+    for name, value in asked.items():
+        if known[name].option.files and isinstance(value, str):
+            there = folder if name in said else typed_in
+            found[name] = ",".join(_path(there, word.strip()) for word in value.split(","))
+    return found
+
+
+def _path(folder: Path, word: str) -> str:
+    try:
+        return os.path.relpath(folder / word) if (folder / word).is_file() else word
+    except (OSError, ValueError):  # no name that a file could have
+        return word
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Rows, of one codec mostly, and what they must keep. `measured["psnr_db"]` is the figure of a single row."""
+
+    session: Session = field(repr=False)
+    table: str
+    asked: Mapping[str, Any]
+    found: list[Found] = field(repr=False)
+
+    @property
+    def rows(self) -> list[Row]:
+        """The rows, by column."""
+        return [one.row for one in self.found]
+
+    @ends_here
+    def __getitem__(self, column: str) -> Any:
+        if len(self.found) != 1:
+            raise UsageError(f"there are {len(self.found)} rows; take one of .rows")
+        self._skip_where_lacking()
+        return self.rows[0][column]
+
+    @ends_here
+    def assert_that(self, **limits: str) -> None:
+        """Every row keeps a limit on each column: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
+
+        Raises:
+            AssertionError: one does not: the figure, the limit, and the worst normal.
+            UsageError: there is no such column, or it is no limit.
+        """
+        if not limits:
+            raise UsageError('no column is held to anything; say psnr_db="at least 47.5"')
+        self.hold(_limit(column, text) for column, text in limits.items())
+
+    def hold(self, limits: Iterable[Limit]) -> None:
+        """Every row keeps every limit; see assert_that."""
+        limits = list(limits)
+        rows = self._measurable()
+        self._raise_for([(one, [said for x in limits if (said := x.broken_by(one.row))]) for one in rows])
+
+    @ends_here
+    def matches_baseline(self, **tolerances: float) -> None:
+        """Every row is what the baseline says, to the last digit where no tolerance is stated.
+
+        With --normalbench-write-baseline it becomes what the baseline says.
+
+        Raises:
+            AssertionError: it is not, or there is no such row.
+            UsageError: no baseline is named, or the file is none.
+        """
+        baseline = self.session.baseline
+        if not baseline:
+            raise UsageError("no baseline is named; --normalbench-baseline FILE names one")
+        checked_tolerances(tolerances, list(self.rows[0]))
+        wrong: list[tuple[Found, list[str]]] = []
+        for one in self._measurable():
+            said = entry(self.table, self._request(), one.row)
+            if baseline.writes:
+                baseline.record(said)
+            else:
+                wrong.append((one, [f"{row_name(one.row)}: {x}" for x in baseline.differences(said, tolerances)]))
+        self._raise_for(wrong)
+
+    def _request(self) -> dict[str, Any]:
+        """Every option, those that nobody named with what is usual."""
+        usual = {key: value for options in MEASURED[self.table] for key, value in asdict(options()).items()}
+        return usual | dict(self.asked)
+
+    def _measurable(self) -> list[Found]:
+        """The rows less those that a missing GL driver left empty."""
+        missing = found_device()[1] if any(row["skipped"] for row in self.rows) else ""
+        return [one for one in self.found if not missing or one.row["skipped"] != missing]
+
+    def _raise_for(self, wrong: Iterable[tuple[Found, list[str]]]) -> None:
+        lines: list[str] = []
+        for one, said in wrong:
+            lines += said
+            lines += [f"  worst normal: {one.worst}"] if said and one.worst else []
+        if lines:
+            raise AssertionError("\n".join(lines))
+        self._skip_where_lacking()
+
+    def _skip_where_lacking(self) -> None:
+        if len(self._measurable()) < len(self.found):
+            self.session.lacking(MissingError(found_device()[1]))
+
+
+def _limit(column: str, text: Any) -> Limit:
+    found = limit(column, text)
+    if not found:
+        raise UsageError(f'{column}: {text!r} is no limit; say "at least 47.5" or "at most 0.95"')
+    return found
+
+
+@dataclass(frozen=True)
+class Normalbench:
+    """What the fixture `normalbench` is: measures with the options of `normalbench quality` and `render`.
+
+    A file is looked for in the test's folder first.
+    """
+
+    session: Session = field(repr=False)
+    folder: Path
+
+    @ends_here
+    def quality(self, **options: Any) -> Measured:
+        """What codecs lose of normals; octahedral/rgba8 on the playground by JAX where nothing is said."""
+        return self._measured("quality", options)
+
+    @ends_here
+    def render(self, **options: Any) -> Measured:
+        """What codecs and layouts do to the image; octahedral/rgba8 in an exact G-buffer where nothing is said."""
+        return self._measured("render", options)
+
+    @ends_here
+    def hold(self, table: str, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
+        """Measure, and hold every row to limits; see Measured.assert_that."""
+        if table not in MEASURED:
+            raise UsageError(f"table {table!r} is not measured; known: {', '.join(MEASURED)}")
+        limits = list(limits)
+        self._measured(table, with_their_options(table, options, limits)).hold(limits)
+
+    @ends_here
+    def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
+        """What a marker says. Raises AssertionError for a row that does not keep it, UsageError where it is misused."""
+        if positional:
+            raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
+        options, limits = split_limits(values)
+        self.hold(options.pop("table", "quality"), options, limits)
+
+    def _measured(self, table: str, options: Mapping[str, Any]) -> Measured:
+        try:
+            return self.session.measured(table, options, self.folder)
+        except MissingError as error:
+            self.session.lacking(error)

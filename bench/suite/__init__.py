@@ -1,0 +1,1 @@
+"""Many tables in one run, and the page that shows them."""

@@ -1,0 +1,181 @@
+"""What operations cost by the clock of the GL device."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+
+import moderngl
+import numpy as np
+
+from ....encodings.storage import STORAGES
+from ....gbuffer.defines.kernels import Operation
+from ....gbuffer.gl.device import Device
+from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.render import Clock, clock_of
+from .measure import Case, Row
+
+# The median lies within its interval so surely, whatever the times are distributed like.
+SURE = 0.95
+# A pass takes about so long: a thousand times what starting and finishing it takes.
+PASS_MS = 8.0
+PASSES = 5
+# More turns a software rasteriser does not take: it leaves a loop after 65535 without a word.
+MOST_TURNS = 2**15
+# The first turn finds look-up tables out of reach, the others where the first has left them.
+LEAST_TURNS = 16
+# Of the target that is timed. One tile of llvmpipe, which one thread draws: two hinder each other, and on a busy
+# machine medians of three runs were apart by 3 % with it and by 10 % at 256x256. A GPU must be filled.
+SOFTWARE_SIZE, SIZE = "64x64", "1024x1024"
+
+
+PROCESSOR = "processor time of each finished pass"
+
+
+def clock(device: Device) -> Clock:
+    """The device's timer queries; of a software rasteriser the time that its threads spend on a processor.
+
+    A wall clock counts whatever else the machine does: on two busy cores medians of nine differences were apart by 40 %
+    from run to run, and by 4 % on this clock.
+    """
+
+    def by_processor_time(run: Callable[[], object]) -> float:
+        start = time.process_time()
+        run()
+        device.context.finish()
+        return (time.process_time() - start) * 1e3
+
+    return Clock(PROCESSOR, by_processor_time) if device.is_software else clock_of(device)
+
+
+class Field:
+    """What the passes of one size share: targets, and what is fetched by how many numbers it has; released with the
+    stack."""
+
+    def __init__(self, device: Device, stack: ExitStack, size: tuple[int, int]):
+        self.device, self.stack, self.size = device, stack, size
+        self.targets = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
+        self._points: dict[int, moderngl.Texture] = {}
+
+    def points(self, numbers: int) -> moderngl.Texture:
+        """A texture of directions or codes."""
+        if numbers not in self._points:
+            self._points[numbers] = self.device.owned(self.stack, self.device.upload(_points(self.size, numbers)))
+        return self._points[numbers]
+
+
+class Pair:
+    """An operation's pass beside the empty one's: turns until they can be told apart from starting them, and what the
+    operation takes more.
+
+    Args:
+        milliseconds: of one pass with so many turns: the operation's for 0, the empty one's for 1.
+        pixels: how many a pass computes.
+    """
+
+    def __init__(self, milliseconds: Callable[[int, int], float], pixels: int):
+        self._milliseconds, self._pixels, self.turns = milliseconds, pixels, LEAST_TURNS
+        for which in (0, 1):
+            milliseconds(which, self.turns)  # a first pass is a warm-up
+        while (taken := min(milliseconds(0, self.turns) for _ in range(3))) < PASS_MS / 2 and self.turns < MOST_TURNS:
+            self.turns = min(int(self.turns * min(max(PASS_MS / max(taken, 1e-3), 1.5), 8)), MOST_TURNS)
+
+    def difference(self) -> float:
+        """Nanoseconds for a million pixels that the operation takes more than the empty one.
+
+        Of a few passes of each, in turns, the shortest: whatever else the machine does only ever makes one longer.
+        """
+        taken = [[self._milliseconds(which, self.turns) for which in (0, 1)] for _ in range(PASSES)]
+        operation, empty = (min(times) for times in zip(*taken, strict=True))
+        return (operation - empty) * 1e6 / (self.turns * self._pixels / 1e6)
+
+
+class Passes:
+    """The passes of an operation and of the empty one over a field. Raises ShaderError where one does not compile."""
+
+    def __init__(self, field: Field, operation: Operation):
+        device, stack = field.device, field.stack
+        self._field, self._clock = field, clock(device)
+        self._textures = {"kernel_givens": field.points(operation.given)}
+        self._textures |= {"kernel_besides": field.points(operation.beside)}
+        self._textures |= {name: device.owned(stack, device.upload(t)) for name, t in operation.tables().items()}
+        self._passes = [
+            device.owned(stack, device.fragment_pass("kernel_repeat.frag", o.defines, o.names))
+            for o in (operation, operation.empty)
+        ]
+
+    def milliseconds(self, which: int, turns: int) -> float:
+        """What one of the two takes."""
+        return self._clock.measure(lambda: self.render(which, turns))
+
+    def render(self, which: int, turns: int, nothing: float = 0.0) -> None:
+        """One of the two into the field's targets. What is added to the inputs at each turn is nothing but for a
+        test."""
+        passed = self._passes[which]
+        for name, value in (("kernel_turns", turns), ("kernel_nothing", nothing)):
+            if name in passed.program:
+                passed.program[name] = value
+        self._field.device.render(passed, self._field.targets, **self._textures)
+
+
+def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
+    """Directions, or codes of other than three numbers; float32 of shape (height, width, 4), 0 where there is none."""
+    points = np.random.default_rng(0).normal(size=(size[1], size[0], numbers)).astype(np.float32)
+    # Codes of two numbers lie within the circle, where no method is at its limit.
+    points *= (1.0 if numbers == 3 else 0.7) / np.linalg.norm(points, axis=-1, keepdims=True)
+    return np.pad(points, ((0, 0), (0, 0), (0, 4 - numbers)))
+
+
+def time_rows(
+    device: Device, chosen: Sequence[Case], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
+) -> Iterator[Row]:
+    """Nanoseconds a megapixel of each case: the median of repeated differences, and how wide its interval is.
+
+    Each repetition goes over all cases, so that what else the machine does is spread over all of them.
+    """
+    facts = {
+        "size": f"{size[0]}x{size[1]}",
+        "repeats": repeats,
+        "software": device.is_software,
+        "clock": clock(device).name,
+        "device": device.renderer,
+        "driver": device.version,
+    }
+    with ExitStack() as stack:
+        field, made = Field(device, stack, size), dict[Case, Pair | str]()
+        for case in chosen:
+            try:
+                made[case] = Pair(Passes(field, case.make()).milliseconds, math.prod(size))
+            except ShaderError as error:
+                made[case] = f"{case.name}: {error}"
+            tick(case.name)
+        taken: dict[Case, list[float]] = {case: [] for case in chosen}
+        for number in range(repeats):
+            for case, pair in made.items():
+                if isinstance(pair, Pair):
+                    taken[case].append(pair.difference())
+            tick(f"repetition {number + 1}")
+        device.idle.use()
+    for case, pair in made.items():
+        if isinstance(pair, str):
+            yield case.row("time", **facts, skipped=pair)
+        else:
+            yield case.row("time", **facts, turns=pair.turns, **summary("ns_per_megapixel", taken[case]))
+
+
+def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
+    """The median, and the width of its interval."""
+    low, high = median_interval(taken)
+    return {column: float(np.median(taken)), "spread": high - low}
+
+
+def median_interval(taken: Sequence[float]) -> tuple[float, float]:
+    """Order statistics that the median of what was sampled lies between, SURE to the least: of nine the second and the
+    eighth, of fewer than six the least and the largest, which are less sure."""
+    ordered, count = sorted(taken), len(taken)
+    # The chance that fewer than k of the samples lie below the median.
+    beyond = np.cumsum([math.comb(count, k) for k in range(count)]) / 2.0**count
+    cut = int(np.sum(2 * beyond[: count // 2] <= 1 - SURE))
+    return float(ordered[max(cut - 1, 0)]), float(ordered[count - max(cut, 1)])

@@ -1,0 +1,74 @@
+"""What a codec costs by the rows of the cost table: its encoding, its storage, and its sign bits together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from ....encodings.codec import Codec
+from ....gbuffer.defines.packings import SIGN, packing_of
+from .measure import PACKING_OPERATIONS, Row
+
+KEY = ("measure", "family", "stage", "operation", "encoding", "storage")
+
+
+class LeftOutError(Exception):
+    """Why a codec's cost is not known; a few words."""
+
+
+@dataclass(frozen=True)
+class Where:
+    """By which measure, and of what compilers make for which family and stage."""
+
+    measure: str
+    family: str | None
+    stage: str | None
+
+
+@dataclass(frozen=True)
+class Total:
+    """A sum, how wide the interval is that it is known to lie in, and whether it counts both sides of a branch."""
+
+    cost: float
+    spread: float
+    branches: bool
+
+
+class Costs:
+    """Rows of the cost table, to be added up by one of their columns."""
+
+    def __init__(self, rows: Iterable[Row]):
+        self._rows = {tuple(row.get(part) for part in KEY): row for row in rows}
+
+    def of(self, codec: Codec, where: Where, operation: str, column: str) -> Total:
+        """What a codec's encode or decode costs.
+
+        Raises:
+            LeftOutError: a part of it is not known, or counts a loop once.
+        """
+        rows = [(sign, self._known(key, column)) for sign, key in self._parts(codec, where, operation)]
+        cost = sum(sign * row[column] for sign, row in rows)
+        return Total(
+            cost, sum(row.get("spread") or 0.0 for _, row in rows), any(row.get("branches") for _, row in rows)
+        )
+
+    def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
+        """The keys of the rows that add up to it, each with its sign."""
+        kind, packed = (where.measure, where.family, where.stage), PACKING_OPERATIONS[operation]
+        if codec.misfit:
+            raise LeftOutError(f"{codec.storage.name} does not hold it: {codec.misfit}")
+        name = codec.encoding.name
+        parts = [(1, (*kind, operation, name, None)), (1, (*kind, packed, None, packing_of(codec).name))]
+        if codec.encoding.sign_bits:
+            parts += [(sign, (*kind, packed, None, one.name)) for sign, one in zip((1, -1), SIGN, strict=True)]
+        return parts
+
+    def _known(self, key: tuple[Any, ...], column: str) -> Row:
+        *_, operation, encoding, storage = key
+        row = self._rows.get(key)
+        if row is None or row.get(column) is None:
+            raise LeftOutError("what it costs is not known" if encoding else f"what {storage} costs is not known")
+        if row.get("loops"):
+            raise LeftOutError(f"{encoding or storage} {operation} contains a loop, which counts once")
+        return row

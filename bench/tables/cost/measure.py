@@ -1,0 +1,223 @@
+"""What an encoding costs: the rows, and how many instructions compilers make of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+from ....encodings.encoding import Encoding
+from ....gbuffer.defines import kernels
+from ....gbuffer.defines.kernels import Operation
+from ....gbuffer.defines.packings import Packing
+from ....gbuffer.gl.shader import ShaderError
+from ...isa import isa, spirv
+from ...isa.disassembly import KINDS, issue_slots, jumps, kinds
+from ...isa.isa import Compiled, Failure, Job, Outcome
+from ...machine.cores import on_all_cores
+
+Row = dict[str, Any]
+
+# The driver's statistics by their own names. Later Mesas may have more; one that is missing is left empty.
+STATISTICS = {
+    "instructions": ("Instructions",),
+    "vgprs": ("VGPRs",),
+    "sgprs": ("SGPRs",),
+    "spills": ("Spilled VGPRs", "Spilled SGPRs"),
+    "code_bytes": ("Code size",),
+}
+# Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
+# for what: one kernel's less another's is nobody's cost.
+WHOLE = {
+    "kernel_vgprs": ("VGPRs",),
+    "kernel_sgprs": ("SGPRs",),
+    "kernel_latency": ("Latency",),
+    "kernel_inverse_throughput": ("Inverse Throughput",),
+}
+# Of the listing: what adds up, and what makes the other counts static ones.
+LISTED = ("issue_slots", *KINDS, "branches", "loops")
+COLUMNS = (
+    *("measure", "encoding", "storage", "operation", "stage", "family", "instructions", *LISTED, "spirv_instructions"),
+    *("vgprs", "sgprs", "spills", "code_bytes", *WHOLE, "cycles"),
+    *("ns_per_megapixel", "millions_per_second", "ceiling", "spread", "turns", "size", "repeats", "software", "clock"),
+    *("device", "driver", "compiler", "skipped"),
+)
+OPERATIONS = ("encode", "decode")
+PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
+GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """An encoding's operation, or a packing's.
+
+    Attributes:
+        encoding, storage: one of them, and None for the other.
+        operation: "encode", "decode", "pack" or "unpack".
+        make: makes it; raises ShaderError.
+    """
+
+    encoding: str | None
+    storage: str | None
+    operation: str
+    make: Callable[[], Operation]
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding or self.storage} {self.operation}"
+
+    def row(self, measure: str, **more: Any) -> Row:
+        """A row of the table that is about it."""
+        about = {"encoding": self.encoding, "storage": self.storage, "operation": self.operation}
+        return dict.fromkeys(COLUMNS) | {"measure": measure} | about | more
+
+
+def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[Case]:
+    """Every operation of each encoding, and what the packings add to it."""
+    makers = {"encode": kernels.encode, "decode": kernels.decode}
+    found = [Case(e.name, None, name, partial(makers[name], e)) for e in encodings for name in operations]
+    for packing in packings:
+        by_name = {"encode": packing.pack, "decode": packing.unpack}
+        found += [Case(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
+    return found
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A case as its compilers are given it, and the empty kernel beside it."""
+
+    job: Job
+    empty: Job
+    spirv_instructions: int | None
+
+
+def prepare(case: Case, stage: str) -> Prepared | Failure:
+    """A case's kernels as SPIR-V, or why there are none. Raises MissingError where there is no compiler."""
+    try:
+        operation = case.make()
+        (job, count), (empty, empty_count) = (
+            _job(o, stage, operation.is_portable) for o in (operation, operation.empty)
+        )
+    except spirv.ToolError as error:
+        return Failure(str(error))
+    except ShaderError as error:
+        return Failure(f"{case.name}: {error}")
+    return Prepared(job, empty, count - empty_count if count is not None and empty_count is not None else None)
+
+
+def _job(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | None]:
+    module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
+    # A vertex shader feeds each fragment shader; a compute shader has none.
+    vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
+    return Job(stage, module.binary, vertex), module.instructions
+
+
+def isa_rows(
+    chosen: Sequence[Case],
+    stages: Sequence[str],
+    families: Sequence[str],
+    lacks: list[str],
+    tick: Callable[[str], None],
+) -> Iterator[tuple[Row, str]]:
+    """A row for each case, stage and family, and its disassembly.
+
+    A family that gives nothing at all has one row, with the reason; where none gives anything, rows without a family
+    keep what SPIR-V says.
+
+    Args:
+        lacks: is told what this machine lacks, in one line each.
+        tick: called with a family as it is done.
+
+    Raises:
+        MissingError: there is no GLSL compiler.
+    """
+    pairs = [(case, stage) for stage in stages for case in chosen]
+    compiler = spirv.titles()
+    if spirv.version(spirv.OPTIMISER) is None:
+        lacks.append(spirv.NO_OPTIMISER)
+    prepared = list(on_all_cores(lambda pair: prepare(*pair), pairs))
+    jobs = list(dict.fromkeys(job for p in prepared if isinstance(p, Prepared) for job in (p.job, p.empty)))
+    outcomes = isa.compile_all(jobs, families, tick)
+    lacks += dict.fromkeys(o.reason for o in outcomes.values() if isinstance(o, Failure) and o.is_missing)
+    dead = {family: reason for family in families if (reason := _all_failed(outcomes, family, jobs))}
+    for family, reason in dead.items():
+        yield dict.fromkeys(COLUMNS) | {"measure": "isa", "family": family, "skipped": reason}, ""
+    for family in [f for f in families if f not in dead] or [None]:
+        for (case, stage), made in zip(pairs, prepared, strict=True):
+            row = case.row("isa", stage=stage, family=family, compiler=compiler)
+            if isinstance(made, Failure):
+                yield row | {"skipped": made.reason}, ""
+            elif family is None:
+                yield row | {"spirv_instructions": made.spirv_instructions}, ""
+            else:
+                row["spirv_instructions"] = made.spirv_instructions
+                yield _figures(row, outcomes[family, made.job], outcomes[family, made.empty])
+
+
+def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str, jobs: Sequence[Job]) -> str:
+    """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
+    found = [outcomes[family, job] for job in jobs]
+    failures = [outcome for outcome in found if isinstance(outcome, Failure)]
+    return failures[0].reason if found and len(failures) == len(found) else ""
+
+
+def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
+    """A row with what its kernel has more than the empty one, and its disassembly."""
+    if isinstance(outcome, Failure):
+        return row | {"skipped": outcome.reason}, ""
+    if isinstance(empty, Failure):
+        return row | {"skipped": f"the empty kernel: {empty.reason}"}, ""
+    for column, names in STATISTICS.items():
+        row[column] = _difference(_total(outcome, names), _total(empty, names))
+    for column, names in WHOLE.items():
+        row[column] = _total(outcome, names)
+    ours, theirs = (
+        _listed(o.assembly, int(o.statistics.get("Instructions", -1)), row["family"]) for o in (outcome, empty)
+    )
+    if ours and theirs:
+        row |= {column: _difference(ours[column], theirs[column]) for column in LISTED}
+    return row | {"device": outcome.device, "driver": f"Mesa {outcome.version}"}, outcome.assembly
+
+
+def _total(outcome: Compiled, names: Iterable[str]) -> float | None:
+    found = [outcome.statistics.get(name) for name in names]
+    return sum(found) if None not in found else None  # type: ignore[arg-type]
+
+
+def _difference(a: float | None, b: float | None) -> float | None:
+    return a - b if a is not None and b is not None else None
+
+
+@cache
+def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
+    """What a kernel's disassembly says; None where there is none, or one that cannot be understood."""
+    counts = kinds(assembly, total, family)
+    if counts is None:
+        return None
+    branches, loops = jumps(assembly)
+    return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+
+
+def static_notes(rows: Iterable[Row]) -> list[str]:
+    """Why counts of some rows are not what a lane runs: a line for loops and one for branches."""
+    notes = {
+        "loops": "contains a loop, whose body counts once, however often it runs",
+        "branches": "contains a branch, both of whose sides count",
+    }
+    found: dict[str, dict[str, None]] = {column: {} for column in notes}
+    for row in rows:
+        column = next((column for column in notes if row[column]), None)
+        if column:
+            found[column][f"{row['encoding'] or row['storage']} {row['operation']}"] = None
+    return [f"static count: {', '.join(found[column])} {note}" for column, note in notes.items() if found[column]]
+
+
+def listing(row: Row, assembly: str) -> tuple[Path, str]:
+    """A disassembly's file name, by what the row is about, and its text: what it costs, then the whole kernel."""
+    name = str(row["encoding"] or row["storage"]).replace(" ", "-").replace(":", "-")
+    costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *LISTED) if row[column] is not None)
+    head = f"; {row['encoding'] or row['storage']} {row['operation']}, {row['stage']}, {row['family']}\n"
+    head += f"; {row['device']}, {row['driver']}, {row['compiler']}\n; more than the empty kernel: {costs}\n"
+    return Path(row["family"]) / f"{row['stage']}-{name}-{row['operation']}.asm", f"{head}{assembly}"

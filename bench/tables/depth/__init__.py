@@ -1,0 +1,1 @@
+"""How far off positions are that were rebuilt from a stored depth."""

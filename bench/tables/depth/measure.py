@@ -1,0 +1,240 @@
+"""The depth table: how far off a position is that was rebuilt from a stored depth, by JAX and by GLSL."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.depth_codec import REBUILDS, DepthCodec
+from ....encodings.position import Camera
+from ....encodings.vec import Vec2
+from ....gbuffer.codecs.depth_passes import DepthPasses, Rebuilt
+from ....gbuffer.gl.device import FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+
+COLUMNS = (
+    *("depth", "storage", "bits", "rebuilt", "backend", "near", "far", "ratio", "fov", "distance", "count"),
+    *("error_mean", "error_max", "half_step", "bound", "signs_lost", "device", "rounded_by", "seed", "skipped"),
+)
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
+# A distance stands for depths that are up to this share of it nearer or farther.
+BAND = 1 / 16
+ASPECT = 16 / 9
+WIDTH = 4096
+BLOCK = 2**14
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Places on the screen and depths to measure on.
+
+    Attributes:
+        places: from -1 to 1, right and up; float32 of shape (count, 2).
+        depths: view depth, float32 of shape (count,).
+    """
+
+    places: np.ndarray
+    depths: np.ndarray
+
+    def positions(self, camera: Camera) -> np.ndarray:
+        """Where they truly are, view space, float64 of shape (count, 3)."""
+        return self.rays(camera) * self.depths[:, None].astype(np.float64)
+
+    def rays(self, camera: Camera) -> np.ndarray:
+        """The eye's rays at depth 1, float64 of shape (count, 3)."""
+        straight = np.full((len(self.places), 1), -1.0)
+        return np.concatenate([self.places.astype(np.float64) * camera.rays, straight], axis=1)
+
+
+def points(camera: Camera, distance: float | None, count: int, seed: int) -> Points:
+    """Points anywhere on the screen, their depths spread evenly over a distance's band, or for None over the whole
+    range; the ends of it are among them, and so are the screen's corners."""
+    low, high = (camera.near, camera.far) if distance is None else (distance * (1 - BAND), distance * (1 + BAND))
+    low, high = np.float32(max(low, camera.near)), np.float32(min(high, camera.far))
+    random = np.random.default_rng([seed, 0 if distance is None else 1])
+    share = (np.arange(count) + random.random(count)) / count
+    depths = np.clip((low + (np.float64(high) - low) * share).astype(np.float32), low, high)
+    depths[0], depths[-1] = low, high
+    places = random.uniform(-1, 1, (count, 2)).astype(np.float32)
+    places[0], places[-1] = 1, -1
+    return Points(places, depths)
+
+
+@lru_cache(maxsize=4)
+def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, seed: int) -> Points:
+    """The points of every distance, one after the other."""
+    made = [points(camera, distance, count, seed) for distance in distances]
+    return Points(np.concatenate([p.places for p in made]), np.concatenate([p.depths for p in made]))
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a few rows are measured of: one for each distance, None for the whole range.
+
+    Attributes:
+        codec: the depth's encoding and storage.
+        rebuilt: the way to the position, a key of REBUILDS.
+        backend: "jax" or "glsl".
+        camera: near, far and field of view.
+        distances: in the unit of near and far.
+        count: points of each row.
+        seed: what they are made with.
+    """
+
+    codec: DepthCodec
+    rebuilt: str
+    backend: str
+    camera: Camera
+    distances: tuple[float | None, ...]
+    count: int
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.camera.near:g} to {self.camera.far:g} {self.backend}"
+
+
+def ways(codec: DepthCodec) -> list[str]:
+    """How positions can be rebuilt from a codec's numbers, the usual way first."""
+    return [name for name, way in REBUILDS.items() if codec.is_window or not way.by_projection]
+
+
+def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
+    """What a function makes of arrays, BLOCK rows at a time: JAX compiles every operation for every shape."""
+    count, made = len(arrays[0]), []
+    for start in range(0, count, BLOCK):
+        parts = [array[start : start + BLOCK] for array in arrays]
+        missing = BLOCK - len(parts[0])
+        made.append(function(*(np.concatenate([p, np.repeat(p[-1:], missing, axis=0)]) for p in parts)))
+    return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*made, strict=True)]
+
+
+def _by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+    codec, seen = case.codec, case.camera.seen(case.codec.encoding.projection)
+
+    # Not compiled as a whole: for so few points that would take longer than all else.
+    def rebuilt(depths: np.ndarray, right: np.ndarray, up: np.ndarray):
+        number = codec.numbers(jnp.asarray(depths), seen.near, seen.far)
+        position = REBUILDS[case.rebuilt].position(codec, number, Vec2(jnp.asarray(right), jnp.asarray(up)), seen)
+        return np.stack([np.asarray(c) for c in position], axis=-1), number, codec.depths(number, seen.near, seen.far)
+
+    how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+    return Rebuilt(*_in_blocks(rebuilt, signed, places[:, 0], places[:, 1])), how
+
+
+def _by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+    gl, count = device(), len(signed)
+    height = -(-count // WIDTH)
+    pixels = np.ones((height * WIDTH, 3), np.float32)
+    pixels[:count] = np.concatenate([places, signed[:, None]], axis=1)
+    with DepthPasses(gl, case.codec) as passes:
+        by_projection = REBUILDS[case.rebuilt].by_projection
+        got = passes.round_trip(pixels.reshape(height, WIDTH, 3), case.camera, by_projection)
+        how = {"device": gl.renderer, "rounded_by": passes.rounded_by}
+    flat = Rebuilt(got.positions.reshape(-1, 3)[:count], got.numbers.ravel()[:count], got.depths.ravel()[:count])
+    return flat, how
+
+
+BACKENDS: Mapping[str, Callable[[Case, np.ndarray, np.ndarray], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
+    {"jax": _by_jax, "glsl": _by_glsl}
+)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Points through a codec, float64 arrays of shape (count,).
+
+    Attributes:
+        errors: between the true position and the rebuilt one; infinite where that is no position.
+        half_steps: how far half a step of the storage may move the position.
+        bounds: the same with float32 arithmetic.
+        lost: bool, whether the depth's sign came back as the other; never where the encoding keeps none.
+        positions: as rebuilt, of shape (count, 3).
+        how: the device, and who rounded.
+    """
+
+    errors: np.ndarray
+    half_steps: np.ndarray
+    bounds: np.ndarray
+    lost: np.ndarray
+    positions: np.ndarray
+    how: dict[str, str]
+
+
+@lru_cache(maxsize=1)
+def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, np.ndarray]:
+    """How far positions may move, without and with float32 arithmetic; the same for every back end."""
+    rays, depths = np.linalg.norm(on.rays(camera), axis=1), on.depths.astype(np.float64)
+    half_steps, bounds = _in_blocks(
+        lambda part: [codec.furthest(part, camera, with_arithmetic) for with_arithmetic in (False, True)], depths
+    )
+    return rays * half_steps, rays * bounds
+
+
+def through(case: Case, on: Points) -> Measured:
+    """Points through a case's codec. Every other normal faces away, where the encoding keeps that.
+
+    Raises:
+        NoDeviceError, ShaderError, FormatError: the device cannot; UNMEASURABLE.
+    """
+    away = (np.arange(len(on.depths)) % 2 == 1) & case.codec.encoding.signed
+    rebuilt, how = BACKENDS[case.backend](case, np.where(away, -on.depths, on.depths), on.places)
+    apart = np.linalg.norm(rebuilt.positions - on.positions(case.camera), axis=1)
+    half_steps, bounds = _limits(case.codec, case.camera, on)
+    lost = (np.signbit(rebuilt.depths) != away) & case.codec.encoding.signed
+    errors = np.where(np.isfinite(apart), apart, np.inf)
+    return Measured(errors, half_steps, bounds, lost, rebuilt.positions, how)
+
+
+def measure(case: Case) -> list[Row]:
+    """A case's rows; those that the device cannot give have its reason in `skipped` and no figures."""
+    camera, codec = case.camera, case.codec
+    shared = dict.fromkeys(COLUMNS) | {
+        "depth": codec.encoding.name,
+        "storage": codec.storage.name,
+        "bits": codec.storage.bits,
+        "rebuilt": case.rebuilt,
+        "backend": case.backend,
+        "near": camera.near,
+        "far": camera.far,
+        "ratio": camera.far / camera.near,
+        "fov": camera.fov,
+        "count": case.count,
+        "seed": case.seed,
+    }
+    try:
+        found = through(case, all_points(camera, case.distances, case.count, case.seed))
+    except UNMEASURABLE as error:
+        return [shared | {"distance": distance, "skipped": str(error)} for distance in case.distances]
+    parts = [slice(i * case.count, (i + 1) * case.count) for i in range(len(case.distances))]
+    return [
+        shared | found.how | {"distance": distance} | _figures(case, found, part)
+        for distance, part in zip(case.distances, parts, strict=True)
+    ]
+
+
+def _figures(case: Case, found: Measured, part: slice) -> Row:
+    return {
+        "error_mean": float(found.errors[part].mean()),
+        "error_max": float(found.errors[part].max()),
+        "half_step": float(found.half_steps[part].max()),
+        "bound": float(found.bounds[part].max()),
+        "signs_lost": int(found.lost[part].sum()) if case.codec.encoding.signed else None,
+    }
+
+
+def rows(chosen: Iterable[Case], tick: Callable[[str], None]) -> Iterator[Row]:
+    """The table, a case at a time."""
+    for case in chosen:
+        yield from measure(case)
+        tick(case.name)

@@ -1,0 +1,1 @@
+"""What light buffers lose."""

@@ -1,0 +1,283 @@
+"""What is lost when light is added up: the model of each light buffer beside the GL device's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.chromaticity import coloured, luminance
+from ....encodings.light_buffer import IDEAL, Blending, accumulate
+from ....encodings.light_encoding import LightEncoding
+from ....encodings.storage import Storage, to_srgb
+from ....encodings.vec import Vec3, Vec4
+from ....gbuffer.codecs.light_passes import LightPasses, Sum
+from ....gbuffer.gl.device import Device
+from ....gbuffer.render import displayed
+
+Row = dict[str, Any]
+CHANNELS = "rgba"
+# How devices have been found to add light up, the plainest first.
+ROUNDINGS = {
+    "nearest": IDEAL,
+    "truncated": Blending("truncate"),
+    "source first": Blending(rounds_source=True),
+    "source first, products by shifts": Blending(rounds_source=True, by_shifts=True),
+}
+# The share of pixels that a way to round must explain; transcendental functions differ by a unit or two, and so may the
+# code of a number beside a tie.
+EXPLAINED = 0.99
+ORDERS = ("as drawn", "dimmest first", "brightest first")
+COLOURS = {"white": (1.0, 1.0, 1.0), "red": (1.0, 0.0, 0.0), "green": (0.0, 1.0, 0.0), "blue": (0.0, 0.0, 1.0)}
+# Of fields and of ramps; a lamp's reach.
+PIXELS, GRADIENT, REACH = 1024, 4096, 4.0
+
+
+def planes(array: np.ndarray) -> Vec4:
+    """float32 planes of an array of shape (..., 4)."""
+    return Vec4(*(jnp.asarray(np.ascontiguousarray(array[..., i], np.float32)) for i in range(4)))
+
+
+def array(planes: Sequence[Any]) -> np.ndarray:
+    """The other way: float32 of shape (..., channels)."""
+    return np.stack([np.asarray(c, np.float32) for c in planes], axis=-1)
+
+
+@partial(jax.jit, static_argnames=("encoding", "blending"))
+def _summed(encoding: LightEncoding, lights: Vec4, count, blending: Blending) -> tuple[Vec4, Vec4]:
+    texels = accumulate(encoding, lights, count, blending)
+    return encoding.decode(texels), texels
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """How the device adds up: in words, and for which share of pixels the model that rounds so gives its texels."""
+
+    name: str
+    share: float
+
+
+class Adder:
+    """One light encoding, by the model and, where there is one, by the GL device; a context manager.
+
+    Raises:
+        ShaderError: the encoding's GLSL does not compile.
+    """
+
+    def __init__(self, encoding: LightEncoding, device: Device | None):
+        self.encoding = encoding
+        self._passes = LightPasses(device, encoding) if device else None
+
+    def __enter__(self) -> Adder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._passes:
+            self._passes.__exit__()
+
+    @property
+    def channels(self) -> int:
+        """Numbers of light that it holds."""
+        return 4 if self.encoding.has_alpha else 3
+
+    def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum:
+        """The first `count` of lights, float32 of shape (lights, width, 4), added up by the model."""
+        light, texels = _summed(self.encoding, planes(lights), len(lights) if count is None else count, blending)
+        return Sum(array(light), array(texels))
+
+    def device(self, lights: np.ndarray, count: int | None = None) -> Sum | None:
+        """And by the GL device; None without one. Raises FormatError."""
+        return self._passes.accumulate(lights[:count]) if self._passes else None
+
+    @cached_property
+    def rounding(self) -> Rounding | None:
+        """How the GL device adds up: the plainest way that explains it best; None without a device."""
+        lights = (np.random.default_rng(0).uniform(0, 1, (64, PIXELS, 4)) ** 2 * 0.05).astype(np.float32)
+        got = self.device(lights)
+        if not got:
+            return None
+        shares: dict[str, float] = {}
+        for name, blending in ROUNDINGS.items():
+            shares[name] = self._explained(lights, blending, got)
+            if shares[name] == 1.0:
+                break
+        name = max(shares, key=lambda name: shares[name])
+        if shares[name] >= EXPLAINED:
+            return Rounding(name, shares[name])
+        alone = self.device(lights[:1])
+        assert alone
+        if any(self._explained(lights[:1], blending, alone) >= EXPLAINED for blending in ROUNDINGS.values()):
+            return Rounding("its own blending", shares[name])
+        return Rounding(f"its own conversion{self._conversion_error()}", shares[name])
+
+    def _explained(self, lights: np.ndarray, blending: Blending, got: Sum) -> float:
+        apart = steps_apart(self.encoding.storage, self.model(lights, None, blending).texels, got.texels)
+        # An integer is the same or is not; floats may be a unit apart.
+        allowed = 0.5 if self.encoding.storage.kind == "unorm" else 1.0
+        return float(np.mean(np.all(apart <= allowed, axis=-1)))
+
+    def _conversion_error(self) -> str:
+        """By how many steps the device moves a number of fixed point that it stores, at most; half is the least."""
+        if self.encoding.storage.kind != "unorm":
+            return ""
+        lights = np.repeat(np.linspace(0, self.encoding.limit, 2**14, dtype=np.float32)[:, None], 4, axis=1)[None]
+        got, storage = self.device(lights), self.encoding.storage
+        assert got
+        given = array(self.encoding.encode(planes(lights[0])))
+        codes, exact = (steps_of(storage, texels) for texels in (got.texels, given))
+        return f", {np.abs(np.round(codes) - exact).max():.2f} steps off"
+
+
+def steps_apart(storage: Storage, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Texels' distance in steps of the format, of shape (..., channels that it has)."""
+    if storage.kind == "unorm":
+        return np.abs(steps_of(storage, one) - steps_of(storage, other))
+    apart = []
+    for i, bits in enumerate(storage.bits):
+        a, b = one[..., i].astype(np.float64), other[..., i].astype(np.float64)
+        exponent = np.floor(np.log2(np.maximum(np.abs(a), 2.0**-14)))
+        apart.append(np.abs(a - b) / np.exp2(exponent - {32: 23, 16: 10, 11: 6, 10: 5}[bits]))
+    return np.stack(apart, axis=-1)
+
+
+def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
+    """Texels of fixed point as the codes that they stand for, whole or not, of shape (..., channels)."""
+    curved = [np.asarray(to_srgb(jnp.asarray(texels[..., i], jnp.float32))) for i in range(storage.curved)]
+    straight = [texels[..., i] for i in range(storage.curved, storage.channels)]
+    return np.stack([*curved, *straight], axis=-1).astype(np.float64) * storage.scale(0)
+
+
+def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray:
+    """The most that storing once moves each number of light, over light of shape (width, 4), below the limit."""
+    below = np.where(np.max(light, axis=1, keepdims=True) <= adder.encoding.limit, light, 0.0).astype(np.float32)
+    # A light that multiplies is stored beside none.
+    return np.abs(adder.model(below[None]).light - below).max(axis=0)
+
+
+def _labelled(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
+    """Channels that agree in everything go by one name: rgba, or rgb and a."""
+    names: dict[tuple[Any, ...], str] = {}
+    for channel, what in zip(CHANNELS, found, strict=False):
+        names[what] = names.get(what, "") + channel
+    return names
+
+
+def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> Iterator[Row]:
+    """N equal lights that sum to S, blended one by one: what is left of S."""
+    for total in sums:
+        ramp = np.repeat(np.linspace(0, min(total, adder.encoding.limit), GRADIENT)[:, None], 4, axis=1)
+        half_step = worst_rounding(adder, ramp)
+        for count in counts:
+            lights = np.full((max(counts), 1, 4), total / count, np.float32)
+            model, gl = adder.model(lights, count).light[0], adder.device(lights, count)
+            found = [
+                (
+                    float(model[i]),
+                    float(gl.light[0, i]) if gl else None,
+                    count * float(half_step[i]) + max(total - adder.encoding.limit, 0),
+                )
+                for i in range(adder.channels)
+            ]
+            for (by_model, by_gl, bound), channel in _labelled(found).items():
+                row: Row = {"channel": channel, "sum": total, "lights": count, "model": by_model, "gl": by_gl}
+                yield row | {"error": by_model - total, "gl_error": by_gl - total if gl else None, "bound": bound}
+
+
+def falloff(distance: np.ndarray, radius: float) -> np.ndarray:
+    """A lamp's share at a distance, as `light.glsl` has it."""
+    window = np.maximum(1 - (distance / radius) ** 4, 0)
+    return window**2 / (distance**2 + 1)
+
+
+def coloured_lights(count: int, total: float, seed: int) -> np.ndarray:
+    """Random lamps over a field of pixels, (count, PIXELS, 4); the brightest pixel's largest channel sums to `total`.
+
+    Colours are diffuse light, the fourth number a highlight's luminance; brightness spreads over a factor of 30.
+    """
+    rng = np.random.default_rng(seed)
+    pixels, lamps = rng.uniform(-3, 3, (PIXELS, 2)), rng.uniform(-3, 3, (count, 2))
+    distance = np.linalg.norm(pixels[None] - lamps[:, None], axis=-1)
+    colour = rng.uniform(0.05, 1, (count, 3)) * 30.0 ** rng.uniform(-1, 0, (count, 1))
+    diffuse = colour[:, None] * falloff(distance, REACH)[..., None]
+    highlight = np.asarray(luminance(Vec3(*np.moveaxis(diffuse, -1, 0)))) * np.exp(-(distance**2))
+    lights = np.concatenate([diffuse, highlight[..., None]], axis=-1)
+    return (lights * (total / lights.sum(axis=0).max())).astype(np.float32)
+
+
+def ordered(lights: np.ndarray, order: str) -> np.ndarray:
+    """Lights in one of ORDERS, the same for every pixel."""
+    by_brightness = np.argsort(lights.sum(axis=(1, 2)), kind="stable")
+    return lights[{ORDERS[0]: np.arange(len(lights)), ORDERS[1]: by_brightness, ORDERS[2]: by_brightness[::-1]}[order]]
+
+
+def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) -> Iterator[Row]:
+    """Coloured lights with falloff, in three orders: errors over pixels and channels, beside what they are bound by."""
+    for count in counts:
+        lights = coloured_lights(count, total, seed)
+        exact = lights.sum(axis=0, dtype=np.float64)[:, : adder.channels]
+        bound = count * float(worst_rounding(adder, _partial_sums(lights.sum(axis=0)))[: adder.channels].max())
+        bound += max(float(exact.max()) - adder.encoding.limit, 0.0)
+        padded = np.zeros((max(counts), *lights.shape[1:]), np.float32)
+        for order in ORDERS:
+            padded[:count] = ordered(lights, order)
+            row: Row = {"order": order, "sum": total, "lights": count, "bound": bound}
+            for name, found in (("model", adder.model(padded, count)), ("gl", adder.device(padded, count))):
+                apart = np.abs(found.light[:, : adder.channels] - exact) if found else None
+                row[f"{name}_rms"] = float(np.sqrt(np.mean(apart**2))) if apart is not None else None
+                row[f"{name}_max"] = float(apart.max()) if apart is not None else None
+            yield row
+
+
+def _partial_sums(light: np.ndarray) -> np.ndarray:
+    """On the way to the brightest pixel of each channel, of light of shape (width, 4): (GRADIENT, 4)."""
+    shares = np.linspace(0, 1, GRADIENT // 4)[:, None, None]
+    return (shares * light[light.argmax(axis=0)]).reshape(-1, 4)
+
+
+def gradient(peak: float) -> np.ndarray:
+    """White light from a lamp's centre to its edge, (GRADIENT, 4)."""
+    light = peak * falloff(np.linspace(0, REACH, GRADIENT), REACH)
+    return np.repeat(light[:, None], 4, axis=1).astype(np.float32)
+
+
+def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
+    """One lamp's falloff: how many levels are left of it, and how far the largest step goes, in light and as shown."""
+    for peak in peaks:
+        light = gradient(peak)
+        found: list[tuple[Any, ...]] = []
+        kept = [adder.model(light[None]), adder.device(light[None])]
+        for i in range(adder.channels):
+            found.append(tuple(value for one in kept for value in (_bands(one.light[:, i]) if one else (None,) * 3)))
+        for figures, channel in _labelled(found).items():
+            row: Row = {"channel": channel, "peak": peak, "exact_step": float(np.abs(np.diff(light[:, 0])).max())}
+            names = ("levels", "largest_step", "shown_step", "gl_levels", "gl_largest_step", "gl_shown_step")
+            yield row | dict(zip(names, figures, strict=True))
+
+
+def _bands(light: np.ndarray) -> tuple[int, float, float]:
+    steps = np.abs(np.diff(light.astype(np.float64)))
+    shown = np.abs(np.diff(displayed(light))) * 255
+    return len(np.unique(light)), float(steps.max()), float(shown.max())
+
+
+def chromaticity(adder: Adder) -> Iterator[Row]:
+    """A highlight's colour rebuilt from the diffuse light's: how far its error exceeds that of what was stored."""
+    for name, colour in COLOURS.items():
+        lights = np.zeros((GRADIENT, 4), np.float32)
+        lights[:, :3] = colour
+        specular = np.linspace(0, 1, GRADIENT)[:, None] * np.array(colour)
+        lights[:, 3] = luminance(Vec3(*specular.T))
+        row: Row = {"colour": name}
+        for prefix, kept in (("", adder.model(lights[None])), ("gl_", adder.device(lights[None]))):
+            if kept:
+                alpha = np.abs(kept.light[:, 3] - lights[:, 3]).max()
+                rebuilt = array(coloured(planes(kept.light).xyz, planes(kept.light).w))
+                error = np.abs(rebuilt - specular).max()
+                row |= {f"{prefix}stored_error": float(alpha), f"{prefix}error": float(error)}
+                row[f"{prefix}amplification"] = float(error / alpha) if alpha else None
+        yield row

@@ -1,0 +1,378 @@
+"""The quality table: what each codec loses of the normals of a set, by the JAX and by the GLSL implementation."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codec import Codec
+from ....encodings.encoding import Encoding
+from ....encodings.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.vec import Vec3
+from ....gbuffer.codecs.codec_passes import CodecPasses
+from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+from ...codecs.user_encodings import NoTwinError, encodings_named
+from ...metrics.code_limits import AREAS, effective_bits
+from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
+from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
+from ...output.errors import MissingError, UsageError, pick
+from ...worst_case import exact_figures
+
+COLUMNS = (
+    "encoding",
+    "storage",
+    "rounding",
+    "normals",
+    "backend",
+    "bits",
+    "count",
+    "background",
+    "not_finite",
+    "invalid",
+    "mse",
+    "psnr_db",
+    "psnr_seed_db",
+    "angle_mean_deg",
+    "angle_rms_deg",
+    "angle_p99_deg",
+    "angle_max_deg",
+    "angle_sup_deg",
+    "sup_x",
+    "sup_y",
+    "sup_z",
+    "sup_found_by",
+    "sup_moved_deg",
+    "angle_counts",
+    "effective_bits",
+    "domain",
+    "codes",
+    "limit_mean_deg",
+    "limit_rms_deg",
+    "limit_max_deg",
+    "reached_mean_percent",
+    "reached_rms_percent",
+    "reached_max_percent",
+    "below_limit",
+    "codes_unused",
+    "codes_duplicate",
+    "codes_unstable",
+    "exact",
+    "device",
+    "rounded_by",
+    "seed",
+    "skipped",
+)
+
+# What only a program reads.
+FOR_PROGRAMS = ("angle_counts",)
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
+# How many cases share a set's chunks: each keeps its own histogram.
+TOGETHER = 64
+# What an unused channel is drawn as: -1 is black.
+UNUSED = -1.0
+
+Row = dict[str, Any]
+Tick = Callable[[], None]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure; `worst_case` and `codes` ask for figures that take seconds each."""
+
+    codec: Codec
+    normal_set: NormalSet
+    backend: str
+    worst_case: bool = False
+    codes: bool = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.normal_set.name} {self.backend}"
+
+    @property
+    def domain(self) -> str | None:
+        """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
+        of a set that is not uniform."""
+        if self.normal_set.area is None:
+            return None
+        is_whole = self.normal_set.area == AREAS["sphere"] and self.codec.encoding.domain == "sphere"
+        return "sphere" if is_whole else "hemisphere"
+
+
+@cache
+def _meter(codec: Codec) -> Meter:
+    return Meter(lambda chunk: codec.round_trip(chunk.n, chunk.view))
+
+
+@cache
+def _decoded_meter() -> Meter:
+    return Meter(lambda chunk: chunk.decoded)
+
+
+def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
+    pixels = np.zeros((height * width, 4), np.float32)
+    for channel, plane in enumerate(planes):
+        pixels[:, channel] = np.asarray(plane).ravel()
+    return pixels.reshape(height, width, 4)
+
+
+def check_twin(encoding: Encoding) -> None:
+    """Traces an encoding's Python half on one normal.
+
+    Raises:
+        UsageError: it raises, or its code has another size than it says; one line with its file.
+    """
+    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
+    where = encoding.glsl.with_suffix(".py")
+    try:
+        code = jax.eval_shape(encoding.encode, n, n)
+        size = encoding.components + encoding.sign_bits
+        if len(code) != size:
+            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
+        jax.eval_shape(encoding.decode, code, n)
+    except NoTwinError:
+        return
+    except Exception as error:  # whatever a user's own code raises
+        raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error
+
+
+@dataclass(frozen=True)
+class Decoding:
+    """A case about to be measured: with what, on which chunks, and what the row says of how."""
+
+    meter: Meter
+    loads: Iterable[Callable[[], Any]]
+    how: Mapping[str, str]
+
+
+@contextmanager
+def _by_jax(case: Case) -> Iterator[Decoding]:
+    yield Decoding(_meter(case.codec), case.normal_set.loads(), _how_by_jax())
+
+
+def _how_by_jax() -> dict[str, str]:
+    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+
+
+@contextmanager
+def _by_glsl(case: Case) -> Iterator[Decoding]:
+    gl = device()
+    with CodecPasses(gl, case.codec) as passes:
+
+        def decoded(chunk: Chunk) -> Decoded:
+            pixels = (_rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
+            n = passes.round_trip(*pixels).normals.reshape(-1, 3)
+            return Decoded(chunk.n, Vec3(*np.ascontiguousarray(n.T)), chunk.covered)
+
+        loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
+        yield Decoding(_decoded_meter(), loads, {"device": gl.renderer, "rounded_by": passes.rounded_by})
+
+
+def identity(value: Any) -> Any:
+    """The value, for a load that is there already."""
+    return value
+
+
+BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = MappingProxyType(
+    {"jax": _by_jax, "glsl": _by_glsl}
+)
+
+
+def cases(
+    codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str], *exact: bool
+) -> list[Case]:
+    """Every codec on every set by every back end, the rows of one codec side by side; `exact` is Case's last fields."""
+    normal_sets, backends = list(normal_sets), list(backends)
+    return [Case(codec, chosen, backend, *exact) for chosen in normal_sets for codec in codecs for backend in backends]
+
+
+def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
+    """Every combination of comma-separated names, files of users' encodings among them. Raises UsageError."""
+    chosen = encodings_named(encodings)
+    return [
+        Codec(encoding, storage, rounding)
+        for storage in storages_named(storages)
+        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for encoding in chosen
+    ]
+
+
+def storages_named(names: str) -> list[Storage]:
+    """The storages of comma-separated names, of numbers laid across channels by their bits too. Raises UsageError."""
+    try:
+        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+    return pick("storage", names, {**STORAGES, **{name: storage for name, storage in made.items() if storage}})
+
+
+def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
+    """The codecs whose storage has room for their components, and a line for each that is left out.
+
+    Raises:
+        UsageError: none is left.
+    """
+    codecs = list(codecs)
+    fit = [codec for codec in codecs if codec.fits]
+    left_out = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
+    if not fit:
+        raise UsageError(left_out[0] if left_out else "nothing to measure")
+    return fit, left_out
+
+
+def measure(case: Case, tick: Tick = idle) -> Row:
+    """One row of the quality table; `tick` is called as each chunk of the set is done.
+
+    A row that the device cannot give has its reason in `skipped` and no figures.
+    """
+    row = _described(case)
+    try:
+        with BACKENDS[case.backend](case) as found:
+            statistics = found.meter.measure(found.loads, case.normal_set.count, tick)
+    except UNMEASURABLE as error:
+        return row | {"skipped": str(error)}
+    return row | _measured(case, statistics) | dict(found.how)
+
+
+def _described(case: Case) -> Row:
+    return dict.fromkeys(COLUMNS) | {
+        "encoding": case.codec.encoding.name,
+        "storage": case.codec.storage.name,
+        "rounding": case.codec.rounding,
+        "normals": case.normal_set.name,
+        "backend": case.backend,
+        "bits": case.codec.bits,
+        "background": case.normal_set.background,
+        "not_finite": case.normal_set.not_finite,
+        "domain": case.domain,
+        "codes": case.codec.codes,
+        "seed": case.normal_set.seed,
+    }
+
+
+def _measured(case: Case, statistics: Statistics) -> Row:
+    row = _figures(statistics, case.normal_set.area)
+    if case.worst_case:
+        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, statistics)
+    if case.codes:
+        row |= exact_figures.odd(case.codec, case.domain)
+    return row | exact_figures.held(case.codec, case.domain, statistics, row.get("angle_sup_deg"))
+
+
+def worst(case: Case) -> Worst | None:
+    """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
+    try:
+        with BACKENDS[case.backend](case) as found:
+            return found.meter.worst(found.loads)
+    except UNMEASURABLE:
+        return None
+
+
+def _figures(s: Statistics, area: float | None) -> Row:
+    return {
+        "count": s.count,
+        "invalid": s.invalid,
+        "mse": s.mse,
+        "psnr_db": psnr_db(s.mse),
+        "psnr_seed_db": psnr_db(s.seed_mse),
+        "angle_mean_deg": s.angle_mean_deg,
+        "angle_rms_deg": s.angle_rms_deg,
+        "angle_p99_deg": s.angle_p99_deg,
+        "angle_max_deg": s.angle_max_deg,
+        "angle_counts": " ".join(f"{edge:.6g}:{count}" for edge, count in s.angle_counts),
+        "effective_bits": effective_bits(s.angle_rms_deg, area),
+        "exact": s.mse == 0,
+    }
+
+
+def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+    """The table, a row at a time, in the order of the cases."""
+    # By JAX the codecs on one set are measured together, so that it is made once; a few dozens, for memory's sake.
+    for _, cases_of_a_set in itertools.groupby(chosen, lambda case: id(case.normal_set)):
+        group = list(cases_of_a_set)
+        for start in range(0, len(group), TOGETHER):
+            yield from _rows_together(group[start : start + TOGETHER], tick)
+
+
+def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+    shared = [case for case in group if case.backend == "jax" and exact_figures.has_twin(case.codec.encoding)]
+    measured: dict[int, Statistics] = {}
+    if shared:
+        normals = shared[0].normal_set
+        meters = [_meter(case.codec) for case in shared]
+        found = measure_together(meters, normals.loads(), normals.count, lambda index: tick(shared[index]))
+        measured = {id(case): statistics for case, statistics in zip(shared, found, strict=True)}
+    for case in group:
+        if id(case) in measured:
+            yield _described(case) | _measured(case, measured[id(case)]) | _how_by_jax()
+        else:
+            yield measure(case, lambda case=case: tick(case))
+
+
+def require_jax() -> None:
+    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it."""
+    try:
+        jax.devices()
+    except Exception as error:
+        reason = str(error).strip().splitlines() or ["the platform does not start"]
+        raise MissingError(f"JAX has no device to compute on: {reason[0]}; unset JAX_PLATFORMS") from error
+
+
+def found_device() -> tuple[Device | None, str]:
+    """The GL device; or None, and why there is none."""
+    try:
+        return device(), ""
+    except NoDeviceError as error:
+        return None, str(error)
+
+
+def require_device() -> Device:
+    """The GL device. Raises MissingError where there is none."""
+    gl, missing = found_device()
+    if not gl:
+        raise MissingError(missing)
+    return gl
+
+
+@dataclass(frozen=True)
+class RoundTrip:
+    """A codec on an image: float32 arrays of shape (height, width, 3); `encoded` is what the texels stand for."""
+
+    normals: np.ndarray
+    encoded: np.ndarray
+    decoded: np.ndarray
+    covered: np.ndarray
+
+
+def image_round_trip(case: Case) -> RoundTrip:
+    """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
+    assert case.normal_set.shape
+    height, width = case.normal_set.shape
+    chunks = [load() for load in case.normal_set.loads()]
+    n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: height * width], *chunks)
+
+    def image(planes) -> np.ndarray:
+        return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)
+
+    if case.backend == "glsl":
+        with CodecPasses(device(), case.codec) as passes:
+            result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
+        encoded, decoded = result.codes[..., :3].copy(), result.normals
+    else:
+        n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
+        code = case.codec.stored(n, view)
+        decoded = image(case.codec.encoding.decode(code, view))
+        encoded = image([*code, *[np.zeros_like(code.x)] * (3 - len(code))])
+    encoded[..., case.codec.encoding.components + case.codec.encoding.sign_bits :] = UNUSED
+    return RoundTrip(image(n), encoded, decoded, covered.reshape(height, width))

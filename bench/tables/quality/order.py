@@ -1,0 +1,63 @@
+"""The quality table as people read it: grouped by bits, the best first, and under each group what its bits could do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Any
+
+from ...metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+
+Row = dict[str, Any]
+# What a limit row has in common with every row above it, if these have it in common.
+SHARED = ("storage", "rounding", "normals", "backend", "count", "device", "rounded_by", "seed", "domain")
+# What the limit row says once for all rows.
+ONCE = ("limit_mean_deg", "limit_rms_deg", "limit_max_deg", "below_limit", "codes")
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by normal set, as they come, then by bits, then the best first; a codec's back ends stay together."""
+    sets = list(dict.fromkeys(row["normals"] for row in rows))
+    best: dict[tuple, float] = {}
+    for row in rows:
+        best[_codec(row)] = min(best.get(_codec(row), math.inf), _error(row))
+    return sorted(rows, key=lambda row: (sets.index(row["normals"]), row["bits"], best[_codec(row)], _codec(row)))
+
+
+def _codec(row: Row) -> tuple:
+    return (row["normals"], row["encoding"], row["storage"], row["rounding"])
+
+
+def _error(row: Row) -> float:
+    """The RMS angle, which effective bits go by; rows without figures last."""
+    return math.inf if row["angle_rms_deg"] is None else row["angle_rms_deg"]
+
+
+def with_limits(rows: Sequence[Row]) -> list[Row]:
+    """Ordered rows, and after each group of one set and size the limit of that many bits."""
+    shared = {column: rows[0][column] for column in SHARED if len({row[column] for row in rows}) == 1}
+    return [row for _, group in groupby(rows, _group) for row in _with_limit(list(group), shared)]
+
+
+def _group(row: Row) -> tuple:
+    return (row["normals"], row["bits"])
+
+
+def _with_limit(group: list[Row], shared: Row) -> Iterator[Row]:
+    yield from group
+    bits, domains = group[0]["bits"], {row["domain"] for row in group}
+    domain = "hemisphere" if domains == {"hemisphere"} else "sphere"
+    least = code_limit(2**bits, HEMISPHERE if domain == "hemisphere" else SPHERE)
+    row: Row = dict.fromkeys(group[0]) | {"normals": group[0]["normals"]} | shared
+    has_sup = any(row["angle_sup_deg"] is not None for row in group)
+    yield row | {
+        "encoding": "limit" if group[0]["domain"] else "limit if uniform",
+        "bits": bits,
+        "domain": domain,
+        "angle_mean_deg": least.mean_deg,
+        "angle_rms_deg": least.rms_deg,
+        "angle_max_deg": least.max_deg,
+        "angle_sup_deg": least.max_deg if has_sup else None,
+        "effective_bits": float(bits) if group[0]["domain"] else None,
+    }

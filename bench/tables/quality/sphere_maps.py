@@ -1,0 +1,102 @@
+"""How far off a codec is in each direction: an equal-area map of the sphere, kept as a small array.
+
+The projection is Lambert's azimuthal equal-area one of either half, for normals in view space: z >= 0, what faces the
+viewer, in the first disc and z <= 0 in the second, x to the right and y up in both. A disc of radius 1 holds a
+hemisphere; at a distance r from its middle |z| = 1 - r^2, so that every cell stands for the same solid angle.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ....encodings.codec import Codec
+from ....encodings.vec import Vec3
+from ...metrics.meter import angle_between, compiled, readable
+from ...output.writing import whole_file
+
+# Cells across a disc, and directions along each side of a cell.
+CELLS, FINE = 96, 5
+WHOLE_SPHERE = "sphere"
+
+
+class SphereMap(NamedTuple):
+    """Angles between input and decode in degrees, float32 of shape (halves, cells, cells), row 0 on top, the half that
+    faces the viewer first; NaN where a cell lies outside its disc, or a half outside what the code can hold.
+
+    Attributes:
+        mean_deg, max_deg: over the directions of each cell.
+        directions: how many there are in a whole cell.
+    """
+
+    mean_deg: np.ndarray
+    max_deg: np.ndarray
+    directions: int
+
+
+@cache
+def _grid() -> tuple[np.ndarray, np.ndarray]:
+    """The directions of both discs, float32 of shape (halves, pixels, pixels, 3), and which lie on the sphere."""
+    pixels = CELLS * FINE
+    across = (np.arange(pixels) + 0.5) / pixels * 2 - 1
+    u, v = np.meshgrid(across, -across)
+    squared = u * u + v * v
+    inside = squared <= 1
+    # Lambert (1772): (x, y) = (u, v) sqrt(2 - r^2), z = 1 - r^2.
+    stretch, z = np.sqrt(np.maximum(2 - squared, 0)), 1 - squared
+    halves = np.stack([np.stack([u * stretch, v * stretch, side * z], axis=-1) for side in (1, -1)])
+    return halves.astype(np.float32), inside
+
+
+def sphere_map(codec: Codec) -> SphereMap:
+    """A codec's errors over the sphere, by JAX; over the half that faces the viewer where it can hold no more."""
+    halves, inside = _grid()
+    held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
+    n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
+    found = np.full((2, *inside.shape), np.nan, np.float32)
+    found[:held, inside] = np.asarray(_angles(codec)(n))
+    cells = found.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
+    some = ~np.isnan(cells).all(axis=-1)
+    mean, largest = (np.full(some.shape, np.nan, np.float32) for _ in range(2))
+    mean[some], largest[some] = np.nanmean(cells[some], axis=-1), np.nanmax(cells[some], axis=-1)
+    return SphereMap(mean, largest, FINE * FINE)
+
+
+def _angles(codec: Codec):
+    def angles(n: Vec3):
+        ahead = Vec3(n.x * 0.0, n.y * 0.0, n.z * 0.0 - 1.0)
+        decoded, _ = readable(n, codec.round_trip(n, ahead))
+        return angle_between(n, decoded)
+
+    return compiled(angles)
+
+
+def file_name(encoding: str, storage: str, rounding: str) -> str:
+    """What a codec's map is called."""
+    return "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])]) + ".npz"
+
+
+def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
+    """A file for each codec. Raises UsageError where it cannot be written."""
+    for codec in dict.fromkeys(codecs):
+        found = sphere_map(codec)
+        path = folder / file_name(codec.encoding.name, codec.storage.name, codec.rounding)
+        with whole_file(path) as partial, partial.open("wb") as file:
+            np.savez_compressed(file, **found._asdict())
+
+
+def read_map(path: Path) -> SphereMap | None:
+    """A map as it was written; None where there is none or it is damaged."""
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
+            mean, largest, directions = (kept[name] for name in SphereMap._fields)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+    fits = mean.shape == largest.shape and mean.ndim == 3 and len(mean) == 2 and directions.shape == ()
+    numeric = mean.dtype == largest.dtype == np.float32 and np.issubdtype(directions.dtype, np.integer)
+    return SphereMap(mean, largest, int(directions)) if fits and numeric else None

@@ -1,0 +1,1 @@
+"""What codecs, layouts and light buffers do to the final image."""

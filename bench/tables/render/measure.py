@@ -1,0 +1,248 @@
+"""The render table: what a codec, a layout or a light buffer does to the final image of a pipeline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_ENCODINGS
+from ....gbuffer.frame.frame import Plan
+from ....gbuffer.gl.device import Device, FormatError
+from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES, Pipeline
+from ....gbuffer.render import Rendering, bytes_per_pixel, displayed, rendering
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import KINDS, Scene
+from ....gbuffer.scenes.setting import Setting
+from ...metrics.images import flip, squared_error
+from ...metrics.meter import Worst, psnr_db
+
+STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
+COLUMNS = (
+    *("pipeline", "layout", "encoding", "storage", "rounding", "normal_bits", "light_buffer", "light_targets"),
+    *("scene", "shadow", "scale", "size", "samples", "samples_asked", "lights", "objects", "frames", "bytes_per_pixel"),
+    *("mse", "psnr_db", "flip", "normal_psnr_db", "rank", "normal_rank", "invalid"),
+    *("ms_frame", "ms_frame_spread", *(f"ms_{stage}" for stage in STAGES)),
+    *("clock", "device", "seed", "exact", "skipped"),
+)
+# Why a device may not be able to give a row.
+UNMEASURABLE = (ShaderError, FormatError)
+# Codecs are ranked among rows that agree in these.
+SAME = ("scene", "pipeline", "light_buffer", "light_targets", "shadow")
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure.
+
+    Attributes:
+        pipeline, plan: what renders, and with what.
+        maker, setting: the scene and what it is made with.
+        frames: moments that figures are averaged over.
+        asked: samples a pixel as asked for; `plan.samples` is what the device gives.
+    """
+
+    pipeline: Pipeline
+    plan: Plan
+    maker: SceneMaker
+    setting: Setting
+    frames: int
+    asked: int
+
+    @property
+    def name(self) -> str:
+        parts = (self.maker.name, self.pipeline.name, self.plan.layout.name, self.plan.layout.codec.name)
+        return " ".join(parts if self.pipeline.has_gbuffer else parts[:2])
+
+    def scenes(self) -> Iterable[Scene]:
+        """The scene at each moment."""
+        return (self.maker.make(replace(self.setting, time=frame / self.frames)) for frame in range(self.frames))
+
+    @property
+    def reference(self) -> Case:
+        """The same pipeline with everything in fp32, two light targets where it may have them, and full size."""
+        targets = max(self.pipeline.light_targets, default=1)
+        exact = replace(
+            self.plan,
+            layout=LAYOUTS["fp32"],
+            light_buffer=LIGHT_ENCODINGS["rgba32f"],
+            light_targets=targets,
+            scale=1.0,
+        )
+        return replace(self, plan=exact)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One frame.
+
+    Attributes:
+        linear: the image, float32 of shape (height, width, 3).
+        normals, kinds: what the G-buffer says, (height, width, 3) and (height, width); None where there is no G-buffer
+            or it has several samples a pixel. The kind of what is not covered is -1.
+    """
+
+    linear: np.ndarray
+    normals: np.ndarray | None
+    kinds: np.ndarray | None
+
+    @cached_property
+    def shown(self) -> np.ndarray:
+        """The image as displayed."""
+        return displayed(self.linear)
+
+
+def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
+    made.draw()
+    if not pipeline.has_gbuffer or made.frame.buffer_samples > 1:
+        return Drawn(made.image(), None, None)
+    position, direction, *_ = made.gbuffer()
+    kinds = np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
+    return Drawn(made.image(), direction[..., :3], kinds)
+
+
+class Bench:
+    """Measures cases, each reference once.
+
+    Args:
+        device: where.
+        repeats: frames that times are taken over; none are taken for 0.
+        with_flip: whether FLIP is wanted.
+    """
+
+    def __init__(self, device: Device, repeats: int, with_flip: bool):
+        self._device, self._repeats, self._with_flip = device, repeats, with_flip
+        self._references: dict[Case, list[Drawn]] = {}
+
+    def reference(self, case: Case) -> list[Drawn]:
+        """The frames of a case's reference."""
+        case = case.reference
+        if case not in self._references:
+            self._references[case] = self._frames(case)
+        return self._references[case]
+
+    def _frames(self, case: Case, then: Callable[[Rendering], None] = lambda _: None) -> list[Drawn]:
+        """A case's frames; `then` is called with the last one, still on the device."""
+        frames: list[Drawn] = []
+        for number, scene in enumerate(case.scenes(), 1):
+            with rendering(self._device, case.pipeline, scene, case.plan) as made:
+                frames.append(_drawn(made, case.pipeline))
+                if number == case.frames:
+                    then(made)
+        return frames
+
+    def measure(self, case: Case) -> tuple[Row, Drawn | None]:
+        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`."""
+        row = dict.fromkeys(COLUMNS) | _described(case) | {"device": self._device.renderer}
+        times: Row = {}
+        try:
+            frames = self._frames(
+                case, lambda made: times.update(_times(made, self._repeats)) if self._repeats else None
+            )
+            if case == case.reference:
+                self._references.setdefault(case, frames)
+            reference = self.reference(case)
+        except UNMEASURABLE as error:
+            return row | {"skipped": str(error)}, None
+        return row | times | self._compared(case, frames, reference), frames[0]
+
+    def worst(self, case: Case) -> Worst | None:
+        """The normal of a case's first frame that its G-buffer gives back farthest off; None where there is none."""
+        try:
+            return _farthest(self._frames(case)[0], self.reference(case)[0])
+        except UNMEASURABLE:
+            return None
+
+    def _compared(self, case: Case, frames: list[Drawn], reference: list[Drawn]) -> Row:
+        pairs = list(zip(frames, reference, strict=True))
+        errors = [squared_error(one.shown, other.shown) for one, other in pairs]
+        mse = float(np.mean([error for error, _ in errors]))
+        row: Row = {"mse": mse, "psnr_db": psnr_db(mse), "exact": mse == 0}
+        row["invalid"] = sum(broken for _, broken in errors)
+        if self._with_flip:
+            row["flip"] = float(np.mean([flip(one.shown, other.shown) for one, other in pairs]))
+        # Where the G-buffer has a size of its own, its pixels are not the reference's.
+        if case.pipeline.has_gbuffer and case.plan.scale == 1 and frames[0].normals is not None:
+            has_kind = "kind" in case.plan.layout.components
+            apart = [_normal_error(one, other, has_kind) for one, other in pairs]
+            row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
+        return row
+
+
+def _farthest(one: Drawn, other: Drawn) -> Worst | None:
+    """Of two frames, the normal that the one has and that is farthest off in the other."""
+    if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
+        return None
+    covered = other.kinds >= 0
+    right, found = (normals[covered].astype(np.float64) for normals in (other.normals, one.normals))
+    if not len(right):
+        return None
+    across, along = np.linalg.norm(np.cross(right, found - right), axis=-1), np.sum(right * found, axis=-1)
+    angles = np.nan_to_num(np.degrees(np.arctan2(across, along)), nan=180.0)
+    at = int(np.argmax(angles))
+    return Worst(right[at].astype(np.float32), found[at].astype(np.float32), float(angles[at]))
+
+
+def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
+    """Mean squared error over the components of covered normals; hair's strand only where the layout knows hair."""
+    assert one.normals is not None and other.normals is not None and other.kinds is not None
+    compared = (other.kinds >= 0) & (has_kind | (other.kinds != KINDS.index("hair")))
+    return float(np.mean((one.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
+
+
+def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
+    """What a row says of how it was rendered; what makes no difference to the pipeline is None."""
+    kept = pipeline.has_gbuffer
+    return {
+        "pipeline": pipeline.name,
+        "layout": plan.layout.name if kept else None,
+        "light_buffer": plan.light_buffer.name if kept else None,
+        "light_targets": plan.light_targets if kept else None,
+        "scale": plan.scale if pipeline.scaled else None,
+        "objects": setting.objects,
+        "lights": setting.lights,
+        "shadow": plan.shadows,
+        "size": f"{plan.size[0]}x{plan.size[1]}",
+        "samples": plan.samples,
+        "samples_asked": asked,
+        "seed": setting.seed,
+    }
+
+
+def _described(case: Case) -> Row:
+    plan, pipeline = case.plan, case.pipeline
+    row = described(pipeline, plan, case.setting, case.asked)
+    row |= {"scene": case.maker.name, "frames": case.frames, "bytes_per_pixel": bytes_per_pixel(pipeline, plan)}
+    if pipeline.has_gbuffer:
+        row |= {"encoding": plan.layout.codec.encoding.name, "storage": plan.layout.normal_storage}
+        row |= {"rounding": plan.layout.rounding, "normal_bits": plan.layout.normal_bits}
+    return row
+
+
+def _times(made: Rendering, repeats: int) -> Row:
+    if not repeats:
+        return {}
+    timings, clock = made.timings(repeats)
+    row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
+    return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
+
+
+def ranked(rows: list[Row]) -> list[Row]:
+    """The rows with each codec's place by its image and by its normals, among the rows that differ in nothing else."""
+    groups: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        if row["normal_psnr_db"] is not None:
+            groups.setdefault(tuple(row[c] for c in SAME), []).append(row)
+    for group in groups.values():
+        if len(group) > 1:
+            for place, figure in (("rank", "psnr_db"), ("normal_rank", "normal_psnr_db")):
+                figures = sorted((row[figure] for row in group), reverse=True)
+                for row in group:
+                    row[place] = figures.index(row[figure]) + 1
+    return rows

@@ -1,0 +1,1 @@
+"""How each pipeline's passes grow with the number of objects."""

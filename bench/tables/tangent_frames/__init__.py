@@ -1,0 +1,1 @@
+"""What tangent frame codes lose."""

@@ -1,0 +1,68 @@
+"""The limit of tangent frames: how small the errors of N codes can be, whatever the codes.
+
+By Haar's measure a ball of rotations by up to theta is (theta - sin theta) / pi of all of them. The ball that is the
+Nth part bounds what any code can be nearest to, so no N codes have a maximum below its theta, nor a mean or a mean
+square below the ball's own. A mirrored frame is no rotation: each of the two hands has half of the codes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import root_scalar
+
+from ...metrics.code_limits import SCATTER, CodeLimit
+
+HANDS = 2
+# Of Gauss and Legendre; what they integrate is as smooth as a cosine.
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+def ball_moment(theta: float, power: int) -> float:
+    """The integral of angle^power over the rotations by up to `theta`, in radians; all rotations are 1."""
+    angle = (NODES + 1) * theta / 2
+    # The density (1 - cos angle) / pi, written so that it does not cancel.
+    return float(WEIGHTS @ (angle**power * 2 * np.sin(angle / 2) ** 2)) / math.pi * theta / 2
+
+
+def _root(function: Callable[[float], float], least: float) -> float:
+    """Where a function that rises is 0, between an angle where it is not above 0 and pi; to float64's own digits."""
+    return float(root_scalar(function, bracket=(least, math.pi), method="brentq", xtol=1e-30).root)
+
+
+def frame_limit(codes: int) -> CodeLimit:
+    """The least mean, RMS and maximum of the angle that so many codes (2 or more) have over all frames."""
+    share = HANDS / codes
+    # theta - sin theta is below theta^3 / 6.
+    least = min((6 * math.pi * share) ** (1 / 3), math.pi)
+    theta = _root(lambda t: ball_moment(t, 0) / share - 1, least * (1 - 1e-9)) if share < 1 else math.pi
+    mean, square = (ball_moment(theta, power) / share for power in (1, 2))
+    return CodeLimit(math.degrees(mean), math.degrees(math.sqrt(square)), math.degrees(theta))
+
+
+def frame_effective_bits(rms_deg: float) -> float:
+    """log2 of how many codes, ideally placed, have this RMS angle over all frames; infinite for none."""
+    if rms_deg == 0:
+        return math.inf
+    square = math.radians(rms_deg) ** 2
+
+    def excess(theta: float) -> float:
+        return ball_moment(theta, 2) / ball_moment(theta, 0) / square - 1
+
+    if excess(math.pi) < 0:
+        return math.log2(HANDS)
+    # The mean square of a ball is 3/5 theta^2 where it is small, and less where not.
+    theta = _root(excess, math.sqrt(square))
+    return math.log2(HANDS / ball_moment(theta, 0))
+
+
+def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float) -> str:
+    """What a measurement over uniform frames says that so many codes cannot do, scatter apart; nothing where all is
+    well. Then the measure is wrong, or the set is not uniform."""
+    least, spared = frame_limit(codes), 1 - SCATTER / math.sqrt(count)
+    for what, figure, bound in (("RMS", rms_deg, least.rms_deg), ("mean", mean_deg, least.mean_deg)):
+        if figure < bound * spared:
+            return f"{what} {figure:.5g} degrees, of {bound:.5g} at least"
+    return ""

@@ -1,0 +1,199 @@
+"""The frames table: what tangent frame codes lose of normals, tangents and rotations, by JAX and by GLSL."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.frame_codec import FrameCodec
+from ....encodings.rotation import frame_of
+from ....encodings.vec import Vec3
+from ....gbuffer.codecs.frame_passes import FramePasses
+from ....gbuffer.gl.device import FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+from ...metrics.code_limits import is_measurable
+from .limits import frame_effective_bits, frame_limit, frames_broken
+from .sets import CHUNK, Frames, FrameSet
+
+WHAT = ("normal", "tangent", "rotation")
+COLUMNS = (
+    *("encoding", "storage", "frame_set", "backend", "bits", "count", "invalid", "hands_lost"),
+    *(f"{what}_{figure}_deg" for what in WHAT for figure in ("mean", "rms", "max")),
+    *("effective_bits", "codes", "limit_mean_deg", "limit_rms_deg", "limit_max_deg"),
+    *("reached_mean_percent", "reached_rms_percent", "reached_max_percent", "below_limit"),
+    *("device", "rounded_by", "seed", "skipped"),
+)
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
+WIDTH = 256
+
+Row = dict[str, Any]
+Trip = Callable[[Frames], Frames]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure."""
+
+    codec: FrameCodec
+    frame_set: FrameSet
+    backend: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.frame_set.name} {self.backend}"
+
+
+@cache
+def _compiled(codec: FrameCodec) -> Callable[[Any, Any], Any]:
+    def trip(normals, tangents):
+        given = frame_of(Vec3(*normals[:3]), Vec3(*tangents[:3]), normals[3])
+        return codec.round_trip(given)
+
+    return jax.jit(trip)
+
+
+@contextmanager
+def _by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
+    def trip(given: Frames) -> Frames:
+        planes = (jnp.asarray(np.ascontiguousarray(a.T)) for a in (given.normals, given.tangents))
+        n, t, hand = _compiled(codec)(*planes)
+        found = (np.stack([np.asarray(c) for c in v], axis=1) for v in ((*n, hand), (*t, 0 * hand)))
+        return Frames(*found)
+
+    yield trip, {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+
+
+@contextmanager
+def _by_glsl(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
+    gl = device()
+    with FramePasses(gl, codec) as passes:
+
+        def trip(given: Frames) -> Frames:
+            found = passes.round_trip(*(a.reshape(-1, WIDTH, 4) for a in (given.normals, given.tangents)))
+            return Frames(*(a.reshape(-1, 4) for a in found))
+
+        yield trip, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+
+
+BACKENDS: Mapping[str, Callable[[FrameCodec], AbstractContextManager[tuple[Trip, dict[str, str]]]]] = MappingProxyType(
+    {"jax": _by_jax, "glsl": _by_glsl}
+)
+
+
+@dataclass
+class Total:
+    """What chunks add up to: angles of normals, tangents and rotations in degrees, decodes that were no number, each of
+    which counts as 180, and hands that came back as the other."""
+
+    count: int = 0
+    invalid: int = 0
+    hands_lost: int = 0
+    sums: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    squares: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    largest: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def add(self, given: Frames, found: Frames) -> None:
+        """Frames, and what they came back as."""
+        angles = frame_angles(given, found)
+        valid = np.isfinite(angles).all(axis=0)
+        angles = np.where(valid, angles, 180.0)
+        self.count += len(given.normals)
+        self.invalid += int(np.count_nonzero(~valid))
+        self.hands_lost += int(np.count_nonzero(given.normals[:, 3] != found.normals[:, 3]))
+        self.sums = self.sums + angles.sum(axis=1)
+        self.squares = self.squares + (angles**2).sum(axis=1)
+        self.largest = np.maximum(self.largest, angles.max(axis=1))
+
+
+def frame_angles(given: Frames, found: Frames) -> np.ndarray:
+    """The angles between normals, between tangents, and of the rotation from the one frame to the other, whatever their
+    hands: float64 degrees of shape (3, count), NaN where one is no number.
+
+    A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
+    """
+    (n, t), (other_n, other_t) = (_axes(frames) for frames in (given, found))
+    apart = [n - other_n, t - other_t, np.cross(n, t) - np.cross(other_n, other_t)]
+    squares = [np.sum(a * a, axis=1) for a in apart]
+    sines = np.sqrt(np.stack([squares[0] / 4, squares[1] / 4, sum(squares) / 8]))
+    return np.degrees(2 * np.arcsin(np.minimum(sines, 1.0)))
+
+
+def _axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
+    n, t = (a[:, :3].astype(np.float64) for a in (frames.normals, frames.tangents))
+    n, t = (a / np.linalg.norm(a, axis=1, keepdims=True) for a in (n, t))
+    t = t - n * np.sum(n * t, axis=1, keepdims=True)
+    return n, t / np.linalg.norm(t, axis=1, keepdims=True)
+
+
+def measure(case: Case) -> Row:
+    """One row; one that the device cannot give has its reason in `skipped` and no figures."""
+    row = dict.fromkeys(COLUMNS) | {
+        "encoding": case.codec.encoding.name,
+        "storage": case.codec.storage.name,
+        "frame_set": case.frame_set.name,
+        "backend": case.backend,
+        "bits": case.codec.bits,
+        "codes": case.codec.codes,
+        "seed": case.frame_set.seed,
+    }
+    total = Total()
+    try:
+        with BACKENDS[case.backend](case.codec) as (trip, how), np.errstate(invalid="ignore", divide="ignore"):
+            for given in case.frame_set.chunks():
+                count = len(given.normals)
+                found = trip(_whole(given))
+                total.add(given, Frames(found.normals[:count], found.tangents[:count]))
+    except UNMEASURABLE as error:
+        return row | {"skipped": str(error)}
+    return row | _figures(total) | _held(case, total) | how
+
+
+def _whole(frames: Frames) -> Frames:
+    """A chunk with its last frame repeated until it is one of CHUNK: compiled once, and a rectangle of pixels."""
+    missing = CHUNK - len(frames.normals)
+    return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
+
+
+def _figures(total: Total) -> Row:
+    row: Row = {"count": total.count, "invalid": total.invalid, "hands_lost": total.hands_lost}
+    for i, what in enumerate(WHAT):
+        row[f"{what}_mean_deg"] = float(total.sums[i] / total.count)
+        row[f"{what}_rms_deg"] = math.sqrt(total.squares[i] / total.count)
+        row[f"{what}_max_deg"] = float(total.largest[i])
+    return row
+
+
+def _held(case: Case, total: Total) -> Row:
+    """The limit, and the row's share of it; nothing on sets that are not uniform, and no share of a limit that float32
+    frames cannot tell from none."""
+    if not case.frame_set.is_uniform:
+        return {}
+    figures, least = _figures(total), frame_limit(case.codec.codes)
+    mean, rms, largest = (figures[f"rotation_{figure}_deg"] for figure in ("mean", "rms", "max"))
+    row: Row = {"limit_mean_deg": least.mean_deg, "limit_rms_deg": least.rms_deg, "limit_max_deg": least.max_deg}
+    row["effective_bits"] = frame_effective_bits(rms)
+    if not is_measurable(least):
+        return row
+    return row | {
+        "reached_mean_percent": 100 * least.mean_deg / mean,
+        "reached_rms_percent": 100 * least.rms_deg / rms,
+        "reached_max_percent": 100 * least.max_deg / largest,
+        "below_limit": frames_broken(case.codec.codes, total.count, mean, rms),
+    }
+
+
+def rows(chosen: Iterable[Case], tick: Callable[[str], None]) -> Iterator[Row]:
+    """The table, a row at a time."""
+    for case in chosen:
+        yield measure(case)
+        tick(case.name)

@@ -1,0 +1,126 @@
+"""Sets of tangent frames to measure on: rotations at random, and the vertices of users' meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from ....encodings.rotation import frame_of_quaternion
+from ....encodings.vec import Vec4
+from ....gbuffer.scenes.files.read import READERS
+from ....gbuffer.scenes.mesh import Mesh, tangents
+from ...options.scene_names import mesh_file, say_notes
+from ...output.errors import pick_or_read
+
+CHUNK = 2**16
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Tangent frames.
+
+    Attributes:
+        normals: with the hand, 1 or -1, as the fourth; (count, 4).
+        tangents: with nothing as the fourth; (count, 4).
+    """
+
+    normals: np.ndarray
+    tangents: np.ndarray
+
+
+@dataclass(frozen=True)
+class FrameSet:
+    """A set of frames.
+
+    Attributes:
+        name: the catalogue's key, or a file's name.
+        count: how many.
+        seed: what the set was made with.
+        is_uniform: whether it covers all frames evenly.
+        chunk: start index -> float32 Frames, CHUNK of them or what is left.
+    """
+
+    name: str
+    count: int
+    seed: int
+    is_uniform: bool
+    chunk: Callable[[int], Frames]
+
+    @property
+    def starts(self) -> range:
+        """Where its chunks start."""
+        return range(0, self.count, CHUNK)
+
+    def chunks(self) -> Iterator[Frames]:
+        """Its frames, a chunk at a time."""
+        return map(self.chunk, self.starts)
+
+
+def rotations(count: int, seed: int) -> FrameSet:
+    """Rotations spread evenly by Haar's measure (K. Shoemake, Uniform Random Rotations, Graphics Gems III, 1992), of
+    either hand."""
+
+    def chunk(start: int) -> Frames:
+        random = np.random.default_rng([seed, start])
+        some = min(count - start, CHUNK)
+        u, (a, b) = random.random(some), 2 * np.pi * random.random((2, some))
+        low, high = np.sqrt(1 - u), np.sqrt(u)
+        q = Vec4(low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b))
+        frame = frame_of_quaternion(q, np.where(random.random(some) < 0.5, -1.0, 1.0))
+        return frames_from(np.stack(frame.normal, axis=1), np.stack([*frame.tangent, frame.hand], axis=1))
+
+    return FrameSet("rotations", count, seed, True, chunk)
+
+
+def frames_from(normals: np.ndarray, with_hands: np.ndarray) -> Frames:
+    """Frames of unit normals (count, 3) and of tangents with their bitangents' signs (count, 4), as glTF has them.
+
+    Tangents are brought to right angles with the normal; along it, any direction at right angles stands in.
+    """
+    across = with_hands[:, :3] - normals * np.sum(normals * with_hands[:, :3], axis=1, keepdims=True)
+    lost = np.linalg.norm(across, axis=1) < 1e-9
+    across[lost] = np.cross(normals[lost], np.eye(3)[np.argmin(abs(normals[lost]), axis=1)])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    hands = with_hands[:, 3:]
+    made = (np.concatenate(parts, axis=1).astype(np.float32) for parts in ((normals, hands), (across, 0 * hands)))
+    return Frames(*made)
+
+
+FRAME_SETS: Mapping[str, Callable[[int, int], FrameSet]] = MappingProxyType({"rotations": rotations})
+
+
+def frame_sets_named(names: str, count: int, seed: int) -> list[FrameSet]:
+    """The sets that comma-separated names stand for: those of the catalogue, or the vertices of mesh files.
+
+    Raises:
+        UsageError: an unknown name, or a file that cannot be read.
+    """
+    notes: dict[Path, tuple[str, ...]] = {}
+
+    def read(path: Path) -> Callable[[int, int], FrameSet]:
+        file = mesh_file(path)
+        notes[path] = file.notes
+        made = mesh_frames(path.name, [piece.baked() for piece in file.pieces])
+        return lambda *_: made
+
+    made = [make(count, seed) for make in pick_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]
+    say_notes(notes)
+    return made
+
+
+def mesh_frames(name: str, meshes: list[Mesh]) -> FrameSet:
+    """The frames of all vertices: authored tangents, or the direction in which u grows."""
+    normals, with_hands = (
+        np.concatenate(parts) for parts in zip(*((m.normals, tangents(m)) for m in meshes), strict=True)
+    )
+    whole = frames_from(normals, with_hands)
+
+    def chunk(start: int) -> Frames:
+        part = slice(start, start + CHUNK)
+        return Frames(whole.normals[part], whole.tangents[part])
+
+    return FrameSet(name, len(normals), 0, False, chunk)

@@ -1,0 +1,63 @@
+"""A set of normals in two halves: one to fit to, and one that is held out to measure on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import jax
+import numpy as np
+
+from ...normals.normal_sets import NormalSet, from_arrays
+from ...output.errors import UsageError
+from .expected_errors import Normals
+
+# A set is kept in memory, half of it in float64 for a while.
+MAX_COUNT = 2**24
+# The least of a half that says anything.
+LEAST = 128
+# Pixels a side of the squares that an image is halved by.
+TILE = 16
+
+
+@dataclass(frozen=True)
+class Halves:
+    """The normals to fit to, and the others as a set."""
+
+    fitting: Normals
+    held_out: NormalSet
+
+
+def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
+    """A set's covered normals in two halves, at random.
+
+    Args:
+        by_tiles: of an image whole squares go to one half. Neighbours are too alike to test what could learn each
+            normal by heart, as a look-up could; two numbers cannot, and then a half should miss nothing that is rare.
+
+    Raises:
+        UsageError: too many or too few of them, or all of them are one.
+    """
+    if chosen.count > MAX_COUNT:
+        raise UsageError(f"{chosen.name} has {chosen.count} normals; tune keeps them in memory: at most {MAX_COUNT}")
+    loaded = [load() for load in chosen.loads()]
+    n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: chosen.count], *loaded)
+    n, view = (np.stack([np.asarray(c) for c in planes], axis=1) for planes in (n, view))
+    group = _tiles(chosen) if by_tiles else np.arange(chosen.count)
+    random = np.random.default_rng(seed)
+    is_fitting = (random.permutation(group.max() + 1) % 2 == 0)[group]
+    fitting, others = (np.flatnonzero(covered & side) for side in (is_fitting, ~is_fitting))
+    if min(len(fitting), len(others)) < LEAST:
+        raise UsageError(f"{chosen.name}: {int(covered.sum())} normals are too few for two halves of {LEAST} or more")
+    if np.ptp(n[fitting], axis=0).max() == 0:
+        raise UsageError(f"{chosen.name}: every normal to fit to is the same; take a set of several directions")
+    held = from_arrays(chosen.name, chosen.title, n[others], view[others], np.ones(len(others), bool))
+    return Halves(Normals(n[fitting], view[fitting]), held)
+
+
+def _tiles(chosen: NormalSet) -> np.ndarray:
+    """For each pixel the number of its square; each normal is one of its own where there are no pixels."""
+    index = np.arange(chosen.count)
+    if not chosen.shape or min(chosen.shape) < 4 * TILE:
+        return index
+    width = chosen.shape[1]
+    return (index // width // TILE) * -(-width // TILE) + index % width // TILE

@@ -1,0 +1,1 @@
+"""How fast the quality table is measured, against NumPy."""

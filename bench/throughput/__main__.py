@@ -1,0 +1,7 @@
+"""`python -m normalbench.bench.throughput`."""
+
+import sys
+
+from .measure import main
+
+sys.exit(main())

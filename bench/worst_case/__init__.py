@@ -1,0 +1,1 @@
+"""Suprema: the worst normal of a codec, searched for in float64."""

@@ -1,0 +1,162 @@
+"""A codec in float64, which stands for the exact map: what the searches for worst cases and odd codes ask of it.
+
+Everything is done in blocks of one size, so that a codec is compiled once for all of it: three functions, from codes to
+normals, from normals to codes, and from normals to how far off they come back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property, reduce
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ...encodings.codec import Codec
+from ...encodings.vec import Vec2, Vec3, dot, select
+
+BLOCK = 2**15
+WAYS = 2**4  # that a climb tries from a normal
+TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
+
+
+def ahead(like) -> Vec3:
+    """Eye rays straight ahead for planes like these."""
+    return Vec3(jnp.zeros_like(like), jnp.zeros_like(like), jnp.full_like(like, -1.0))
+
+
+def _toward(v: Vec3) -> Vec3:
+    """At length 1; +z where it is zero or no number."""
+    length2 = dot(v, v)
+    is_direction = (length2 > 0.0) & jnp.isfinite(length2)
+    return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
+
+
+class ExactCodec:
+    """A codec in float64 on the whole sphere, or on z >= 0 alone.
+
+    Planes are NumPy arrays of shape (3, count) and codes of shape (components and sign bits, count), float64, of any
+    count up to BLOCK.
+    """
+
+    def __init__(self, codec: Codec, is_half: bool):
+        self.codec, self.is_half = codec, is_half
+        self.size = codec.encoding.components + codec.encoding.sign_bits
+        self._code = Vec2 if self.size == 2 else Vec3
+        self._normals = jax.jit(self._traced_normals)
+        self._chords = jax.jit(self._traced_chords)
+        self._codes = jax.jit(self._traced_codes)
+        self._stored = jax.jit(self._traced_stored)
+        self._corners = jax.jit(self._traced_corners)
+
+    @cached_property
+    def free(self) -> list[int]:
+        """The components that are numbers like any other: not signs, nor one of few values."""
+        return [i for i in range(self.size) if not self.codec.encoding.levels_of(i)]
+
+    def _traced_normals(self, code):
+        return jnp.stack(_toward(self.codec.encoding.decode(self._code(*code), ahead(code[0]))))
+
+    def _traced_codes(self, n):
+        return jnp.stack(self.codec.stored(Vec3(*n), ahead(n[0])))
+
+    def _traced_stored(self, code):
+        return jnp.stack(self.codec.store(self._code(*code)))
+
+    def _traced_chords(self, n):
+        n = Vec3(*n)
+        decoded = self.codec.round_trip(n, ahead(n.z))
+        length2 = dot(decoded, decoded)
+        is_direction = (length2 > 0.0) & jnp.isfinite(length2)
+        miss = n - decoded * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0)))
+        chords = select(is_direction, dot(miss, miss), 4.0)
+        return select(n.z >= 0.0, chords, -1.0) if self.is_half else chords
+
+    def _traced_corners(self, edges, numbers, others):
+        u, v = self.free
+
+        def at(across, along) -> list:
+            code = [jnp.broadcast_to(c, (len(across), len(along))) for c in others]
+            code[u], code[v] = (jnp.broadcast_to(c, code[0].shape) for c in (across[:, None], along[None, :]))
+            return code
+
+        corner, centre = at(*edges), at(*numbers)
+        n, decoded = (Vec3(*self._traced_normals(code)) for code in (corner, centre))
+        inside = (n.z >= 0.0) if self.is_half else True
+        is_precise = self.codec.encoding.is_precise
+        # Precise rounding takes the nearest code, whichever the corner's normal is encoded to.
+        back = corner if is_precise else self.codec.encoding.encode(n, ahead(n.z))
+        for mine, its in zip(corner, back, strict=True):
+            inside &= abs(mine - its) < TOLERANCE
+        rows, columns = n.z.shape
+        around = (Vec3(*(c[i : i + rows, j : j + columns] for c in decoded)) for i in (0, 1) for j in (0, 1))
+        chords = reduce(jnp.minimum if is_precise else jnp.maximum, (dot(n - d, n - d) for d in around))
+        return jnp.where(inside, chords, -1.0)
+
+    def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
+        """Squared chords from the corners of a plane's cells to the farthest of the four codes around, which each have
+        normals there; of precise rounding to the nearest, which all of them have.
+
+        Args:
+            edges: where cells end, in each of the two free components.
+            numbers: of those components, the ones around: one more of each.
+            others: the whole code, which gives the components that are not free.
+
+        Returns:
+            shape (edges of the one, of the other); -1 where the code of the corner is another, or outside the domain.
+        """
+        with jax.enable_x64(True):
+            return np.asarray(self._corners(edges, numbers, others))
+
+    def normals(self, code: np.ndarray) -> np.ndarray:
+        """The directions of codes, which need not be stored ones."""
+        return self._in_blocks(self._normals, code)
+
+    def stored(self, code: np.ndarray) -> np.ndarray:
+        """Numbers as they come back from the storage."""
+        return self._in_blocks(self._stored, code)
+
+    def codes(self, n: np.ndarray) -> np.ndarray:
+        """The codes of unit normals as they are stored."""
+        return self._in_blocks(self._codes, n)
+
+    def chords(self, n: np.ndarray) -> np.ndarray:
+        """The squared distance of unit normals from what they are decoded as, at length 1: 4 where that is no
+        direction, -1 for normals outside the domain."""
+        return self._in_blocks(self._chords, n)
+
+    def _in_blocks(self, function, planes: np.ndarray) -> np.ndarray:
+        count = planes.shape[1]
+        short = -count % BLOCK
+        padded = np.pad(planes, ((0, 0), (0, short)), mode="edge") if short else planes
+        with jax.enable_x64(True):
+            parts = [function(padded[:, start : start + BLOCK]) for start in range(0, count, BLOCK)]
+            return np.concatenate([np.asarray(part) for part in parts], axis=-1)[..., :count]
+
+    def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
+        """WAYS unit normals around each: four sizes all around, turned at each step; shape (3, WAYS, count)."""
+        x, y, z = n
+        # Two axes across n (J. Frisvad 2012, T. Duff et al. 2017).
+        sign = np.where(z < 0.0, -1.0, 1.0)
+        a = -1.0 / (sign + z)
+        b = x * y * a
+        u, v = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x]), np.stack([b, sign + y * y * a, -y])
+        way, turn = np.arange(WAYS)[:, None], 2.0 * np.pi * (0.6180339887 * step + 0.7548776662 * np.arange(len(sizes)))
+        reach, angle = sizes * 0.4 ** (way % 4), 2.0 * np.pi / WAYS * way
+        # cos(a + b), sin(a + b) from those of each way and of each lane, which are fewer.
+        along = reach * (np.cos(angle) * np.cos(turn) - np.sin(angle) * np.sin(turn))
+        aside = reach * (np.sin(angle) * np.cos(turn) + np.cos(angle) * np.sin(turn))
+        around = n[:, None] + along * u[:, None] + aside * v[:, None]
+        if self.is_half:
+            np.maximum(around[2], 0.0, out=around[2])
+        return around / np.linalg.norm(around, axis=0)
+
+    def angle_deg(self, n: np.ndarray) -> float:
+        """The angle of one normal, shape (3,), in degrees."""
+        return degrees(float(self.chords(n[:, None])[0]))
+
+
+def degrees(chord2: float) -> float:
+    """The angle of a chord of the unit sphere, from its square."""
+    return float(np.degrees(2 * np.arcsin(np.sqrt(max(chord2, 0.0)) / 2)))

@@ -1,0 +1,1 @@
+"""Codecs in shaders: encode into a target and decode from it."""

@@ -1,0 +1,207 @@
+"""Depths through a real render target or depth buffer: encoded by one fragment pass, read back by a second."""
+
+from __future__ import annotations
+
+import re
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from ...encodings import vec
+from ...encodings.depth_codec import DepthCodec
+from ...encodings.depth_encoding import DepthEncoding
+from ...encodings.position import Camera
+from ...encodings.storage import FORMATS, DepthStorage, Storage, store_depth
+from ...encodings.vec import jnp
+from ..gl.device import Device, read_pixels
+from ..gl.raw import DepthBuffer
+from ..gl.shader import ShaderError, read_shader
+from .codec_passes import storage_kind
+
+HOMES = ("packed", "channel", "attachment")
+RG32F = Storage("rg32f", "RG32F", "float", (32, 32), 0x8230)
+
+
+def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
+    """The macros that make `depth_code.glsl` speak of an encoding.
+
+    Raises:
+        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+    """
+    text = re.sub(r"\s+", " ", read_shader(encoding.glsl))
+    for verb, given in (("encode", "depth"), ("decode", "number")):
+        signature = f"float {encoding.name}_{verb}_depth(float {given}, float near, float far)"
+        if not re.search(rf"\bfloat {encoding.name}_{verb}_depth ?\(", text):
+            raise ShaderError(f"{encoding.glsl}: no function {signature}")
+    return {
+        "DEPTH_ENCODE": f"{encoding.name}_encode_depth",
+        "DEPTH_DECODE": f"{encoding.name}_decode_depth",
+        "DEPTH_SIGNED": int(encoding.signed),
+        "DEPTH_OWN_UNITS": int(encoding.own_units),
+        **vec.CONSTANTS,
+        **encoding.constants,
+    }
+
+
+def _storage_defines(storage: DepthStorage, shader_rounds: bool) -> dict[str, object]:
+    return {
+        "HOME": HOMES.index(storage.home),
+        "BITS": storage.bits,
+        "FIRST": sum(storage.format.bits) - storage.bits,
+        "SCALE": float(storage.scale),
+        "KIND": storage_kind(storage.format),
+        "ROUNDS": int(shader_rounds),
+        "OPEN": int(storage.is_open),
+    }
+
+
+@dataclass(frozen=True)
+class Rebuilt:
+    """What came back: `positions` (height, width, 3), and the `numbers` and `depths` that they are made of, (height,
+    width), float32; `depths` under the sign that was kept."""
+
+    positions: np.ndarray
+    numbers: np.ndarray
+    depths: np.ndarray
+
+
+class DepthPasses:
+    """A depth codec on a GL device; a context manager that releases what it holds there.
+
+    Attributes:
+        rounded_by: "device" where the storage's own conversion rounds to nearest, else "shader".
+
+    Raises:
+        ShaderError: the encoding's GLSL does not compile.
+        FormatError: the device cannot render to the storage's format.
+    """
+
+    def __init__(self, device: Device, codec: DepthCodec):
+        self._device, self._codec = device, codec
+        storage = codec.storage
+        self.rounded_by = "device" if rounds_to_nearest(device, storage) else "shader"
+        defines = {
+            **depth_defines(codec.encoding),
+            **_storage_defines(storage, self.rounded_by == "shader"),
+        }
+        names = {"DEPTH_ENCODING": codec.encoding.glsl}
+        with ExitStack() as stack:
+            self._encode = device.owned(stack, device.fragment_pass("depth_encode.frag", defines, names))
+            self._decode = device.owned(stack, device.fragment_pass("depth_decode.frag", defines, names))
+            self._stack = stack.pop_all()
+
+    def __enter__(self) -> DepthPasses:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def round_trip(self, points: np.ndarray, camera: Camera, by_inverse_projection: bool) -> Rebuilt:
+        """Points on the screen through the storage.
+
+        Args:
+            points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
+            by_inverse_projection: the way to the position; only where the number is a depth buffer's.
+        """
+        device, size = self._device, points.shape[1::-1]
+        given = _seen(camera, self._codec.encoding) | {"by_inverse_projection": by_inverse_projection}
+        for program in (self._encode.program, self._decode.program):
+            _set(program, given)
+        with ExitStack() as stack:
+            source = device.owned(stack, device.upload(points))
+            texels = _stored(device, stack, self._codec.storage, self._encode, source)
+            results = [device.owned(stack, device.target(size, kind)) for kind in (FORMATS["rgba32f"], RG32F)]
+            device.render(self._decode, results, points=source, texels=texels)
+            positions, stored = (read_pixels(result) for result in results)
+        return Rebuilt(positions[..., :3], stored[..., 0], stored[..., 1])
+
+
+def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
+    """The camera as uniforms."""
+    projection = encoding.projection
+    return {
+        "rays": camera.rays,
+        "range": (camera.near, camera.far),
+        "clip": projection.clip if projection else (1.0, 0.0),
+        "clip_to_view": tuple(camera.clip_to_view(projection).T.ravel()),
+    }
+
+
+def _set(program: Any, values: dict[str, Any]) -> None:
+    """Uniforms by name; those the compiler dropped are left out."""
+    for name, value in values.items():
+        if name in program:
+            program[name].value = value
+
+
+def _stored(
+    device: Device, stack: ExitStack, storage: DepthStorage, passed: moderngl.VertexArray, source: moderngl.Texture
+) -> moderngl.Texture:
+    """What a pass writes into a storage, as a texture; released with the stack."""
+    if storage.home != "attachment":
+        target = device.owned(stack, device.target(source.size, storage.format))
+        device.render(passed, [target], points=source)
+        return target
+    buffer = DepthBuffer(device.context, source.size, 1, storage.format.internal_format)
+    stack.callback(buffer.release)
+    # A framebuffer of moderngl's has a colour target; nothing is written there.
+    unused = device.owned(stack, device.target(source.size, FORMATS["r8"]))
+    device.render(passed, [unused], buffer, points=source)
+    return buffer.texture
+
+
+@cache
+def rounds_to_nearest(device: Device, storage: DepthStorage) -> bool:
+    """Whether the device's own conversion into a storage is the emulation's.
+
+    Raises:
+        FormatError: the device cannot render to it.
+    """
+    if storage.home == "packed":
+        return True  # bytes are whole numbers of the format's steps
+    if storage.home == "channel":
+        return device.native_rounding(storage.format) == "nearest"
+    # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.
+    numbers = np.linspace(0, 1, 4086, dtype=np.float32)
+    expected = np.asarray(store_depth(jnp.asarray(numbers), storage))
+    return np.array_equal(np.rint(expected * storage.scale), np.rint(through(device, storage, numbers) * storage.scale))
+
+
+def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.ndarray:
+    """float32 numbers of shape (count,) as they are into a target's first channel or a depth buffer, and back.
+
+    Raises:
+        FormatError: the device cannot render to it.
+    """
+    points = np.zeros((1, len(numbers), 3), np.float32)
+    points[0, :, 2] = numbers
+    with ExitStack() as stack:
+        source = device.owned(stack, device.upload(points))
+        home = {"HOME": HOMES.index(storage.home)}
+        write = device.owned(stack, device.fragment_pass("depth_as_it_is.frag", home))
+        copy = device.owned(stack, device.fragment_pass("copy.frag"))
+        result = device.owned(stack, device.target(source.size, FORMATS["rgba32f"]))
+        device.render(copy, [result], source=_stored(device, stack, storage, write, source))
+        return read_pixels(result)[0, :, 0].copy()
+
+
+def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Numbers of depths, depths of numbers, and positions, by a compute shader and without storage.
+
+    Args:
+        points: place on the screen, depth, number; float32 of shape (count, 4).
+
+    Returns:
+        numbers and depths, (count, 2); positions of the numbers by the inverse projection, and of the depths by the
+        eye's ray, (count, 3).
+    """
+    with ExitStack() as stack:
+        names = {"DEPTH_ENCODING": encoding.glsl}
+        compute: Any = device.owned(stack, device.compute_pass("depth_parity.comp", depth_defines(encoding), names))
+        _set(compute, _seen(camera, encoding))
+        values, projected, along_rays = device.computed(compute, [points], 3)
+    return values[:, :2], projected[:, :3], along_rays[:, :3]

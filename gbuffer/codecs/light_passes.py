@@ -1,0 +1,170 @@
+"""Light through a real light buffer: added one by one, as the light passes of a renderer add it."""
+
+from __future__ import annotations
+
+import re
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from ...encodings import chromaticity, vec
+from ...encodings.light_encoding import LightEncoding
+from ...encodings.storage import STORAGES, Storage
+from ..gl.device import Device, bind, read_pixels
+from ..gl.shader import ShaderError, read_shader
+
+ADD = (moderngl.ONE, moderngl.ONE)
+# How the light buffer's code blends; one that is read is overwritten.
+BLEND_OF = {"add": ADD, "multiply": (moderngl.DST_COLOR, moderngl.ZERO), "read": None}
+
+
+def light_defines(encoding: LightEncoding) -> dict[str, object]:
+    """The macros that make `light_code.glsl` speak of an encoding.
+
+    Raises:
+        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+    """
+    # Over another range it has another name, and the same functions.
+    prefix, text = encoding.glsl.stem, re.sub(r"\s+", " ", read_shader(encoding.glsl))
+    for verb, given in (("encode", "vec4 light"), ("decode", "vec4 e")):
+        if not re.search(rf"\bvec4 {prefix}_{verb} ?\( ?vec4\b", text):
+            raise ShaderError(f"{encoding.glsl}: no function vec4 {prefix}_{verb}({given})")
+    return {
+        "LIGHT_ENCODE": f"{prefix}_encode",
+        "LIGHT_DECODE": f"{prefix}_decode",
+        "LIGHT_READS": int(encoding.blend == "read"),
+        **vec.CONSTANTS,
+        **chromaticity.CONSTANTS,
+        **encoding.constants,
+    }
+
+
+@dataclass(frozen=True)
+class Sum:
+    """What a light buffer holds: `light`, and the `texels` it is the code of; float32 arrays of shape (width, 4)."""
+
+    light: np.ndarray
+    texels: np.ndarray
+
+
+class LightPasses:
+    """A light encoding on a GL device; a context manager that releases what it holds there.
+
+    Raises:
+        ShaderError: the encoding's GLSL does not compile.
+    """
+
+    def __init__(self, device: Device, encoding: LightEncoding):
+        self._device, self._encoding = device, encoding
+        defines, names = light_defines(encoding), {"LIGHT_ENCODING": encoding.glsl}
+        with ExitStack() as stack:
+            self._add = device.owned(stack, device.fragment_pass("add_light.frag", defines, names))
+            self._decode = device.owned(stack, device.fragment_pass("decode_light.frag", defines, names))
+            self._stack = stack.pop_all()
+
+    def __enter__(self) -> LightPasses:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def accumulate(self, lights: np.ndarray) -> Sum:
+        """Lights, float32 of shape (count, width, 4), added one by one in their order; each column is a pixel.
+
+        Raises:
+            FormatError: the device cannot render to the encoding's format.
+        """
+        device, size = self._device, (lights.shape[1], 1)
+        with ExitStack() as stack:
+            table = device.owned(stack, device.upload(lights))
+            texels = device.owned(stack, self._summed(table, size, len(lights), stack))
+            results = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
+            device.render(self._decode, results, texels=texels)
+            light, kept = (read_pixels(result)[0] for result in results)
+        return Sum(light, kept)
+
+    def _summed(self, table: moderngl.Texture, size: tuple[int, int], count: int, stack: ExitStack):
+        device, none = self._device, self._encoding.no_light
+        copies = 2 if self._encoding.blend == "read" else 1
+        textures = [device.owned(stack, device.target(size, self._encoding.storage)) for _ in range(copies)]
+        targets = [device.owned(stack, device.framebuffer([texture])) for texture in textures]
+        for target in targets:
+            target.clear(none, none, none, none)
+        device.blend(BLEND_OF[self._encoding.blend])
+        for i in range(count):
+            targets[(i + 1) % copies].use()
+            bind(self._add.program, {"lights": table, "light_before": textures[i % copies]})
+            self._add.program["light"] = i
+            self._add.render(moderngl.TRIANGLES, vertices=3)
+        device.idle.use()
+        return textures[count % copies]
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """An image that was kept in a light encoding at several samples a pixel, of shape (height, width, 3).
+
+    Attributes:
+        by_code: as the hardware resolves it, which averages texels.
+        by_light: each sample decoded first.
+    """
+
+    by_code: np.ndarray
+    by_light: np.ndarray
+
+
+def resolved(device: Device, encoding: LightEncoding, colours: moderngl.Texture, samples: int) -> Resolved:
+    """Linear light, RGBA32F of several samples a pixel, kept in a light encoding and resolved; row 0 on top.
+
+    Raises:
+        FormatError: the device cannot render to the encoding's format.
+    """
+    defines, names = light_defines(encoding) | {"SAMPLES": samples}, {"LIGHT_ENCODING": encoding.glsl}
+    with ExitStack() as stack:
+
+        def target(storage: Storage, samples: int = 1) -> moderngl.Texture:
+            return device.owned(stack, device.target(colours.size, storage, samples))
+
+        def passed(shader: str) -> moderngl.VertexArray:
+            return device.owned(stack, device.fragment_pass(shader, defines, names))
+
+        kept, texels = target(encoding.storage, samples), target(encoding.storage)
+        device.render(passed("encode_samples.frag"), [kept], colours=colours)
+        device.resolve(kept, texels)
+        results = [target(STORAGES["rgba32f"]) for _ in range(3)]
+        device.render(passed("decode_light.frag"), results[:2], texels=texels)
+        device.render(passed("resolve_light.frag"), results[2:], samples=kept)
+        by_code, _, by_light = (read_pixels(result)[::-1, :, :3] for result in results)
+    return Resolved(by_code, by_light)
+
+
+def read_samples(device: Device, colours: moderngl.Texture, samples: int) -> np.ndarray:
+    """Every sample of an RGBA32F texture: float32 of shape (samples, height, width, 3), row 0 on top."""
+    with ExitStack() as stack:
+        one = device.owned(stack, device.fragment_pass("one_sample.frag", {"SAMPLES": samples}))
+        result = device.owned(stack, device.target(colours.size, STORAGES["rgba32f"]))
+        found = []
+        for which in range(samples):
+            one.program["which"] = which
+            device.render(one, [result], colours=colours)
+            found.append(read_pixels(result)[::-1, :, :3])
+    return np.stack(found)
+
+
+def exact_light(device: Device, encoding: LightEncoding, lights, given) -> tuple[np.ndarray, np.ndarray]:
+    """Texels of lights, and light of given texels, by a compute shader and without storage.
+
+    Args:
+        lights, given: float32 arrays of shape (count, 4).
+
+    Returns:
+        texels and decoded light, float32 arrays of shape (count, 4).
+    """
+    names = {"LIGHT_ENCODING": encoding.glsl}
+    with ExitStack() as stack:
+        compute: Any = device.owned(stack, device.compute_pass("light_parity.comp", light_defines(encoding), names))
+        texels, decoded = device.computed(compute, [lights, given], 2)
+    return texels, decoded

@@ -1,0 +1,1 @@
+"""Shader macros and kernels as text, which need no OpenGL."""

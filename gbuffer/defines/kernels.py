@@ -1,0 +1,91 @@
+"""Single operations wrapped into shaders that a compiler is asked about or a clock is held to: what they cost.
+
+Each is measured less the empty operation that moves the same numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ...encodings.encoding import Encoding
+from ...encodings.storage import STORAGES
+from ..codecs.codec_passes import encoding_defines
+from ..gl.shader import SHADERS, Source
+
+# The shaders by what they run as; fragment first, for that is where encoders live.
+STAGES: Mapping[str, str] = MappingProxyType({"fragment": "kernel.frag", "compute": "kernel.comp"})
+# Bindings below are left to the look-up tables.
+PLANES, GROUP = 8, 64
+
+
+@dataclass(frozen=True, eq=False)
+class Operation:
+    """What stands between loading numbers and storing them.
+
+    Attributes:
+        glsl: the file that defines `operation`.
+        given, beside, made: how many numbers go in, go in beside them, and come out; each 2 to 4.
+        own_defines, own_names: what that file needs, as `Source` takes it.
+        tables: makes its look-up tables by sampler name, as `Encoding.tables`.
+        is_portable: whether its SPIR-V says what it costs; what a driver has to unroll and fold first does not.
+    """
+
+    glsl: str
+    given: int
+    beside: int
+    made: int
+    own_defines: Mapping[str, object] = field(default_factory=dict)
+    own_names: Mapping[str, Path] = field(default_factory=dict)
+    tables: Callable[[], Mapping[str, Any]] = dict
+    is_portable: bool = True
+
+    @property
+    def empty(self) -> Operation:
+        """The operation that moves as many numbers and does nothing."""
+        return Operation("kernel_empty.glsl", self.given, self.beside, self.made)
+
+    @property
+    def defines(self) -> dict[str, object]:
+        """The macros of a kernel around it."""
+        sizes = {"GIVEN": self.given, "BESIDE": self.beside, "MADE": self.made}
+        taken = ("xyzw"[: self.given] * 2)[: self.made]
+        vectors = {name: f"vec{size}" for name, size in sizes.items()}
+        return {"PLANES": PLANES, "GROUP": GROUP, "TAKEN": taken, **vectors, **self.own_defines}
+
+    @property
+    def names(self) -> dict[str, Path]:
+        """The files that a kernel includes by name."""
+        return {**self.own_names, "OPERATION": SHADERS / self.glsl}
+
+    def source(self, shader: str) -> Source:
+        """The operation in one of the kernels. Raises ShaderError where a file cannot be read."""
+        return Source(shader, self.defines, self.names)
+
+
+def encode(encoding: Encoding) -> Operation:
+    """A normal and the view-space position beside it to a code, for 8-bit UNORM if it is rounded precisely.
+
+    Raises:
+        ShaderError: as `encoding_defines`.
+    """
+    defines, *others = _read(encoding)
+    scale = {"KERNEL_SCALE": float(STORAGES["rgba8"].scale(0))}
+    portable = not encoding.is_precise
+    return Operation("kernel_encode.glsl", 3, 3, _size(encoding), defines | scale, *others, is_portable=portable)
+
+
+def decode(encoding: Encoding) -> Operation:
+    """A code and the view-space position beside it to a normal. Raises ShaderError as `encoding_defines`."""
+    return Operation("kernel_decode.glsl", _size(encoding), 3, 3, *_read(encoding))
+
+
+def _size(encoding: Encoding) -> int:
+    return encoding.components + encoding.sign_bits
+
+
+def _read(encoding: Encoding) -> tuple[Any, ...]:
+    return encoding_defines(encoding), {"ENCODING": encoding.glsl}, encoding.tables

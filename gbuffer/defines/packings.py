@@ -1,0 +1,155 @@
+"""What storages make of a code's numbers, and layouts of a depth: operations whose cost is asked for by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Protocol
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codec import Codec
+from ...encodings.storage import STORAGES, Storage
+from ..codecs.codec_passes import storage_defines
+from ..codecs.depth_passes import depth_defines
+from ..frame.frame import layout_defines
+from ..layouts.layout import COMPONENTS, Layout, Target
+from .kernels import Operation
+from .materials import CONSTANTS
+
+# Of the depths that are packed; what they are changes no count.
+NEAR, FAR = 0.1, 1000.0
+# Of a channel that words are laid across.
+BYTE = 8
+
+
+class Packing(Protocol):
+    """Numbers to a texel and back.
+
+    Attributes:
+        name: what a reader calls it.
+        storage: the storage whose own it is; None where codecs are not measured in it.
+    """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def storage(self) -> Storage | None: ...
+
+    def pack(self) -> Operation:
+        """The numbers to a texel; beside them a depth."""
+        ...
+
+    def unpack(self) -> Operation:
+        """And back."""
+        ...
+
+
+@dataclass(frozen=True)
+class StoragePacking:
+    """So many of a code's numbers, 2 or 3, in the first channels of a storage. Rounding is left to the device, as it is
+    wherever the device rounds as asked."""
+
+    storage: Storage
+    numbers: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.storage.name} {':'.join(map(str, self.storage.bits[: self.numbers]))}"
+
+    @property
+    def channels(self) -> int:
+        """The channels of the target that hold something."""
+        return -(-sum(self.storage.bits[: self.numbers]) // BYTE) if self.storage.is_packed else self.numbers
+
+    def pack(self) -> Operation:
+        return Operation("kernel_store.glsl", self.numbers, 3, self.channels, self._defines(), is_portable=False)
+
+    def unpack(self) -> Operation:
+        return Operation("kernel_load.glsl", self.channels, 3, self.numbers, self._defines(), is_portable=False)
+
+    def _defines(self) -> dict[str, object]:
+        return storage_defines(self.storage, ("nearest",) * self.storage.channels, False)
+
+
+@dataclass(frozen=True)
+class WordPacking:
+    """Words of a layout across the channels of a target: numbers of a code, or a depth.
+
+    Attributes:
+        name: what a reader calls it.
+        target: the format and the words that fill it.
+        numbers: how many of a code's numbers; 0 for a depth.
+        signed: whether the depth carries the sign of the normal's z.
+    """
+
+    name: str
+    target: Target
+    numbers: int = 0
+    signed: bool = False
+
+    @property
+    def storage(self) -> None:
+        return None
+
+    @property
+    def channels(self) -> int:
+        """The channels that hold something: at least 2, as GLSL has no vectors of one."""
+        words, size = self._layout.words, self.target.storage.bits[0]
+        last = (((w.first + w.bits - 1) // size if w.bits else w.first) for w in words if w.target == 0)
+        return max(1, *last) + 1
+
+    @cached_property
+    def _layout(self) -> Layout:
+        suits = (e for e in ENCODINGS.values() if e.components == self.numbers or not self.numbers)
+        encoding = next(e for e in suits if bool(e.sign_bits) == self.signed)
+        # A depth needs a normal beside it to be a layout; that lies in a second target, which no kernel writes.
+        beside = Target("rgba16f", " ".join(f"normal.{axis}" for axis in "xyz"[: encoding.components]))
+        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding.name, "")
+
+    def pack(self) -> Operation:
+        return Operation("kernel_pack.glsl", max(self.numbers, 2), 3, self.channels, *self._read(), is_portable=False)
+
+    def unpack(self) -> Operation:
+        made = max(self.numbers, 2)
+        return Operation("kernel_unpack.glsl", self.channels, 3, made, *self._read(), is_portable=False)
+
+    def _read(self) -> tuple[Any, ...]:
+        layout = self._layout
+        first = 0 if self.numbers else COMPONENTS.index("depth")
+        rounds = (0,) * len(layout.targets)
+        needed = {"LOG2_POWER_MAX": CONSTANTS["LOG2_POWER_MAX"], "SIGN_BITS": 0, "FIRST_NUMBER": first}
+        needed |= {"KERNEL_NEAR": NEAR, "KERNEL_FAR": FAR}
+        depth = layout.depth_encoding
+        defines = {**needed, **depth_defines(depth), **layout_defines(layout, rounds)}
+        return defines, {"DEPTH_ENCODING": depth.glsl}
+
+
+def _of(name: str) -> tuple[Packing, ...]:
+    storage = STORAGES[name]
+    return tuple(StoragePacking(storage, numbers) for numbers in (2, 3) if numbers <= storage.channels)
+
+
+# What `--storage` may name: a storage for two numbers and for three, some by their bits alone, and words of layouts.
+PACKINGS: Mapping[str, tuple[Packing, ...]] = MappingProxyType(
+    {name: _of(name) for name in STORAGES}
+    | {
+        "12:12": _of("rgb8_12_12"),
+        "16:16": _of("rgba8_16_16"),
+        "11:10:11": _of("rgba8_11_10_11"),
+        "11:11": (WordPacking("rgba8 11:11", Target("rgba8", "normal.x:11 normal.y:11"), 2),),
+        "depth16": (WordPacking("rgba8 depth 8:8", Target("rgba8", "depth:16")),),
+        "depth24": (WordPacking("rgba8 depth 8:8:8", Target("rgba8", "depth:24")),),
+        "depth16_sign": (WordPacking("rgba8 signed depth 8:8", Target("rgba8", "depth:16"), signed=True),),
+        "depth24_sign": (WordPacking("rgba8 signed depth 8:8:8", Target("rgba8", "depth:24"), signed=True),),
+    }
+)
+# What a code's sign bit costs: a depth that carries it, less one that does not.
+SIGN = (PACKINGS["depth24_sign"][0], PACKINGS["depth24"][0])
+
+
+def packing_of(codec: Codec) -> Packing:
+    """The packing that a codec's numbers, but for sign bits, go through."""
+    return StoragePacking(codec.storage, max(codec.encoding.components, 2))

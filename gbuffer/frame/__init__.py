@@ -1,0 +1,1 @@
+"""A frame's configuration and its resources."""

@@ -1,0 +1,187 @@
+"""A scene on the device: meshes, instances, materials, lights, and lists of what each pass draws."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from ..gl.device import Device
+from ..scenes.mesh import Mesh, tangents, wound
+from ..scenes.scene import KINDS, LIGHT_KINDS, Light, Scene
+
+INSTANCES, ORDER, LIGHTS, MATERIALS = 0, 1, 2, 3
+LAYERS = 3
+# Instances are told apart by 1 to 255, so that eight bits hold them.
+IDENTITIES = 255
+
+
+@dataclass(frozen=True)
+class Draw:
+    """Some instances of one mesh, `count` entries of the order from `first` on."""
+
+    mesh: int
+    first: int
+    count: int
+
+
+class SceneBuffers:
+    """What a scene's frames are drawn from, released with `stack`.
+
+    Attributes:
+        draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
+            (closed) and "thin casters" (two-sided), and for each light's index the opaque instances within its reach.
+        lights, first_lamp: the lights as shaders number them, and the first that is no sun.
+        meshes: vertex and index buffers.
+        two_sided: whether the back of each mesh is drawn as well.
+        bumps: the normal map.
+    """
+
+    def __init__(self, device: Device, stack: ExitStack, scene: Scene):
+        self._device, self._stack, self._scene = device, stack, scene
+        self.view = scene.view.matrix()
+        self.two_sided = [part.two_sided for part in scene.parts]
+        self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
+        self._material = np.concatenate([part.materials for part in scene.parts])
+        self._transparent = np.array([m.alpha < 1 for m in scene.materials])[self._material]
+        self.draws: dict[str | int, list[Draw]] = {}
+        # The shaders find the sun in the first place.
+        self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
+        self.first_lamp = int(scene.sun is not None)
+        order = self._order()
+        tables = {INSTANCES: self._instances(), ORDER: order, LIGHTS: self._lights(), MATERIALS: self._materials()}
+        self._tables = {binding: self._buffer(data) for binding, data in tables.items()}
+        self.bumps = device.owned(stack, _bump_texture(device))
+
+    def bind(self) -> None:
+        """Make the tables those that shaders see."""
+        for binding, buffer in self._tables.items():
+            buffer.bind_to_storage_buffer(binding)
+
+    def _buffer(self, data: np.ndarray) -> moderngl.Buffer:
+        # An empty list is a buffer all the same.
+        return self._device.owned(self._stack, self._device.context.buffer(data.tobytes() or bytes(16)))
+
+    def _upload_mesh(self, mesh: Mesh) -> tuple[moderngl.Buffer, moderngl.Buffer]:
+        vertices = np.concatenate([mesh.positions, mesh.normals, tangents(mesh), mesh.uv], axis=1)
+        return self._buffer(vertices.astype(np.float32)), self._buffer(wound(mesh).astype(np.int32))
+
+    def _instances(self) -> np.ndarray:
+        models = np.concatenate([part.models for part in self._scene.parts])
+        count = len(models)
+        table = np.zeros(count, [("model_view", np.float32, (4, 4)), ("numbers", np.int32, 4)])
+        # GLSL's matrices go column by column.
+        table["model_view"] = np.swapaxes(self.view @ models, 1, 2)
+        layers = np.where(self._transparent, (np.cumsum(self._transparent) - 1) % LAYERS + 1, 0)
+        table["numbers"][:, 0], table["numbers"][:, 1] = self._material, layers
+        table["numbers"][:, 2] = np.arange(count) % IDENTITIES + 1
+        return table
+
+    def _materials(self) -> np.ndarray:
+        rows = [
+            [*m.albedo, m.alpha, *m.specular, m.power, *m.emissive, KINDS.index(m.kind), m.bump, m.bump_repeat, 0, 0]
+            for m in self._scene.materials
+        ]
+        return np.array(rows, np.float32)
+
+    def _lights(self) -> np.ndarray:
+        return np.array([self._light(light) for light in self.lights], np.float32).reshape(-1, 16)
+
+    def _light(self, light: Light) -> list[float]:
+        position = self.view[:3, :3] @ np.array(light.position) + self.view[:3, 3]
+        direction = self.view[:3, :3] @ np.array(light.direction)
+        outer, inner = np.cos(np.radians([light.outer, light.inner]))
+        kind = LIGHT_KINDS.index(light.kind)
+        return [*position, light.radius, *light.colour, kind, *direction, outer, inner, 0, 0, 0]
+
+    def _order(self) -> np.ndarray:
+        """Fills `draws` and gives the instances that they list."""
+        parts, transparent = self._scene.parts, self._transparent
+        mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
+        special = np.array([m.kind != KINDS[0] for m in self._scene.materials])[self._material]
+        casts, thin = (
+            np.repeat([getattr(part, field) for part in parts], [len(part.models) for part in parts])
+            for field in ("casts", "two_sided")
+        )
+        chosen: dict[str | int, np.ndarray] = {
+            "general": ~transparent & ~special,
+            "special": ~transparent & special,
+            "casters": ~transparent & casts & ~thin,
+            "thin casters": ~transparent & casts & thin,
+        }
+        centres, radii = bounds(self._scene)
+        for index, light in enumerate(self.lights):
+            away = np.linalg.norm(centres - np.array(light.position), axis=1)
+            chosen[index] = ~transparent & ((light.kind == "sun") | (away < radii + light.radius))
+        order: list[int] = []
+        for name, mask in chosen.items():
+            self.draws[name] = _listed(np.flatnonzero(mask), mesh, order)
+        depth = centres @ self.view[2, :3] + self.view[2, 3]
+        glass = np.flatnonzero(transparent)
+        glass = glass[np.argsort(depth[glass], kind="stable")]
+        self.draws["transparent"] = []
+        for instance in glass:
+            self.draws["transparent"] += _listed(np.array([instance]), mesh, order)
+        # Special materials first: where a general surface meets one in one depth, both geometry passes keep that one.
+        self.draws["opaque"] = self.draws["special"] + self.draws["general"]
+        return np.array(order, np.int32)
+
+
+def _listed(instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:
+    """Draws of instances, one for each mesh they are of, appended to the order."""
+    draws = []
+    for index in np.unique(mesh[instances]):
+        of_mesh = instances[mesh[instances] == index]
+        draws.append(Draw(int(index), len(order), len(of_mesh)))
+        order += of_mesh.tolist()
+    return draws
+
+
+def bounds(scene: Scene, casters_only: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """World-space centres (instances, 3) and radii (instances,) of balls around every instance."""
+    centres, radii = [], []
+    for part in scene.parts:
+        if casters_only and not part.casts:
+            continue
+        low, high = part.mesh.positions.min(axis=0), part.mesh.positions.max(axis=0)
+        middle = (low + high) / 2
+        radius = np.linalg.norm(part.mesh.positions - middle, axis=1).max()
+        centres.append(part.models[:, :3, :3] @ middle + part.models[:, :3, 3])
+        radii.append(radius * np.cbrt(np.abs(np.linalg.det(part.models[:, :3, :3]))))
+    return np.concatenate(centres), np.concatenate(radii)
+
+
+def sun_matrix(scene: Scene) -> np.ndarray:
+    """World space to the shadow map, (4, 4): x, y and depth along the sun's rays, each from 0 to 1 around the casters.
+
+    Raises:
+        ValueError: nothing casts a shadow, or there is no sun.
+    """
+    if scene.sun is None or not any(part.casts for part in scene.parts):
+        raise ValueError("no sun, or nothing that casts a shadow")
+    z = np.array(scene.sun.direction)
+    x = np.cross(z, np.eye(3)[np.argmin(abs(z))])
+    x = x / np.linalg.norm(x)
+    axes = np.stack([x, np.cross(x, z), z])
+    centres, radii = bounds(scene, casters_only=True)
+    along = centres @ axes.T
+    low, high = (along - radii[:, None]).min(axis=0), (along + radii[:, None]).max(axis=0)
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = axes / (high - low)[:, None], -low / (high - low)
+    return matrix
+
+
+def _bump_texture(device: Device, size: int = 256) -> moderngl.Texture:
+    """A normal map, tiling: round pits, as slopes along u and v up to about 0.7."""
+    u, v = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size)
+    cells = 4
+    x, y = (u * cells) % 1 - 0.5, (v * cells) % 1 - 0.5
+    radius = np.hypot(x, y)
+    ring = np.where(radius < 0.42, np.sin(np.pi * radius / 0.42), 0.0)
+    slopes = 0.7 * np.stack([x, y], axis=-1) / np.maximum(radius, 1e-9)[..., None] * ring[..., None]
+    texture = device.context.texture((size, size), 2, slopes.astype(np.float16).tobytes(), dtype="f2")
+    texture.build_mipmaps()
+    texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+    return texture

@@ -1,0 +1,1 @@
+"""OpenGL: the device, shaders and raw calls. moderngl is imported here alone."""

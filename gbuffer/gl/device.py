@@ -1,0 +1,295 @@
+"""The GL device: a headless context, what it is, and how it rounds."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+import moderngl
+import numpy as np
+
+from ...encodings.storage import STORAGES, Storage, store_texel
+from ...encodings.vec import jnp
+from .raw import DepthBuffer, samples_of
+from .shader import ShaderError, Source
+
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
+DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
+# How a device's own conversion may round.
+NATIVE_ROUNDINGS = ("nearest", "truncate")
+# More than any one frame uses: the one that was asked for longest ago is released.
+KEPT_PROGRAMS = 64
+INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
+
+
+class _Releasable(Protocol):
+    def release(self) -> None: ...
+
+
+Owned = TypeVar("Owned", bound=_Releasable)
+
+
+class NoDeviceError(Exception):
+    """This machine has no usable GL driver."""
+
+
+def _create_context() -> moderngl.Context:
+    # EGL needs no display; only Linux has it. A missing library is reported as a plain Exception by glcontext.
+    options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    try:
+        return moderngl.create_context(standalone=True, require=430, **options)
+    except Exception as error:
+        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL}") from error
+
+
+class FormatError(Exception):
+    """The device cannot render to a format."""
+
+
+class Device:
+    """A GL context and the few operations the passes are made of.
+
+    Raises:
+        NoDeviceError: there is no GL 4.3 driver here; the message says what to install.
+    """
+
+    def __init__(self):
+        self.context = _create_context()
+        self.renderer = str(self.context.info["GL_RENDERER"])
+        self.version = str(self.context.info["GL_VERSION"])
+        self.is_software = any(word in self.renderer.lower() for word in SOFTWARE)
+        self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
+        info = self.context.info
+        self.max_targets = int(min(info["GL_MAX_DRAW_BUFFERS"], info["GL_MAX_COLOR_ATTACHMENTS"]))
+        samples = ("GL_MAX_SAMPLES", "GL_MAX_COLOR_TEXTURE_SAMPLES", "GL_MAX_DEPTH_TEXTURE_SAMPLES")
+        self.max_samples = int(min(info[name] for name in samples))
+        self._programs: dict[tuple[str, str], moderngl.Program] = {}
+        self._native: dict[str, str] = {}
+        # In use while no pass is: a framebuffer that is released while in use leaves an error for the next one.
+        self.idle = self.context.simple_framebuffer((1, 1))
+        # GL dithers by default, where it dithers at all: what is stored would not be what was written.
+        self.context.disable_direct(DITHER)
+        # sRGB targets are written and blended in linear light; others take no notice.
+        self.context.enable_direct(FRAMEBUFFER_SRGB)
+
+    def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+        """A program that runs a fragment shader over a whole target, as a vertex array to render.
+
+        Raises:
+            ShaderError: it does not compile; the message names the file and the line.
+        """
+        return self.context.vertex_array(self.program("fullscreen.vert", path, defines, names), [])
+
+    def program(
+        self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object] | None = None, names=None
+    ):
+        """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
+        return self._compiled(Source(vertex, defines, names), Source(fragment, defines, names))
+
+    def shared_program(self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object], names=None):
+        """A program that the device keeps for the next who asks for the same; not to be released."""
+        sources = Source(vertex, defines, names), Source(fragment, defines, names)
+        key = (sources[0].text, sources[1].text)
+        if key not in self._programs:
+            if len(self._programs) >= KEPT_PROGRAMS:
+                self._programs.pop(next(iter(self._programs))).release()
+            self._programs[key] = self._compiled(*sources)
+        self._programs[key] = self._programs.pop(key)
+        return self._programs[key]
+
+    def _compiled(self, first: Source, second: Source) -> moderngl.Program:
+        try:
+            return self.context.program(vertex_shader=first.text, fragment_shader=second.text)
+        except moderngl.Error as error:
+            # A complaint about a pair does not always say which of the two it is about: the vertex shader alone tells.
+            with explained(first):
+                self.context.program(vertex_shader=first.text).release()
+            raise ShaderError(second.explain(str(error))) from error
+
+    def compute_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+        """A compute shader. Raises ShaderError as `fragment_pass` does."""
+        source = Source(path, defines, names)
+        with explained(source):
+            return self.context.compute_shader(source.text)
+
+    def computed(self, compute: moderngl.ComputeShader, inputs: Sequence[np.ndarray], outputs: int) -> list[np.ndarray]:
+        """What a compute shader, 64 to a group, fills of arrays like those that it is given, of shape (count, 4)."""
+        count = len(inputs[0])
+        with ExitStack() as stack:
+            given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
+            made = [self.context.buffer(reserve=count * 16) for _ in range(outputs)]
+            for binding, buffer in enumerate([*given, *made]):
+                self.owned(stack, buffer).bind_to_storage_buffer(binding)
+            compute.run(group_x=(count + 63) // 64)
+            return [np.frombuffer(buffer.read(), np.float32).reshape(count, 4) for buffer in made]
+
+    def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
+        """A texture of a storage format, to render to and to fetch from."""
+        dtype = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
+        texture = self.context.texture(
+            size,
+            storage.channels,
+            samples=samples if samples > 1 else 0,
+            dtype=dtype.get(storage.bits[0], "f1"),
+            internal_format=storage.internal_format,
+        )
+        if samples == 1:
+            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def given_samples(self, asked: int) -> int:
+        """The samples a pixel of a target of which so many are asked: a power of two or the next the device has."""
+        samples = 1 << (min(asked, self.max_samples).bit_length() - 1)
+        if samples == 1:
+            return 1
+        with ExitStack() as stack:
+            return samples_of(self.owned(stack, self.target((1, 1), STORAGES["rgba32f"], samples)))
+
+    def upload(self, pixels: np.ndarray) -> moderngl.Texture:
+        """A float32 texture from an array of shape (height, width, channels)."""
+        height, width, channels = pixels.shape
+        data = np.ascontiguousarray(pixels, np.float32)
+        texture = self.context.texture((width, height), channels, data, dtype="f4")
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def render(
+        self,
+        passed: moderngl.VertexArray,
+        targets: list[moderngl.Texture],
+        depth: DepthBuffer | None = None,
+        /,
+        **textures: moderngl.Texture,
+    ):
+        """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out.
+
+        Args:
+            depth: what the pass's `gl_FragDepth` is written to, without a test.
+
+        Raises:
+            FormatError: the device cannot render to one of the targets.
+        """
+        framebuffer = self.framebuffer(targets)
+        try:
+            self.blend(None)
+            if depth:
+                self._write_depth(framebuffer, depth)
+            framebuffer.use()
+            bind(passed.program, textures)
+            passed.render(moderngl.TRIANGLES, vertices=3)
+        finally:
+            self.idle.use()
+            framebuffer.release()
+
+    def _write_depth(self, framebuffer: moderngl.Framebuffer, depth: DepthBuffer) -> None:
+        try:
+            depth.attach(framebuffer)
+        except moderngl.Error as error:
+            raise FormatError(f"{self.renderer} cannot render to this depth format: {error}") from error
+        framebuffer.depth_mask = True
+        # Without the test nothing would be written; it lets everything pass.
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        self.context.depth_func = "1"
+
+    def framebuffer(self, targets: list[moderngl.Texture]) -> moderngl.Framebuffer:
+        """Textures to draw into. Raises FormatError where the device cannot."""
+        try:
+            return self.context.framebuffer(targets)
+        except moderngl.Error as error:
+            raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
+
+    def blend(self, function: tuple[int, int] | None) -> None:
+        """Blend what is drawn next by source and destination factor, or not; no depth test, whatever drew before."""
+        self.context.enable_only(moderngl.BLEND if function else moderngl.NOTHING)
+        if function:
+            self.context.blend_func = function
+
+    def resolve(self, samples: moderngl.Texture, pixels: moderngl.Texture) -> None:
+        """A texture's samples averaged into one of a sample a pixel, as the hardware does. Raises FormatError."""
+        with ExitStack() as stack:
+            source, target = (self.owned(stack, self.framebuffer([texture])) for texture in (samples, pixels))
+            self.context.copy_framebuffer(target, source)
+            self.idle.use()
+
+    def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
+        """float32 values of shape (height, width, 4), written to a target of the format as they are and read back."""
+        height, width, _ = values.shape
+        with ExitStack() as stack:
+            source = self.owned(stack, self.upload(values))
+            kept = self.owned(stack, self.target((width, height), storage))
+            result = self.owned(stack, self.target((width, height), STORAGES["rgba32f"]))
+            copy = self.owned(stack, self.fragment_pass("copy.frag"))
+            self.render(copy, [kept], source=source)
+            self.render(copy, [result], source=kept)
+            return read_pixels(result)
+
+    @staticmethod
+    def owned(stack: ExitStack, thing: Owned) -> Owned:
+        """`thing`, released with the stack; a pass takes its program along, which a vertex array does not own."""
+        stack.callback(thing.release)
+        program = getattr(thing, "program", None)
+        if program:
+            stack.callback(program.release)
+        return thing
+
+    def native_rounding(self, storage: Storage) -> str:
+        """How the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
+        if storage.name not in self._native:
+            self._native[storage.name] = self._probe_rounding(storage)
+        return self._native[storage.name]
+
+    def _probe_rounding(self, storage: Storage) -> str:
+        if storage.kind == "float" and storage.bits[0] == 32:
+            return "nearest"
+        # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.
+        steps = 4085
+        values = np.linspace(0.0 if storage.is_biased else -1.0, 1.0, steps + 1, dtype=np.float32)
+        pixels = np.repeat(values[None, :, None], 4, axis=2)
+        got = self.through(pixels, storage)[0, :, 0]
+        for rounding in NATIVE_ROUNDINGS:
+            expected = np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
+            if np.array_equal(got, expected):
+                return rounding
+        return "other"
+
+
+def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[moderngl.Texture]]) -> None:
+    """Textures, and lists of them for arrays, to samplers by name; those the compiler dropped are left out."""
+    unit = 0
+    for name, given in textures.items():
+        if name not in program:
+            continue
+        several = [given] if isinstance(given, moderngl.Texture) else list(given)
+        # The compiler shortens an array whose last elements nobody reads.
+        several = several[: program[name].array_length]
+        units = list(range(unit, unit + len(several)))
+        program[name].value = units[0] if len(units) == 1 else units
+        for at, texture in zip(units, several, strict=True):
+            texture.use(at)
+        unit += len(units)
+
+
+@contextmanager
+def explained(source: Source) -> Iterator[None]:
+    """Turns a compiler's complaint about a source into a ShaderError that names files and lines."""
+    try:
+        yield
+    except moderngl.Error as error:
+        raise ShaderError(source.explain(str(error))) from error
+
+
+def read_pixels(texture: moderngl.Texture) -> np.ndarray:
+    """A float32 texture as an array of shape (height, width, channels)."""
+    width, height = texture.size
+    return np.frombuffer(texture.read(), np.float32).reshape(height, width, texture.components)
+
+
+@cache
+def device() -> Device:
+    """The process's one GL device. Raises NoDeviceError."""
+    return Device()

@@ -1,0 +1,84 @@
+"""Loads shaders: includes once, and names the user's file and line in an error."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+SHADERS = Path(__file__).parents[1] / "shaders"
+_INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
+# "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's; "stdin:12:" or "0:12:" glslang's.
+_PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
+
+Line = tuple[str, Path, int]
+
+
+class ShaderError(Exception):
+    """A shader that cannot be read or does not compile; the message names the file and the line."""
+
+
+class Source:
+    """A shader's text with every include expanded once.
+
+    Where each line comes from is kept here and not told to the compiler by `#line`: Mesa forgets the source string
+    number in some of its messages, and then blames the wrong file.
+
+    Args:
+        path: the shader, in the project's shader folder if relative.
+        defines: macros set at its head.
+        names: files that stand behind `#include NAME`.
+    """
+
+    def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+        self._names: Mapping[str, Path] = names or {}
+        self._seen: set[Path] = set()
+        self.place = main = (SHADERS / path).resolve()
+        version, *rest = self._expand(main)
+        head = [(f"#define {name} {glsl_value(value)}", main, 1) for name, value in (defines or {}).items()]
+        self._lines: list[Line] = [version, *head, *rest]
+        self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
+
+    def _expand(self, path: Path) -> list[Line]:
+        self._seen.add(path)
+        lines: list[Line] = []
+        for number, line in enumerate(read_shader(path).splitlines(), 1):
+            match = _INCLUDE.match(line)
+            lines += self._include(path, number, match) if match else [(line, path, number)]
+        return lines
+
+    def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:
+        if match["name"] and match["name"] not in self._names:
+            raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
+        target = self._names[match["name"]] if match["name"] else path.parent / match["file"]
+        target = Path(target).resolve()
+        return [] if target in self._seen else self._expand(target)
+
+    def explain(self, log: str) -> str:
+        """A compiler's message with file names and their line numbers in place of its own."""
+
+        def place(match: re.Match[str]) -> str:
+            index = int(match[1] or match[2] or match[3]) - 1
+            if not 0 <= index < len(self._lines):
+                return match[0]
+            _, path, number = self._lines[index]
+            return f"{path}:{number}"
+
+        return _PLACE.sub(place, log.strip())
+
+
+def read_shader(path: Path) -> str:
+    """A shader file's text. Raises ShaderError."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ShaderError(f"{path}: cannot be read as a shader: {error}") from error
+
+
+def glsl_value(value) -> str:
+    """A Python number, tuple of numbers (of ints if all are), or text as GLSL writes it."""
+    if isinstance(value, tuple) and all(isinstance(v, int) for v in value):
+        return f"int[{len(value)}]({', '.join(map(str, value))})"
+    if isinstance(value, tuple):
+        return f"float[{len(value)}]({', '.join(repr(float(v)) for v in value)})"
+    return repr(value) if isinstance(value, float) else str(value)

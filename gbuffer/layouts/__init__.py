@@ -1,0 +1,1 @@
+"""Which bits of which targets hold what."""

@@ -1,0 +1,161 @@
+"""What the readers of mesh files give: meshes, where they stand, what they are made of, a camera."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ..mesh import Mesh, joined, smooth_normals
+from ..scene import Material, View
+from .source import SceneFileError, checked_indices, checked_numbers
+
+# Of a normal or tangent that says no direction.
+NOTHING = 1e-12
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One mesh in one place.
+
+    Attributes:
+        mesh: in its own space; pieces of one mesh share it.
+        model: (4, 4), column vectors' matrix to world space, of any scale and side.
+        material: index into the file's materials.
+    """
+
+    mesh: Mesh
+    model: np.ndarray
+    material: int
+
+    def baked(self) -> Mesh:
+        """The mesh in world space."""
+        return self.mesh.placed(self.model[:3, :3].T, self.model[:3, 3])
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the model is rotation, one scale and translation, which the renderer's instances may have."""
+        linear = self.model[:3, :3]
+        square = linear @ linear.T
+        scale = np.trace(square) / 3
+        return bool(np.linalg.det(linear) > 0 and np.allclose(square, scale * np.eye(3), atol=1e-9 * scale, rtol=0))
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """A file of meshes.
+
+    Attributes:
+        path: where it was read from.
+        pieces: at least one.
+        materials, two_sided: what pieces are made of, and whether the back of each material is drawn.
+        view: the file's own camera, None where it has none.
+        notes: what was not taken from the file or made up for it, each in a few words.
+    """
+
+    path: Path
+    pieces: tuple[Piece, ...]
+    materials: tuple[Material, ...]
+    two_sided: tuple[bool, ...]
+    view: View | None
+    notes: tuple[str, ...]
+
+    @cached_property
+    def baked(self) -> Mesh:
+        """Everything in world space as one mesh."""
+        return joined([piece.baked() for piece in self.pieces])
+
+    @cached_property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and the highest corner of all that is drawn, world space, (3,) each."""
+        return self.drawn.min(axis=0), self.drawn.max(axis=0)
+
+    @cached_property
+    def radius(self) -> float:
+        """Of a ball around the middle of the bounds that holds everything."""
+        low, high = self.bounds
+        return float(np.linalg.norm(self.drawn - (low + high) / 2, axis=1).max())
+
+    @cached_property
+    def drawn(self) -> np.ndarray:
+        """The vertices of all triangles in world space, (vertices, 3); a file may hold others that no one sees."""
+        return self.baked.positions[np.unique(self.baked.triangles)]
+
+
+def mesh_of(
+    path: Path, place: str, positions, triangles, normals=None, uv=None, tangents=None
+) -> tuple[Mesh, list[str]]:
+    """A mesh of what a file holds, and what had to be made up.
+
+    Normals are brought to unit length; where there are none, or one is of no length, smooth ones stand in. Triangles
+    without an area are left out.
+
+    Raises:
+        SceneFileError: an index out of range, a number that is none, or no triangle left.
+    """
+    positions = checked_numbers(path, np.asarray(positions, np.float64), f"{place}: the position")
+    triangles = checked_indices(path, np.asarray(triangles, np.int64), len(positions), place).reshape(-1, 3)
+    corners = positions[triangles]
+    triangles = triangles[np.any(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) != 0, axis=1)]
+    if not len(triangles):
+        raise SceneFileError(f"{path}: {place}: no triangle with an area; export it as triangles")
+    notes = [] if normals is not None else ["there are meshes without normals: smooth ones were made"]
+    given = np.zeros_like(positions) if normals is None else np.asarray(normals, np.float64)
+    given, made = _completed(checked_numbers(path, given, f"{place}: the normal"), positions, triangles)
+    if made and normals is not None:
+        notes.append("there are normals of no length: smooth ones stand in")
+    uv = (
+        np.zeros((len(positions), 2))
+        if uv is None
+        else checked_numbers(path, np.asarray(uv, np.float64), f"{place}: the uv")
+    )
+    mesh = Mesh(positions, given, triangles, uv)
+    return (mesh if tangents is None else replace(mesh, authored=_tangents(path, place, tangents))), notes
+
+
+def _completed(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
+    """Unit normals, and how many used ones had to be made."""
+    length = np.linalg.norm(normals, axis=1)
+    lost = length < NOTHING
+    normals = normals / np.where(lost, 1.0, length)[:, None]
+    if lost.any():
+        normals[lost] = smooth_normals(positions, triangles)[lost]
+        # What is left belongs to no triangle, or to some that cancel each other: any direction will do.
+        normals[np.linalg.norm(normals, axis=1) < 0.5] = (0.0, 0.0, 1.0)
+    used = np.zeros(len(positions), bool)
+    used[triangles] = True
+    return normals, int((lost & used).sum())
+
+
+def _tangents(path: Path, place: str, tangents) -> np.ndarray | None:
+    """Unit tangents with their signs; None where one has no length, so that they follow from the uv instead."""
+    tangents = checked_numbers(path, np.asarray(tangents, np.float64), f"{place}: the tangent")
+    length = np.linalg.norm(tangents[:, :3], axis=1, keepdims=True)
+    if (length < NOTHING).any():
+        return None
+    return np.concatenate([tangents[:, :3] / length, np.where(tangents[:, 3:] < 0, -1.0, 1.0)], axis=1)
+
+
+def checked_pieces(path: Path, pieces: Iterable[Piece], notes: list[str]) -> tuple[Piece, ...]:
+    """The pieces that can be seen; those whose place has no extent are noted.
+
+    Raises:
+        SceneFileError: none is left, or one is moved out of all range.
+    """
+    kept = []
+    for piece in pieces:
+        linear = piece.model[:3, :3]
+        size = np.abs(linear).max()
+        if size == 0 or abs(np.linalg.det(linear / size)) < 1e-9:
+            notes.append("a node scaled to nothing was left out")
+            continue
+        kept.append(piece)
+        reach = np.abs(piece.mesh.positions).max() * size * 3 + np.abs(piece.model[:3, 3]).max()
+        if not reach < 1e15:
+            raise SceneFileError(f"{path}: a node moves its mesh beyond 1e15; apply the transforms in the exporter")
+    if not kept:
+        raise SceneFileError(f"{path}: nothing to draw: no mesh of triangles; export meshes with the scene")
+    return tuple(kept)

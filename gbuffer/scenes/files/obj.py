@@ -1,0 +1,224 @@
+"""Wavefront OBJ files, and the colours of their MTL files."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..scene import Material
+from .mesh_file import MeshFile, Piece, checked_pieces, mesh_of
+from .source import MAX_TEXT_BYTES, MAX_TRIANGLES, SceneFileError, checked_size, file_bytes, resource
+
+# Numbers a line needs; more (a weight, a colour) are passed over.
+VERTEX_DATA = {"v": 3, "vn": 3, "vt": 2}
+KINDS = ("v", "vt", "vn")
+# What a file may hold and this reader does not draw.
+PASSED_OVER = frozenset(
+    (
+        "g",
+        "o",
+        "s",
+        "l",
+        "p",
+        "vp",
+        "cstype",
+        "deg",
+        "surf",
+        "end",
+        "parm",
+        "curv",
+        "curv2",
+        "trim",
+        "hole",
+        "scrv",
+        "sp",
+        "con",
+        "mg",
+        "lod",
+    )
+)
+COLOURS = {"Kd": "albedo", "Ks": "specular", "Ke": "emissive"}
+NUMBERS = {"Ns": "power", "d": "alpha"}
+LIMITS = {"power": (1.0, 2048.0), "alpha": (0.0, 1.0)}
+
+# Of a corner: position, uv, normal; -1 where it has none.
+Corner = tuple[int, int, int]
+
+
+@dataclass
+class _Obj:
+    """An OBJ file as its lines say it.
+
+    Attributes:
+        data: rows of numbers by kind.
+        vertices: corners that differ.
+        known: their places in `vertices`, by how they are written.
+        corners: of triangles, three in turn, places in `vertices`; by material.
+        libraries, material, triangles: files of materials, the one in use, and how many triangles there are so far.
+    """
+
+    data: dict[str, list[tuple[float, ...]]] = field(default_factory=lambda: {kind: [] for kind in VERTEX_DATA})
+    vertices: list[Corner] = field(default_factory=list)
+    known: dict[str, int] = field(default_factory=dict)
+    corners: dict[str, list[int]] = field(default_factory=dict)
+    libraries: list[str] = field(default_factory=list)
+    material: str = ""
+    triangles: int = 0
+
+
+def read_obj(path: Path) -> MeshFile:
+    """The meshes of an OBJ file, one for each material, seen from both sides.
+
+    Raises:
+        SceneFileError: it is damaged, too large, has no faces, or names a file outside its folder.
+    """
+    obj = _Obj()
+    for number, words in _lines(file_bytes(path, MAX_TEXT_BYTES)):
+        try:
+            _take(obj, words)
+        except (ValueError, IndexError) as error:
+            shown = " ".join(words)[:60]
+            raise SceneFileError(f"{path}: line {number}: {shown!r}: {error}; export it again") from error
+    notes: list[str] = []
+    known = _materials(path, obj.libraries, notes)
+    pieces = []
+    for index, (name, corners) in enumerate(obj.corners.items()):
+        mesh, made_up = _mesh(path, f"material {name!r}" if name else "the mesh", obj, corners)
+        notes += made_up
+        pieces.append(Piece(mesh, np.eye(4), index))
+    materials = tuple(known.get(name, Material()) for name in obj.corners)
+    kept = checked_pieces(path, pieces, notes)
+    return MeshFile(path, kept, materials, (True,) * len(materials), None, tuple(notes))
+
+
+def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
+    """The words of each line that has any, with its number; a line may go on after a backslash."""
+    before = ""
+    for number, line in enumerate(data.decode("utf-8", "replace").split("\n"), 1):
+        text = before + line.partition("#")[0].rstrip()
+        if text.endswith("\\"):
+            before = text[:-1] + " "
+            continue
+        before = ""
+        if words := text.split():
+            yield number, words
+
+
+def _take(obj: _Obj, words: list[str]) -> None:
+    """One line. Raises ValueError or IndexError where it is none."""
+    kind, rest = words[0], words[1:]
+    if kind in VERTEX_DATA:
+        size = VERTEX_DATA[kind]
+        if len(rest) < size:
+            raise ValueError(f"{size} numbers are needed")
+        obj.data[kind].append(tuple(map(float, rest[:size])))
+    elif kind == "f":
+        _take_face(obj, [obj.known[text] if text in obj.known else _new_corner(obj, text) for text in rest])
+    elif kind == "usemtl":
+        obj.material = " ".join(rest)
+    elif kind == "mtllib":
+        obj.libraries.append(" ".join(rest))
+    elif kind not in PASSED_OVER:
+        raise ValueError("no line of an OBJ file")
+
+
+def _take_face(obj: _Obj, corners: list[int]) -> None:
+    if len(corners) < 3:
+        raise ValueError("a face has three corners or more")
+    obj.triangles += len(corners) - 2
+    if obj.triangles > MAX_TRIANGLES:
+        raise ValueError(f"more than {MAX_TRIANGLES} (2^22) triangles")
+    found = obj.corners.setdefault(obj.material, [])
+    for second, third in itertools.pairwise(corners[1:]):
+        found += (corners[0], second, third)
+
+
+def _new_corner(obj: _Obj, text: str) -> int:
+    """The place of a corner, "position/uv/normal", the later two optional; indices start at 1, negative ones count from
+    the end."""
+    words = text.split("/")
+    if len(words) > len(KINDS) or not words[0]:
+        raise ValueError("a corner is position/uv/normal")
+    found = [_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
+    position, uv, normal = found + [-1] * (len(KINDS) - len(found))
+    obj.vertices.append((position, uv, normal))
+    # What a negative index means changes from line to line.
+    if "-" not in text:
+        obj.known[text] = len(obj.vertices) - 1
+    return len(obj.vertices) - 1
+
+
+def _index(word: str, count: int) -> int:
+    if not word:
+        return -1
+    index = int(word)
+    index = index - 1 if index > 0 else index + count
+    if not 0 <= index < count:
+        raise ValueError(f"index {word} is out of range: there are {count} so far")
+    return index
+
+
+def _mesh(path: Path, place: str, obj: _Obj, corners: list[int]):
+    """A mesh whose vertices are the corners that differ; normals where any corner has one."""
+    used, triangles = np.unique(np.array(corners, np.int64), return_inverse=True)
+    checked_size(path, len(used), len(triangles) // 3, place)
+    position, uv, normal = np.array([obj.vertices[corner] for corner in used], np.int64).T
+    normals = _looked_up(obj.data["vn"], normal, 3) if (normal >= 0).any() else None
+    positions = _looked_up(obj.data["v"], position, 3)
+    return mesh_of(path, place, positions, triangles.reshape(-1, 3), normals, _looked_up(obj.data["vt"], uv, 2))
+
+
+def _looked_up(rows: list[tuple[float, ...]], index: np.ndarray, width: int) -> np.ndarray:
+    """Rows by index, zero where that is -1."""
+    table = np.zeros((len(rows) + 1, width))
+    table[:-1] = np.array(rows).reshape(-1, width)
+    return table[index]
+
+
+def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, Material]:
+    """The materials of MTL files beside the OBJ; a missing one is noted."""
+    found: dict[str, Material] = {}
+    for name in dict.fromkeys(libraries):
+        try:
+            data = resource(path, name, "mtllib")
+        except SceneFileError as error:
+            if "no such file" not in str(error):
+                raise
+            notes.append(f"{name} is not there; its materials are grey")
+            continue
+        found |= _read_mtl(path, name, data, notes)
+    return found
+
+
+def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str, Material]:
+    found: dict[str, Material] = {}
+    current = ""
+    for number, words in _lines(data):
+        try:
+            match words:
+                case ["newmtl", *rest]:
+                    current = " ".join(rest)
+                    found[current] = Material()
+                case [word, *numbers] if word in COLOURS and current:
+                    colour = tuple(min(_number(n), 1.0) for n in (numbers * 3 if len(numbers) == 1 else numbers)[:3])
+                    found[current] = replace(found[current], **{COLOURS[word]: colour})
+                case [word, value] if word in NUMBERS and current:
+                    low, high = LIMITS[NUMBERS[word]]
+                    found[current] = replace(found[current], **{NUMBERS[word]: min(max(_number(value), low), high)})
+                case [word, *_] if word.lower().startswith(("map_", "bump", "norm", "disp", "decal", "refl")):
+                    notes.append("textures are not read: colours alone")
+        except ValueError as error:
+            raise SceneFileError(f"{path}: {name}, line {number}: {error}; export it again") from error
+    return found
+
+
+def _number(text: str) -> float:
+    number = float(text)
+    if not number >= 0 or math.isinf(number):
+        raise ValueError(f"{text} is no number from 0 up")
+    return number

@@ -1,0 +1,252 @@
+"""PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and uv, faces of any number of
+corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..scene import Material
+from .mesh_file import MeshFile, Piece, mesh_of
+from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
+
+SIZES = {"i1": "char int8", "u1": "uchar uint8", "i2": "short int16", "u2": "ushort uint16"}
+SIZES |= {"i4": "int int32", "u4": "uint uint32", "f4": "float float32", "f8": "double float64"}
+TYPES = {name: kind for kind, names in SIZES.items() for name in names.split()}
+ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+UV = (("u", "v"), ("s", "t"), ("texture_u", "texture_v"))
+FACES = ("vertex_indices", "vertex_index")
+MAX_HEADER = 1 << 16
+MAX_CORNERS = 255
+# Characters of a number.
+MAX_TOKEN = 64
+
+
+@dataclass(frozen=True)
+class Property:
+    """One property of an element: its type, and its count's type where it is a list."""
+
+    name: str
+    type: str
+    counted_by: str | None
+
+
+@dataclass(frozen=True)
+class Element:
+    """A table of the file: its name, number of rows, and columns."""
+
+    name: str
+    count: int
+    properties: list[Property]
+
+
+# Columns by name: (count,) arrays, or for a list property a list of arrays.
+Table = dict[str, np.ndarray | list[np.ndarray]]
+
+
+def read_ply(path: Path) -> MeshFile:
+    """The mesh of a PLY file, in one grey material seen from both sides.
+
+    Raises:
+        SceneFileError: it is no PLY file, damaged, too large, or has no faces.
+    """
+    data = file_bytes(path)
+    order, elements, start = _header(path, data)
+    tables: dict[str, Table] = {}
+    if not order and len(data) > MAX_TEXT_BYTES:
+        raise SceneFileError(f"{path}: {len(data)} bytes of text; the most is {MAX_TEXT_BYTES}: export it in binary")
+    tokens = data[start:].split() if not order else []
+    at = 0 if not order else start
+    for element in elements:
+        if order:
+            tables[element.name], at = _binary(path, data, at, element, order)
+        else:
+            tables[element.name], at = _ascii(path, tokens, at, element)
+    mesh, notes = _mesh(path, tables)
+    return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
+
+
+def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
+    """Byte order, elements, and where their rows start."""
+    end = data.find(b"end_header", 0, MAX_HEADER)
+    newline = data.find(b"\n", end)
+    if not data.startswith(b"ply") or end < 0 or newline < 0:
+        raise SceneFileError(f"{path}: no PLY header, which starts with ply and ends with end_header; export it again")
+    order, elements = None, []
+    for number, line in enumerate(data[:end].decode("latin-1").splitlines()[1:], 2):
+        match line.split():
+            case ["format", word, _] if word in ORDERS:
+                order = ORDERS[word]
+            case ["element", name, count] if count.isascii() and count.isdigit() and len(count) < 12:
+                elements.append(Element(name, int(count), []))
+            case ["property", "list", counted, kind, name] if counted in TYPES and kind in TYPES and elements:
+                if TYPES[counted][0] == "f":
+                    raise SceneFileError(f"{path}: line {number}: a list is counted by whole numbers; export it again")
+                elements[-1].properties.append(Property(name, TYPES[kind], TYPES[counted]))
+            case ["property", kind, name] if kind in TYPES and elements:
+                elements[-1].properties.append(Property(name, TYPES[kind], None))
+            case [] | ["comment", *_] | ["obj_info", *_]:
+                pass
+            case _:
+                raise SceneFileError(
+                    f"{path}: line {number}: {line[:60]!r} is no line of a PLY header; export it again"
+                )
+    if order is None:
+        raise SceneFileError(f"{path}: its header names no format: {', '.join(ORDERS)}")
+    return order, elements, newline + 1
+
+
+def _check_count(path: Path, element: Element, left: int, least: int) -> None:
+    """Raises SceneFileError where a table is larger than what is left of the file, or than is read."""
+    names = [p.name for p in element.properties]
+    if not names or len(set(names)) < len(names):
+        raise SceneFileError(f"{path}: element {element.name}: no properties, or two of one name; export it again")
+    if element.count * least > left:
+        raise SceneFileError(
+            f"{path}: element {element.name}: {element.count} rows are more than the file holds; it is cut off: "
+            "export it again"
+        )
+    vertices, triangles = (element.count * (element.name == name) for name in ("vertex", "face"))
+    checked_size(path, vertices, triangles, f"element {element.name}")
+
+
+def _damaged(path: Path, element: Element, row: int) -> SceneFileError:
+    return SceneFileError(f"{path}: element {element.name}, row {row}: cut off or damaged; export it again")
+
+
+def _binary(path: Path, data: bytes, at: int, element: Element, order: str) -> tuple[Table, int]:
+    """A table of a binary file, and where the next one starts."""
+    least = sum(np.dtype(p.counted_by or p.type).itemsize for p in element.properties)
+    _check_count(path, element, len(data) - at, least)
+    lists = [p for p in element.properties if p.counted_by]
+    lengths = _first_lengths(data, at, element, order) if lists and element.count else {}
+    table = _alike(data, at, element, order, lengths)
+    if table is not None:
+        return table
+    rows: dict[str, list] = {p.name: [] for p in element.properties}
+    for row in range(element.count):
+        for p in element.properties:
+            try:
+                values, at = _values(data, at, p, order)
+            except ValueError as error:
+                raise _damaged(path, element, row) from error
+            rows[p.name].append(values if p.counted_by else values[0])
+    return {p.name: rows[p.name] if p.counted_by else np.array(rows[p.name]) for p in element.properties}, at
+
+
+def _values(data: bytes, at: int, p: Property, order: str) -> tuple[np.ndarray, int]:
+    """A property's values at a place, and where the next one is. Raises ValueError beyond the end."""
+    count = 1
+    if p.counted_by:
+        count = int(np.frombuffer(data, order + p.counted_by, 1, at)[0])
+        at += np.dtype(p.counted_by).itemsize
+        if not 0 <= count <= MAX_CORNERS:
+            raise ValueError(count)
+    kind = np.dtype(order + p.type)
+    if at + count * kind.itemsize > len(data):
+        raise ValueError(at)
+    return np.frombuffer(data, kind, count, at) if count else np.zeros(0, kind), at + count * kind.itemsize
+
+
+def _first_lengths(data: bytes, at: int, element: Element, order: str) -> dict[str, int]:
+    """How long the lists of the first row are; empty where it is damaged."""
+    lengths: dict[str, int] = {}
+    try:
+        for p in element.properties:
+            values, at = _values(data, at, p, order)
+            lengths[p.name] = len(values)
+    except ValueError:
+        return {}
+    return lengths
+
+
+def _alike(data: bytes, at: int, element: Element, order: str, lengths: dict[str, int]) -> tuple[Table, int] | None:
+    """The whole table at once, where every row's lists are as long as the first row's; else None."""
+    fields = []
+    for p in element.properties:
+        if p.counted_by:
+            if p.name not in lengths and element.count:
+                return None
+            fields += [(f"{p.name} count", order + p.counted_by)]
+            fields += [(p.name, order + p.type, (lengths.get(p.name, 0),))]
+        else:
+            fields += [(p.name, order + p.type)]
+    kind = np.dtype(fields)
+    if at + element.count * kind.itemsize > len(data):
+        return None
+    rows = np.frombuffer(data, kind, element.count, at) if element.count else np.zeros(0, kind)
+    lists = [p for p in element.properties if p.counted_by]
+    if any(np.any(rows[f"{p.name} count"] != lengths.get(p.name, 0)) for p in lists):
+        return None
+    return {p.name: rows[p.name] for p in element.properties}, at + element.count * kind.itemsize
+
+
+def _ascii(path: Path, tokens: list[bytes], at: int, element: Element) -> tuple[Table, int]:
+    """A table of an ASCII file, and which token comes next."""
+    _check_count(path, element, len(tokens) - at, len(element.properties))
+    width = len(element.properties)
+    if not any(p.counted_by for p in element.properties):
+        part = tokens[at : at + element.count * width]
+        try:
+            if max(map(len, part), default=0) > MAX_TOKEN:
+                raise ValueError(f"a number of more than {MAX_TOKEN} characters")
+            rows = np.array(part, np.bytes_).astype(np.float64).reshape(-1, width)
+        except ValueError as error:
+            raise SceneFileError(f"{path}: element {element.name}: {error}; export it again") from error
+        return {p.name: rows[:, column] for column, p in enumerate(element.properties)}, at + len(part)
+    table: dict[str, list] = {p.name: [] for p in element.properties}
+    for row in range(element.count):
+        try:
+            for p in element.properties:
+                count = 1
+                if p.counted_by:
+                    count, at = int(tokens[at]), at + 1
+                values = [float(token) for token in tokens[at : at + count]]
+                if not 0 <= count <= MAX_CORNERS or len(values) < count:
+                    raise ValueError(count)
+                at += count
+                table[p.name].append(np.array(values) if p.counted_by else values[0])
+        except (ValueError, IndexError) as error:
+            raise _damaged(path, element, row) from error
+    return {p.name: table[p.name] if p.counted_by else np.array(table[p.name]) for p in element.properties}, at
+
+
+def _columns(table: Table, names: tuple[str, ...]) -> np.ndarray | None:
+    """Columns side by side, None where one is missing or is a list."""
+    columns = [table.get(name) for name in names]
+    if not all(isinstance(column, np.ndarray) and column.ndim == 1 for column in columns):
+        return None
+    # A NaN of the signalling kind is one all the same, and is found where numbers are checked.
+    with np.errstate(invalid="ignore"):
+        return np.stack([np.asarray(column, np.float64) for column in columns], axis=1)
+
+
+def _mesh(path: Path, tables: dict[str, Table]):
+    vertex, face = tables.get("vertex", {}), tables.get("face", {})
+    positions = _columns(vertex, ("x", "y", "z"))
+    faces = next((face[name] for name in FACES if name in face), None)
+    if positions is None or faces is None or not len(faces):
+        raise SceneFileError(
+            f"{path}: vertices with x, y, z and faces with vertex_indices are read; export a mesh of them"
+        )
+    uv = next((found for names in UV if (found := _columns(vertex, names)) is not None), None)
+    triangles = _fans(path, faces)
+    checked_size(path, len(positions), len(triangles), "faces")
+    return mesh_of(path, "the mesh", positions, triangles, _columns(vertex, ("nx", "ny", "nz")), uv)
+
+
+def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:
+    """Triangles of faces of any number of corners, fans around the first, (triangles, 3)."""
+    if isinstance(faces, np.ndarray):
+        if faces.ndim != 2:
+            raise SceneFileError(f"{path}: faces are lists of vertices; export it again")
+        faces = faces.astype(np.float64)
+        fans = [np.stack([faces[:, 0], faces[:, k], faces[:, k + 1]], axis=1) for k in range(1, faces.shape[1] - 1)]
+        found = np.stack(fans, axis=1).reshape(-1, 3) if fans else np.zeros((0, 3))
+    else:
+        found = np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)], np.float64)
+    if not np.all(np.abs(found) < 2**32):
+        raise SceneFileError(f"{path}: a face names a vertex that is no number; export it again")
+    return found.astype(np.int64).reshape(-1, 3)

@@ -1,0 +1,119 @@
+"""Users' mesh files as scenes: a camera that frames them, lights around them, and what that camera sees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from ..rasterise import Camera, Rendered, rasterise
+from ..scene import Light, Part, Scene, View
+from ..setting import Setting, coloured
+from .gltf import read_gltf
+from .mesh_file import MeshFile, Piece
+from .obj import read_obj
+from .ply import read_ply
+
+READERS: Mapping[str, Callable[[Path], MeshFile]] = MappingProxyType(
+    {".glb": read_gltf, ".gltf": read_gltf, ".obj": read_obj, ".ply": read_ply}
+)
+FRAMES = 1
+# From where a scene without a camera is seen: right of it, a little above, in front.
+ASIDE = (0.45, 0.35, 1.0)
+FOV = 40.0
+MARGIN = 1.05
+SUN = (-0.5, -0.7, -0.5)
+AMBIENT = (0.05, 0.05, 0.06)
+
+
+def read_mesh_file(path: Path) -> MeshFile:
+    """A file of one of the formats in READERS, which its name's ending says. Raises SceneFileError."""
+    return READERS[path.suffix.lower()](path)
+
+
+def file_view(file: MeshFile) -> View:
+    """The file's camera, or one from aside that has everything in a picture at least as wide as high."""
+    if file.view:
+        return file.view
+    low, high = file.bounds
+    middle = _place((low + high) / 2)
+    away = np.array(ASIDE) / np.linalg.norm(ASIDE)
+    placed = file.drawn - middle
+    across = View(_place(away), (0.0, 0.0, 0.0), FOV, 0.0, 0.0).matrix()[:2, :3]
+    nearer = placed @ away
+    # How far away the eye must be for each vertex to lie within the angle of view.
+    needed = nearer[:, None] + abs(placed @ across.T) / np.tan(np.radians(FOV / 2))
+    distance = MARGIN * float(needed.max())
+    near, far = distance - float(nearer.max()), distance - float(nearer.min())
+    return View(_place(middle + away * distance), middle, FOV, 0.9 * near, 1.1 * far)
+
+
+def _place(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def file_scene(file: MeshFile, setting: Setting) -> Scene:
+    """The file's meshes under a sun and `setting.lights` point lights that circle around them."""
+    view = file_view(file)
+    aside = 0.01 * file.radius
+    moved = (_place(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
+    sun = np.array(SUN) / np.linalg.norm(SUN)
+    eye, target = moved
+    return Scene(
+        parts=_parts(file),
+        materials=file.materials,
+        lights=(Light("sun", (0.8, 0.77, 0.7), direction=_place(sun)), *_lights(file, setting)),
+        ambient=AMBIENT,
+        view=view,
+        previous=replace(view, eye=eye, target=target),
+    )
+
+
+def _parts(file: MeshFile) -> tuple[Part, ...]:
+    """Meshes in several places by rotation and one scale stand there as instances, others are baked into place."""
+    rigid: dict[tuple[int, bool], list[Piece]] = {}
+    parts = []
+    for piece in file.pieces:
+        two_sided = file.two_sided[piece.material]
+        if piece.is_rigid:
+            rigid.setdefault((id(piece.mesh), two_sided), []).append(piece)
+        else:
+            parts.append(Part(piece.baked(), np.eye(4)[None], _materials(file, [piece]), two_sided=two_sided))
+    for (_, two_sided), pieces in rigid.items():
+        models = np.stack([piece.model for piece in pieces])
+        parts.append(Part(pieces[0].mesh, models, _materials(file, pieces), two_sided=two_sided))
+    return tuple(parts)
+
+
+def _materials(file: MeshFile, pieces: list[Piece]) -> np.ndarray:
+    return np.array([piece.material % len(file.materials) for piece in pieces])
+
+
+def _lights(file: MeshFile, setting: Setting) -> list[Light]:
+    """Point lights in a box half again as large as the scene's, on their way around its middle."""
+    rng = np.random.default_rng(setting.seed)
+    low, high = file.bounds
+    middle, half = (low + high) / 2, np.maximum(0.75 * (high - low), 0.3 * file.radius)
+    turn = 2 * np.pi * (setting.time + rng.uniform(0, 1, setting.lights))
+    out, height = np.sqrt(rng.uniform(0.3, 1, setting.lights)), rng.uniform(-0.3, 1, setting.lights)
+    around = np.stack([out * np.cos(turn), height, out * np.sin(turn)], axis=1)
+    colours = coloured(rng, setting.lights, 5.0 / np.sqrt(max(setting.lights, 1)))
+    return [
+        Light("point", tuple(colour), _place(place), 0.9 * file.radius)
+        for colour, place in zip(colours, middle + around * half, strict=True)
+    ]
+
+
+def seen(file: MeshFile, size: tuple[int, int]) -> Rendered:
+    """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
+
+    Both sides of every surface are drawn.
+    """
+    view = file_view(file)
+    matrix = view.matrix()
+    mesh = file.baked.placed(matrix[:3, :3].T, matrix[:3, 3])
+    return rasterise(mesh, Camera(*size, view.fov, view.near, view.far))

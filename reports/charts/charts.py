@@ -1,0 +1,191 @@
+"""Charts of a run: histograms of angles, images beside normals, passes, maps of the sphere.
+
+Each takes rows and gives a figure for `plots.save`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..page.verdict import is_number
+from .plots import COLOURS, drawn_off_screen
+
+Row = dict[str, Any]
+# A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
+LEAST_DEG = 1e-4
+# Perceptually uniform, and the same order to those who do not see all colours.
+SPHERE_COLOURS = "viridis"
+FRAME, EACH, SPREAD = "ms_frame", "ms_frame_each", "_spread"
+
+
+def _figure(size: tuple[float, float], **layout: Any) -> tuple[Any, Any]:
+    """A figure and its axes."""
+    return drawn_off_screen().subplots(figsize=size, layout="constrained", **layout)
+
+
+def bins(text: Any) -> list[tuple[float, float, int]]:
+    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
+    try:
+        pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
+    except ValueError:
+        return []
+    # A bin is an eighth of its octave wide; the first begins at 0.
+    return [(edge, edge + 2.0 ** math.floor(math.log2(edge)) / 8 if edge > 0 else 0.0, n) for edge, n in pairs]
+
+
+def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
+    """A histogram's outline: edges from LEAST_DEG on, and between them how many normals lie in an octave."""
+    below = sum(count for low, _, count in found if low < LEAST_DEG)
+    edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
+    for low, high, count in found:
+        if low >= LEAST_DEG:
+            if low > edges[-1] * 1.001:  # rows round edges
+                edges, heights = [*edges, low], [*heights, 0.0]
+            edges, heights = [*edges, high], [*heights, count / math.log2(high / edges[-1])]
+    return edges, heights
+
+
+def codec_label(row: Row) -> str:
+    """A codec's name in a chart."""
+    return " ".join(str(row.get(name)) for name in ("encoding", "storage"))
+
+
+def histogram_chart(rows: Sequence[Row]) -> Any:
+    """How often which angle: a ridge for each codec, the best mean on top; its mean, 99 % and largest angle marked.
+
+    Args:
+        rows: of the quality table, one back end and set: encoding, storage, bits, angle_counts and angles.
+    """
+    ordered = sorted(rows, key=lambda row: row["angle_mean_deg"])
+    all_bits = sorted({row["bits"] for row in rows})
+    _, axis = _figure((8.2, 1.3 + 0.36 * len(rows)))
+    for at, row in enumerate(reversed(ordered)):
+        colour = COLOURS[all_bits.index(row["bits"]) % len(COLOURS)]
+        _ridge(axis, at, row, colour)
+    for at, bits in enumerate(all_bits):
+        axis.plot([], [], color=COLOURS[at % len(COLOURS)], linewidth=6, alpha=0.5, label=f"{bits} bits")
+    for marker, name in (("|", "mean"), ("d", "99 %"), ("o", "largest")):
+        axis.plot([], [], color="#000000", linestyle="", marker=marker, markersize=5, label=name)
+    axis.set_xscale("log")
+    axis.set_xlim(LEAST_DEG, 200)
+    axis.set_ylim(-0.3, len(rows) + 0.2)
+    axis.set_yticks(range(len(rows)), [codec_label(row) for row in reversed(ordered)], size=8)
+    axis.set_xlabel("angle between normal and decode, degrees")
+    axis.grid(axis="x", alpha=0.3)
+    axis.figure.legend(loc="outside upper center", ncols=len(all_bits) + 3, fontsize=8, frameon=False)
+    return axis.figure
+
+
+def _ridge(axis: Any, at: int, row: Row, colour: str) -> None:
+    """A codec's histogram by logarithm of the angle, the highest as high as the others'."""
+    edges, heights = steps(bins(row["angle_counts"]))
+    above = at + 0.85 * np.array(heights) / max(heights)
+    axis.stairs(above, edges, baseline=at, fill=True, color=colour, alpha=0.5)
+    for column, marker in (("angle_mean_deg", "|"), ("angle_p99_deg", "d"), ("angle_max_deg", "o")):
+        if is_number(row.get(column)):
+            axis.plot(max(row[column], LEAST_DEG), at + 0.12, color="#000000", marker=marker, markersize=4.5)
+
+
+def image_chart(rows: Sequence[Row]) -> Any:
+    """The final image beside the normals it was lit by, a line for each codec, the best image on top.
+
+    Args:
+        rows: of the render table: encoding, storage, psnr_db, normal_psnr_db.
+    """
+    ordered = sorted(rows, key=lambda row: row["psnr_db"])
+    image, normals = ([row[column] for row in ordered] for column in ("psnr_db", "normal_psnr_db"))
+    _, axis = _figure((8.2, 1.1 + 0.3 * len(rows)))
+    axis.hlines(range(len(rows)), normals, image, color="#AAAAAA", linewidth=1.5, zorder=1)
+    axis.scatter(normals, range(len(rows)), color=COLOURS[1], marker="s", s=26, label="the normals")
+    axis.scatter(image, range(len(rows)), color=COLOURS[0], s=40, label="the image")
+    axis.set_yticks(range(len(rows)), [codec_label(row) for row in ordered], size=8)
+    axis.set_xlabel("PSNR, dB")
+    axis.grid(axis="x", alpha=0.3)
+    axis.figure.legend(loc="outside upper center", ncols=2, fontsize=8, frameon=False)
+    return axis.figure
+
+
+def passes_of(row: Row) -> dict[str, float]:
+    """A frame's milliseconds by pass, without the frame's own."""
+    names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]
+    return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
+
+
+def _short(milliseconds: Any) -> str:
+    return f"{milliseconds:.0f}" if milliseconds >= 100 else f"{milliseconds:.3g}"
+
+
+def passes_chart(rows: Sequence[Row]) -> Any:
+    """What a frame's milliseconds go into: a bar for each pipeline, a part for each pass.
+
+    Args:
+        rows: of a sweep at one number of objects: pipeline, clock, ms_frame and its spread, ms_<pass>.
+    """
+    stages = list(dict.fromkeys(stage for row in rows for stage in passes_of(row)))
+    figure, axis = _figure((8.2, 1.4 + 0.42 * len(rows)))
+    start = np.zeros(len(rows))
+    for at, stage in enumerate(stages):
+        widths = np.array([passes_of(row).get(stage, 0.0) for row in rows])
+        axis.barh(range(len(rows)), widths, left=start, color=COLOURS[at % len(COLOURS)], label=stage, height=0.7)
+        start += widths
+    for at, row in enumerate(rows):
+        spread = row.get(f"{FRAME}{SPREAD}")
+        text = _short(row[FRAME]) + (f" (spread {_short(spread)})" if is_number(spread) else "")
+        axis.annotate(text, (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
+    axis.set_yticks(range(len(rows)), [str(row["pipeline"]) for row in rows], size=8)
+    axis.invert_yaxis()
+    axis.margins(x=0.16)
+    axis.set_xlabel(f"milliseconds a frame, {rows[0].get('clock')}")
+    figure.legend(loc="outside upper center", ncols=5, fontsize=8, frameon=False)
+    return figure
+
+
+Maps = Mapping[str, np.ndarray]
+
+
+def sphere_range(maps: Maps) -> tuple[float, float]:
+    """The least and largest angle of a common logarithmic scale, degrees; what is exact lies below it."""
+    angles = np.concatenate([plane[np.isfinite(plane)] for plane in maps.values()])
+    largest = float(angles.max(initial=LEAST_DEG))
+    above = angles[angles > largest * 1e-4]
+    return (float(np.percentile(above, 1)) if above.size else largest / 10), largest * 1.0001
+
+
+def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """Angles as colours on a logarithmic scale, uint8 of shape (..., 4); transparent where there is none."""
+    import matplotlib
+
+    low, high = np.log(limits)
+    with np.errstate(divide="ignore"):
+        share = (np.log(np.nan_to_num(plane, nan=1.0)) - low) / (high - low)
+    colours = matplotlib.colormaps[SPHERE_COLOURS](np.clip(share, 0, 1))
+    colours[..., 3] = np.isfinite(plane)
+    return np.round(colours * 255).astype(np.uint8)
+
+
+def sphere_chart(maps: Maps) -> Any:
+    """Angles over the sphere, two discs for each codec, in one scale of colours.
+
+    Args:
+        maps: by codec degrees of shape (2, cells, cells): the half that faces the viewer and the other, in Lambert's
+            azimuthal equal-area projection; NaN where there is none.
+    """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+
+    limits, across = sphere_range(maps), min(3, len(maps))
+    down = -(-len(maps) // across)
+    size = (3.2 * across + 0.9, 1.9 * down + 0.3)
+    figure, axes = _figure(size, nrows=down, ncols=across, squeeze=False)
+    for axis, (name, halves) in zip(axes.flat, maps.items(), strict=False):
+        axis.imshow(coloured(np.concatenate(list(halves), axis=1), limits), interpolation="none")
+        axis.set_title(name, size=8)
+    for axis in axes.flat:
+        axis.set_axis_off()
+    scale = ScalarMappable(LogNorm(*limits), SPHERE_COLOURS)
+    figure.colorbar(scale, ax=axes, label="degrees", shrink=0.8, aspect=30)
+    return figure

@@ -1,0 +1,102 @@
+"""Maps of the sphere for a page and for files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..page.embedded import small_uri
+from ..page.found import SphereMap
+from . import charts
+from .drawings import Drawing, as_text
+
+# How finely a rim's cells are parted.
+FINE = 8
+
+
+@dataclass(frozen=True)
+class Globe:
+    """A codec's errors over the sphere as pictures."""
+
+    label: str
+    mean: str
+    largest: str
+    figures: str
+
+
+@dataclass(frozen=True)
+class Globes:
+    """The codecs of so many bits, in one scale of colours."""
+
+    bits: int
+    globes: Sequence[Globe]
+    low: float
+    high: float
+    ticks: Sequence[tuple[float, str]]
+
+
+def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
+    """Maps by bits, the number with most codecs first; those whose code is of as many bits share a scale."""
+    groups: dict[int, list[SphereMap]] = {}
+    for one in maps:
+        groups.setdefault(one.bits, []).append(one)
+    return dict(sorted(groups.items(), key=lambda item: (-len(item[1]), item[0])))
+
+
+def globes(maps: Sequence[SphereMap]) -> list[Globes]:
+    """The maps as pictures, by bits."""
+    return [_globes(bits, group) for bits, group in _groups(maps).items()]
+
+
+def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
+    limits = charts.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _planes(m)})
+    made = []
+    for one in maps:
+        mean, largest = (small_uri(_discs(plane, limits)) for _, plane in _planes(one))
+        front, back = (f"{_mean(h):.3g}" if np.isfinite(h).any() else "" for h in one.mean_deg)
+        figures = f"mean {front} degrees towards the viewer" + (f", {back} away" if back else "")
+        made.append(Globe(one.key.label, mean, largest, f"{figures}; largest {np.nanmax(one.max_deg):.3g}"))
+    low, high = limits
+    values = [m * 10.0**e for e in range(-7, 4) for m in (1, 2, 5) if low <= m * 10.0**e <= high]
+    ticks = [(100 * math.log(v / low) / math.log(high / low), f"{v:g}") for v in values]
+    return Globes(bits, made, low, high, ticks)
+
+
+def _mean(half: np.ndarray) -> float:
+    """The mean over a disc's cells, each by how much of it lies on the sphere."""
+    side = (np.arange(len(half) * FINE) + 0.5) / (len(half) * FINE) * 2 - 1
+    inside = (side[:, None] ** 2 + side**2 <= 1).reshape(len(half), FINE, len(half), FINE).sum(axis=(1, 3))
+    held = np.isfinite(half)
+    return float(np.average(half[held], weights=np.maximum(inside[held], 1)))
+
+
+def _planes(one: SphereMap) -> list[tuple[str, np.ndarray]]:
+    return [("mean", one.mean_deg), ("largest", one.max_deg)]
+
+
+def _discs(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    return charts.coloured(np.concatenate([plane[0], plane[1]], axis=1), limits)
+
+
+def colour_strip() -> str:
+    """The scale's colours from the least to the largest, as a picture."""
+    steps = np.exp(np.linspace(0, 1, 256))[None]
+    return small_uri(charts.coloured(steps, (1.0, math.e)))
+
+
+def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
+    """The maps as charts for files, one for each number of bits."""
+    said = "Mean angle in degrees in each direction."
+    return [
+        Drawing(f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", said, partial(_draw, group))
+        for bits, group in _groups(maps).items()
+    ]
+
+
+def _draw(maps: Sequence[SphereMap]) -> Any:
+    return charts.sphere_chart({as_text(one.key.label): one.mean_deg for one in maps})

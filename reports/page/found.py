@@ -1,0 +1,148 @@
+"""What a page is made of: everything that a run left, gathered by whoever can read runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..charts.pareto import Error, Panel
+
+Row = dict[str, Any]
+
+
+class CodecKey(NamedTuple):
+    """What tells codecs apart in rows."""
+
+    encoding: str
+    storage: str
+    rounding: str
+
+    @classmethod
+    def of(cls, row: Row) -> CodecKey:
+        """The codec of a row."""
+        return cls(*(str(row.get(name)) for name in cls._fields))
+
+    @property
+    def label(self) -> str:
+        """What a reader calls it."""
+        return " ".join([self.encoding, self.storage, *([self.rounding] if self.rounding != "nearest" else [])])
+
+
+@dataclass(frozen=True)
+class SphereMap:
+    """A codec's errors over the sphere; see `charts.sphere_chart` for the arrays."""
+
+    key: CodecKey
+    bits: int
+    mean_deg: np.ndarray
+    max_deg: np.ndarray
+    directions: int
+
+
+@dataclass(frozen=True)
+class PictureSet:
+    """The pictures of a codec on an image: files by kind."""
+
+    key: CodecKey
+    normals: str
+    files: Mapping[str, Path]
+
+
+@dataclass(frozen=True)
+class Front:
+    """Cost against error, as `pareto.pareto_figure` takes them."""
+
+    error: Error
+    panels: Sequence[Panel]
+
+
+@dataclass(frozen=True)
+class Found:
+    """A run.
+
+    Attributes:
+        name: the folder's.
+        facts: what run.json says.
+        tables: rows by table, as they were kept.
+        short: of each table what people look at first: titles and rows.
+        asked: the tables that were asked for.
+        steps: how many have their rows.
+        domains: of each encoding, the normals that it is made for.
+        preferred: codecs whose pictures come first.
+        pictures: the pictures of codecs.
+        originals: by set, the normals as they are.
+        maps: errors over the sphere.
+        fronts: cost against error.
+        listings: disassemblies, text by name.
+        order: where costs are in another order than the article's, and why, in lines.
+        remarks: what does not fit, in sentences.
+    """
+
+    name: str
+    facts: Row
+    tables: Mapping[str, Sequence[Row]]
+    short: Mapping[str, Sequence[tuple[str, Sequence[Row]]]] = field(default_factory=dict)
+    asked: Sequence[str] = ()
+    steps: int = 0
+    domains: Mapping[str, str] = field(default_factory=dict)
+    preferred: Sequence[CodecKey] = ()
+    pictures: Sequence[PictureSet] = ()
+    originals: Mapping[str, Path] = field(default_factory=dict)
+    maps: Sequence[SphereMap] = ()
+    fronts: Sequence[Front] = ()
+    listings: Mapping[str, str] = field(default_factory=dict)
+    order: Sequence[str] = ()
+    remarks: Sequence[str] = ()
+
+    def with_remarks(self, more: Sequence[str]) -> Found:
+        """The same run with more to say of it."""
+        return replace(self, remarks=[*self.remarks, *more])
+
+    @property
+    def machine(self) -> Row:
+        """Names and versions of what measured."""
+        machine = self.facts.get("machine")
+        return machine if isinstance(machine, dict) else {}
+
+    @property
+    def begun(self) -> str:
+        """When the run began; empty if it does not say."""
+        return str(self.facts.get("time") or "")
+
+    @property
+    def sources(self) -> str:
+        """The fingerprint of what computed it; empty if it does not say."""
+        return str(self.facts.get("sources") or "")
+
+    @property
+    def request(self) -> Row:
+        """What was asked for: at least `count` and `seed`."""
+        request = self.facts.get("request")
+        return {"count": None, "seed": None} | (request if isinstance(request, dict) else {})
+
+    @property
+    def command(self) -> str:
+        """The command line that made the run."""
+        words = self.facts.get("command")
+        return " ".join(["normalbench", *map(str, words if isinstance(words, list) else [])])
+
+
+def whole(rows: Sequence[Row]) -> list[Row]:
+    """Rows that all have the same columns, in the order in which these come up."""
+    columns = dict.fromkeys(column for row in rows for column in row)
+    return [{column: row.get(column) for column in columns} for row in rows]
+
+
+def plain_text(value: Any) -> Any:
+    """A value whose text, if it is one, has no control characters, no line breaks and no halves of characters."""
+    if isinstance(value, dict):
+        return {str(plain_text(str(name))): plain_text(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [plain_text(inner) for inner in value]
+    if not isinstance(value, str):
+        return value
+    return "".join(c if c.isprintable() else " " for c in value.encode("utf-8", "replace").decode("utf-8"))

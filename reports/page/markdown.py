@@ -1,0 +1,72 @@
+"""A run's report for a pull request: the answer and the tables in short, without a link."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from .. import tables
+from .found import Found, Row, whole
+from .page import judged, remarks
+
+# What GitHub takes of a comment, less room for a word of one's own.
+LONGEST = 60_000
+# Text that reads as itself in Markdown, and calls nobody.
+PLAIN = re.compile(r"[\w .,+%():;>=<'/-]*")
+CUT = "More tables than a comment holds; `normalbench report` draws them all.\n"
+
+
+def markdown(found: Found) -> str:
+    """The text, at most LONGEST characters."""
+    safe = replace(
+        found,
+        name=_plain(found.name),
+        tables={name: _rows(rows) for name, rows in found.tables.items()},
+        domains={_plain(name): domain for name, domain in found.domains.items()},
+    )
+    text = ""
+    for block in _blocks(safe):
+        if len(text) + len(block) > LONGEST - len(CUT):
+            return text + CUT
+        text += block + "\n"
+    return text.rstrip() + "\n"
+
+
+def _blocks(found: Found) -> Iterator[str]:
+    yield f"## normalbench: {found.name}\n"
+    for remark in remarks(found):
+        yield f"> {_plain(remark)}\n"
+    for at, contest in enumerate(judged(found)):
+        said = [*contest.remarks, *([contest.agreement] if at == 0 or not contest.agrees else [])]
+        yield f"**{contest.headline}** {' '.join(said)}".rstrip() + "\n"
+        if at == 0:
+            yield tables.to_markdown(contest.rows)
+    for short in found.short.values():
+        for title, rows in short:
+            if rows:
+                heading = f"<details><summary>{_plain(title)}</summary>\n"
+                yield "\n".join([heading, tables.to_markdown(_rows(whole(rows))), "</details>\n"])
+    machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
+    versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
+    yield f"Measured by {_code(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"
+
+
+def _rows(rows: Sequence[Row]) -> list[Row]:
+    return [{_plain(name): _value(value) for name, value in row.items()} for row in rows]
+
+
+def _value(value: Any) -> Any:
+    return _plain(value) if isinstance(value, str) else value
+
+
+def _plain(text: Any) -> str:
+    """Text as it is, or as code where Markdown would read something into it."""
+    text = str(text)
+    is_plain = PLAIN.fullmatch(text) and "://" not in text and "www." not in text.lower() and "<" not in text
+    return text if is_plain else _code(text)
+
+
+def _code(text: str) -> str:
+    return f"`{' '.join(text.replace('`', chr(39)).split())}`"

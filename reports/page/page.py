@@ -1,0 +1,204 @@
+"""A run's report: one HTML page that holds everything it shows, or a text for a pull request."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .. import tables
+from ..charts import spheres
+from ..charts.drawings import Drawing, inline
+from ..charts.pictures import CAPTIONS
+from . import embedded, sections
+from .definitions import definition
+from .found import Found, Row, whole
+from .verdict import Contest, contests, is_number
+
+HERE = Path(__file__).parent
+# What a contest's cheapest codec is counted by.
+STAGE = "fragment"
+# Text of more letters than this may break into lines.
+WRAPPED = 24
+KINDS = {"normals": "the normals as they are"} | CAPTIONS
+
+
+# In the order of the page.
+NAVIGATION = (
+    ("quality", "Normals"),
+    ("pictures", "Pictures"),
+    ("angles", "Angles"),
+    ("sphere", "Sphere"),
+    ("image", "Image"),
+    ("cost", "Cost"),
+    ("passes", "Passes"),
+    ("light", "Light"),
+    ("depth", "Depth"),
+    ("frames", "Frames"),
+    ("measured", "Measured"),
+)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A table's cell: what is read, what it is sorted by, and its class in page.css."""
+
+    text: str
+    value: str
+    style: str
+
+
+@dataclass(frozen=True)
+class Column:
+    """A table's column."""
+
+    name: str
+    title: str
+    definition: str
+    numeric: bool
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table as the template shows it; `constants` says what is the same in every row."""
+
+    title: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[Cell]]
+    constants: str
+    folded: bool = False
+
+
+def table(title: str, rows: Sequence[Row], folded: bool = False) -> Table:
+    """Rows as a table to show; columns that say the same in each row are said once."""
+    shown, constants = tables.without_constants(whole(rows))
+    columns = [
+        Column(name, name.replace("_", " "), definition(name), tables.is_numeric(shown, name)) for name in shown[0]
+    ]
+    cells = [[_cell(row[c.name], c.numeric) for c in columns] for row in shown]
+    return Table(title, columns, cells, constants.replace("_", " "), folded)
+
+
+def _cell(value: Any, numeric: bool) -> Cell:
+    text = tables.text_of(value)
+    if numeric:
+        return Cell(text, repr(float(value)) if text else "", "n")
+    return Cell(text, text, "long" if len(text) > WRAPPED else "")
+
+
+def instructions(rows: Sequence[Row]) -> tuple[dict[str, float], str]:
+    """Instructions to encode and decode, together, by encoding: of the last GPU family in fragment shaders; and which
+    family that is."""
+    usable = [r for r in rows if r.get("stage") == STAGE and r.get("encoding") and is_number(r.get("instructions"))]
+    family = usable[-1].get("family") if usable else ""
+    both: dict[str, list[float]] = {}
+    for row in usable:
+        if row.get("family") == family:
+            both.setdefault(row["encoding"], []).append(row["instructions"])
+    return {name: sum(counts) for name, counts in both.items() if len(counts) == 2}, str(family)
+
+
+def judged(found: Found) -> list[Contest]:
+    """The questions that the run answers."""
+    costs, _ = instructions(found.tables.get("cost", ()))
+    return contests(found.tables.get("quality", ()), found.tables.get("render", ()), costs, found.domains)
+
+
+def remarks(found: Found) -> list[str]:
+    """What a reader must know of the run before its figures."""
+    said = list(found.remarks)
+    if not found.facts.get("finished"):
+        said.insert(
+            0, f"This run is not finished: {found.steps} steps have their rows, and what others would say is open."
+        )
+    return said
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A drawing in the page."""
+
+    drawing: Drawing
+    svg: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section as the template shows it."""
+
+    section: sections.Section
+    charts: Sequence[Chart]
+    tables: Sequence[Table]
+    measured: Sequence[tuple[str, str]]
+    asked: bool
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the run has anything of it."""
+        return bool(self.tables)
+
+
+def drawings(found: Found) -> dict[str, list[Drawing]]:
+    """Every chart of a run by the section that shows it; "angles" and "sphere" are of sections of their own."""
+    made = {s.key: list(s.drawings(found, s.rows(found))) for s in sections.SECTIONS}
+    made["angles"] = list(sections.histograms(found, whole(found.tables.get("quality", ()))))
+    made["sphere"] = spheres.drawings(found.maps)
+    return made
+
+
+def _template() -> Any:
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html.j2")
+
+
+def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> str:
+    """The page.
+
+    Args:
+        found: the run.
+        svgs: the drawings' SVG files, by name; one that is missing is not shown.
+        gallery: its pictures.
+    """
+    made = drawings(found)
+    parts = [_part(found, section, made[section.key], svgs) for section in sections.SECTIONS]
+    script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
+    titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
+    return _template().render(
+        found=found,
+        remarks=remarks(found),
+        nav=NAVIGATION,
+        contests=[(contest, table(title, contest.rows)) for contest, title in titled],
+        family=instructions(found.tables.get("cost", ()))[1],
+        parts={part.section.key: part for part in parts},
+        angles=_charts(made["angles"], svgs),
+        spheres=spheres.globes(found.maps),
+        directions=found.maps[0].directions if found.maps else 0,
+        cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
+        strip=spheres.colour_strip(),
+        gallery=gallery,
+        kinds=KINDS,
+        script=script,
+        style=style,
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
+    )
+
+
+def _charts(made: Sequence[Drawing], svgs: Mapping[str, str]) -> list[Chart]:
+    return [Chart(d, inline(svgs[d.name], d)) for d in made if d.name in svgs]
+
+
+def _part(found: Found, section: sections.Section, made: Sequence[Drawing], svgs: Mapping[str, str]) -> Part:
+    shown = [table(sheet.title, sheet.rows, sheet.folded) for sheet in section.sheets(found)]
+    asked = section.table in found.asked
+    return Part(section, _charts(made, svgs), shown, section.measured(found), asked)

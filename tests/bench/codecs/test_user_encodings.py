@@ -1,0 +1,129 @@
+"""Users' own encodings from GLSL files: measured, and what is wrong with them said in a line that spares the others."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.codecs import user_encodings
+from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.encodings.catalogue import NAMES
+
+pytestmark = pytest.mark.usefixtures("gl")
+(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[3] / "README.md").read_text(), re.S)
+TWIN = """
+from normalbench.encodings.vec import Vec2, Vec3, normalize
+
+
+def encode(n, view):
+    s = abs(n.x) + abs(n.y) + abs(n.z)
+    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
+
+
+def decode(e, view):
+    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
+    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
+"""
+QUICK = ("--normals", "hemisphere", "--count", "65536", "--format", "json")
+
+
+def written(folder: Path, text: str = MINE, name: str = "mine.glsl") -> str:
+    (folder / name).write_text(text)
+    return str(folder / name)
+
+
+def test_two_functions_are_measured_like_any_other(run, tmp_path):
+    """Half the sphere in the whole square: about a bit more than the octahedron is worth there."""
+    path = written(tmp_path)
+    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
+    rows = {row["encoding"]: row for row in json.loads(out)}
+    assert (status, err) == (0, "")
+    assert 0.8 < rows["mine"]["effective_bits"] - rows["octahedral"]["effective_bits"] < 1.2, rows
+    status, out, _ = run("render", "--encoding", path, "--size", "64x48", "--repeats", "1", "--format", "json")
+    assert status == 0 and json.loads(out)[0]["encoding"] == "mine"
+
+
+def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path):
+    path = written(tmp_path)
+    status, out, err = run("quality", "--encoding", path, *QUICK)
+    jax_row, gl_row = json.loads(out)
+    assert status == 0 and "in GLSL only" in jax_row["skipped"] and "mine.py is not there" in err
+    (tmp_path / "mine.py").write_text(TWIN)
+    _, out, err = run("quality", "--encoding", path, *QUICK)
+    by_jax, by_gl = json.loads(out)
+    assert err == "" and by_jax["psnr_db"] == pytest.approx(by_gl["psnr_db"], abs=0.02)
+    assert by_gl["psnr_db"] == gl_row["psnr_db"]
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        (MINE.replace("p.x + p.y, p.x", "q.x + p.y, p.x"), "mine.glsl:4: error"),
+        (MINE.replace("mine_encode", "mine_pack"), "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"),
+        (MINE.replace("mine_decode", "my_decode"), "no function vec3 mine_decode(vec2 e, vec3 view)"),
+        (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
+        (MINE.replace("mine_", "octahedral_"), "there is an encoding named octahedral already"),
+        ("", "no function vec2"),
+    ],
+)
+def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
+    path = written(tmp_path, text)
+    status, out, err = run("quality", "--encoding", path, *QUICK)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
+    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
+    assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
+
+
+def test_two_files_of_one_name_are_told_apart(run, tmp_path):
+    one, other = written(tmp_path), written(tmp_path, name="other.glsl")
+    status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
+    assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
+
+
+def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
+    """A session of tests, or a file of gates, measures the same in any order."""
+    path = written(tmp_path)
+    assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
+    assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
+    assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
+
+
+def test_a_missing_file_and_a_twin_that_fails_are_one_line(run, tmp_path):
+    status, _, err = run("quality", "--encoding", str(tmp_path / "none.glsl"), *QUICK)
+    assert status == 2 and "cannot be read as a shader" in err and err.count("\n") == 1
+    (tmp_path / "mine.py").write_text("def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n")
+    status, _, err = run("quality", "--encoding", written(tmp_path), *QUICK)
+    assert status == 2 and "mine.py: AttributeError" in err and err.count("\n") == 1
+    (tmp_path / "mine.py").write_text("print('hello')\nraise SystemExit(0)\n")
+    status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
+    assert (status, out) == (2, "") and "mine.py: SystemExit" in err
+
+
+def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):
+    path = written(tmp_path)
+    monkeypatch.setattr(user_encodings, "TIME_LIMIT", 0.01)
+    status, _, err = run("quality", "--encoding", path, *QUICK)
+    assert status == 2 and "did not end within 0.01 s" in err
+    monkeypatch.setattr(user_encodings, "TIME_LIMIT", 60.0)
+    killer = tmp_path / "python"
+    killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
+    killer.chmod(0o755)
+    monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
+    status, _, err = run("quality", "--encoding", path, *QUICK)
+    assert status == 2 and "killed the process (SIGSEGV)" in err
+
+
+def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
+    path = written(tmp_path, MINE.replace("vec3(p, 1.0", "vec3(-p, 1.0"))
+    status, out, err = run("quality", "--encoding", path, "--backend", "glsl", *QUICK)
+    assert status == 0 and len(json.loads(out)) == 1 and "degrees off on average" in err
+
+
+def test_the_first_look_finds_the_domain(tmp_path):
+    found = first_look(Path(written(tmp_path)))
+    assert found["mean_deg"]["hemisphere"] < 0.01 and found["mean_deg"]["sphere"] > 15
+    assert len(directions()) > 4000
+    assert read_encoding(Path(written(tmp_path))).components == 2

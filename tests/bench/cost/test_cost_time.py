@@ -1,0 +1,142 @@
+"""Cost by the clock: the arithmetic against clocks that a test makes up, and the rows of a device and of JAX."""
+
+import json
+import math
+from contextlib import ExitStack
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.bench.tables.cost import clocks as cost_clocks
+from normalbench.bench.tables.cost import jax_time as cost_jax
+from normalbench.bench.tables.cost.clocks import LEAST_TURNS, MOST_TURNS, Field, Pair, Passes, median_interval, summary
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.vec import Vec3
+from normalbench.gbuffer.defines import kernels
+from normalbench.gbuffer.gl.device import read_pixels
+
+PIXELS = 4096
+
+
+def clock_of(operation_ns: float, empty_ns: float, start_ms: float = 0.7):
+    """Milliseconds of passes that take so long to start, and so many nanoseconds for a turn of a pixel."""
+    return lambda which, turns: start_ms + turns * PIXELS * (empty_ns if which else operation_ns) * 1e-6
+
+
+@pytest.mark.parametrize("operation, empty", [(3.0, 0.5), (40.0, 2.0), (0.25, 0.25), (1.0, 1.5)])
+def test_a_difference_is_what_the_operation_takes_more(operation, empty):
+    """A nanosecond a pixel is a million nanoseconds for a million of them, whatever starting a pass takes."""
+    assert Pair(clock_of(operation, empty), PIXELS).difference() == pytest.approx((operation - empty) * 1e6)
+
+
+def test_a_pass_that_is_disturbed_does_not_count():
+    """One of five is enough for either."""
+    quiet, calls = clock_of(3.0, 0.5), []
+
+    def disturbed(which: int, turns: int) -> float:
+        calls.append(which)
+        return quiet(which, turns) + (5.0 if calls.count(which) % cost_clocks.PASSES else 0.0)
+
+    pair = Pair(quiet, PIXELS)
+    pair._milliseconds = disturbed
+    assert pair.difference() == pytest.approx(2.5e6)
+
+
+def test_turns_make_a_pass_long_enough_and_never_too_many():
+    long, endless = Pair(clock_of(3.0, 0.5), PIXELS), Pair(clock_of(1e-9, 1e-9, 0.0), PIXELS)
+    assert clock_of(3.0, 0.5)(0, long.turns) >= cost_clocks.PASS_MS / 2 and long.turns > LEAST_TURNS
+    assert endless.turns == MOST_TURNS
+    assert Pair(clock_of(1e6, 0.5), PIXELS).turns == LEAST_TURNS
+
+
+def test_a_summary_is_the_median_and_its_interval():
+    taken = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 80.0, 900.0]
+    assert summary("ns_per_megapixel", taken[::-1]) == {"ns_per_megapixel": 5.0, "spread": 78.0}
+
+
+@pytest.mark.parametrize("count, low, high", [(2, 1, 2), (5, 1, 5), (6, 1, 6), (9, 2, 8), (15, 4, 12), (21, 6, 16)])
+def test_the_median_lies_in_its_interval_as_surely_as_is_said(count, low, high):
+    """Of so many samples these, by tables of the sign test; the next ones inwards would not be sure enough."""
+    assert median_interval(list(range(1, count + 1))) == (low, high)
+
+    def chance(cut: int) -> float:
+        return 1 - 2 * sum(math.comb(count, k) for k in range(cut)) / 2**count
+
+    assert count < 6 or chance(low) >= cost_clocks.SURE > chance(low + 1)
+
+
+def test_each_turn_computes_again(gl):
+    """What is added to the inputs after each turn reaches the next: no compiler can compute a turn once for all."""
+    turns, nothing = 5, 0.25
+    for numbers, operation in ((3, kernels.encode(ENCODINGS["xyz"])), (2, kernels.decode(ENCODINGS["xy"]).empty)):
+        with ExitStack() as stack:
+            field = Field(gl, stack, (8, 4))
+            Passes(field, operation).render(0, turns, nothing)
+            given = read_pixels(field.points(numbers))
+            made = read_pixels(field.targets[0])
+        expected = turns * given[..., :numbers] + nothing * sum(range(turns))
+        assert np.allclose(made[..., :numbers], expected, atol=1e-5)
+
+
+@pytest.mark.usefixtures("gl")
+def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
+    words = ["--encoding", "spheremap,per_pixel_view", "--storage", "rgba8,12:12", "--size", "64x64", "--repeats", "3"]
+    status, out, err = run("cost", "--time", *words, "--format", "json")
+    rows = json.loads(out)
+    assert (status, err) == (0, "") and {row["measure"] for row in rows} == {"time"} and len(rows) == 4 + 6
+    found = {(row["encoding"] or row["storage"], row["operation"]): row for row in rows}
+    for row in rows:
+        assert row["device"] and row["driver"] and row["clock"] and row["turns"] >= 16 and row["size"] == "64x64"
+        assert row["software"] is (row["clock"] != "GL timer query") and row["spread"] >= 0
+    view, spheremap, packed = (
+        found[key]["ns_per_megapixel"]
+        for key in (("per_pixel_view", "encode"), ("spheremap", "encode"), ("rgb8_12_12 12:12", "pack"))
+    )
+    assert view > spheremap > 0 and packed > 0, "a frame by pixel costs more than spheremap"
+
+
+def test_jax_rates_are_millions_a_second():
+    """Of calls of 20 ms and 10 ms the faster counts: two million normals in 10 ms are 200 millions in a second."""
+    ends = iter([0.0, 0.020, 0.020, 0.030])
+    assert cost_jax.rate(lambda: None, 2_000_000, lambda: next(ends)) == pytest.approx(200.0)
+
+
+def test_accelerators_and_cores_add_up_the_same():
+    n, view = (Vec3(*jnp.asarray(np.random.default_rng(i).normal(size=(3, 2**16)).astype(np.float32))) for i in (0, 1))
+    encode = ENCODINGS["per_pixel_view"].encode
+    whole = float(cost_jax.total(encode, n, view))
+    assert whole == pytest.approx(float(cost_jax.total_by_blocks(encode, n, view)), rel=1e-4)
+    assert whole == pytest.approx(float(sum(c.sum() for c in encode(n, view))), rel=1e-4)
+
+
+def test_jax_rows_name_their_ceiling(run):
+    words = ["--encoding", "xyz,spherical_lut", "--repeats", "3", "--count", "65536"]
+    status, out, err = run("cost", "--jax", *words, "--format", "json")
+    rows = json.loads(out)
+    assert (status, err) == (0, "") and len(rows) == 4
+    for row in rows:
+        assert row["millions_per_second"] > 0 and row["ceiling"] > 0 and row["clock"] == "wall clock"
+    encoders = {row["encoding"]: row["ceiling"] for row in rows if row["operation"] == "encode"}
+    assert len(set(encoders.values())) == 1, "the same numbers go in"
+
+
+def test_normals_that_memory_does_not_hold_are_one_line(run, monkeypatch):
+    def too_many(_):
+        raise MemoryError
+
+    monkeypatch.setattr(cost_jax, "make_input", too_many)
+    status, out, err = run("cost", "--jax", "--encoding", "xy", "--count", str(2**28), "--format", "json")
+    assert status == 3 and err.count("\n") == 1 and "has not the memory" in err
+    assert [row["skipped"] is not None for row in json.loads(out)] == [True]
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_software_rasteriser_draws_one_tile(run):
+    status, out, _ = run(
+        "cost", "--time", "--encoding", "xy", "--storage", "rgba8", "--repeats", "2", "--format", "json"
+    )
+    assert status == 0
+    for row in json.loads(out):
+        assert row["size"] == ("64x64" if quality.require_device().is_software else "1024x1024")

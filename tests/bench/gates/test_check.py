@@ -1,0 +1,127 @@
+"""`normalbench check`: gates that pass, fail, and say what is wrong with them."""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from normalbench.bench.gates.gates import checked, read_gates
+from normalbench.bench.gates.limits import Limit
+from normalbench.bench.output.errors import MissingError, UsageError
+from normalbench.bench.results.runs import Step, opened
+
+PASSES = '[[gate]]\nencoding = "spheremap"\nstorage = "rgba8"\nnormals = "playground"\npsnr_db = "at least 47.5"\n'
+
+
+def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text(PASSES)
+    status, out, err = run("check", str(path), "--format", "json")
+    (row,) = json.loads(out)
+    assert (status, err) == (0, "") and row["holds"] == "pass" and row["figure"] > 47.5
+    path.write_text(PASSES + 'angle_max_deg = "at most 0.95"\n')
+    status, out, err = run("check", str(path))
+    assert status == 1 and "1 of 2 limits do not hold" in err
+    assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
+    rows = json.loads(run("check", str(path), "--format", "json")[1])
+    assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
+
+
+@pytest.mark.usefixtures("gl")
+def test_an_image_may_be_a_gate(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text('[[gate]]\ntable = "render"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 20"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    assert status == 0 and json.loads(out)[0]["table"] == "render"
+    path.write_text(path.read_text().replace("at least 20", "at least 99") + 'flip = "at most 0.5"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    psnr, flip = json.loads(out)
+    assert status == 1 and "comes back as" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
+    """The codec that is usual for a gate is not put into it."""
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
+    )
+    (row,) = json.loads(run("check", str(path), "--format", "json")[1])
+    assert row["row"].startswith("best_fit rgba8 nearest hybrid cryengine3"), row
+
+
+def test_figures_may_come_from_a_run(run, tmp_path):
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    rows = [{"code": "a", "distance": 10.0, "error": 0.5}, {"code": "b", "distance": 10.0, "error": float("inf")}]
+    with opened(folder, {}) as made:
+        made.rows(Step("depth", {}, lambda: rows))
+    gate = '[[gate]]\ntable = "depth"\ncode = "{}"\ndistance = 10\nerror = "at most 0.5"\n'
+    path.write_text(gate.format("a") + gate.format("a, b"))
+    status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
+    assert status == 1 and [row["holds"] for row in json.loads(out)] == ["pass", "pass", "FAIL"]
+
+
+def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
+    least, most = Limit("x", "at least", 2.0), Limit("x", "at most", 2.0)
+    assert least.holds(2) and most.holds(2.0) and least.holds(float("inf")) and not most.holds(float("inf"))
+    assert not any(limit.holds(figure) for limit in (least, most) for figure in (None, float("nan"), "2"))
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("", "gates are [[gate]] tables"),
+        ("gate = 1", "gates are [[gate]] tables"),
+        ("gate = []", "0 gates; from 1"),
+        ("[[gate]]\n[other]", "gates are [[gate]] tables"),
+        ("[[gate]", "cannot be read as gates"),
+        ('[[gate]]\nencoding = "xy"', "holds no column to anything"),
+        ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is no number"),
+        ('[[gate]]\npsnr_db = "at least nan"', "nan is no number"),
+        ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is no number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
+        ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; true or false would do"),
+        ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is no number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; a text or a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; a whole number would do"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; a whole number would do"),
+        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: encoding"),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
+        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; there are encoding"),
+        ('[[gate]]\ntable = "depth"\nerror_max = "at most 1"', "'depth' is not measured here, only quality, render"),
+    ],
+)
+def test_bad_gates_are_one_line_with_their_place(run, tmp_path, text, said):
+    path = tmp_path / "gates.toml"
+    path.write_text(text)
+    status, out, err = run("check", str(path))
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err and "gates.toml" in err, err
+
+
+def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
+    assert "cannot be read as gates" in run("check", str(tmp_path / "none.toml"))[2]
+    (tmp_path / "gates.toml").write_text(PASSES)
+    status, _, err = run("check", str(tmp_path / "gates.toml"), "--run", str(tmp_path))
+    assert status == 2 and "is no results folder" in err and err.count("\n") == 1
+
+
+LIMITS = st.sampled_from(["at least 1", "at most nan"])
+VALUES = st.one_of(st.text(max_size=8), st.integers(), st.floats(), st.booleans(), LIMITS)
+NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_db", "x", "normals"])
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(st.one_of(st.text(max_size=200), st.lists(st.dictionaries(NAMES, VALUES, max_size=5), max_size=3)))
+def test_no_gates_give_a_traceback(tmp_path_factory, content):
+    """Text of every kind, and gates of every value: they are read and refused, or measured."""
+    path = tmp_path_factory.mktemp("gates") / "gates.toml"
+    if not isinstance(content, str):
+        lines = (f"{name} = {json.dumps(value)}" for gate in content for name, value in [("", None), *gate.items()])
+        content = "\n".join("[[gate]]" if line.startswith(" = ") else line for line in lines)
+    path.write_text(content, encoding="utf-8", errors="surrogatepass")
+    try:
+        gates = [gate for gate in read_gates(path) if gate.options.get("count", 10**9) in range(1, 1000)]
+        list(checked(gates, None, lambda _: None))
+    except (UsageError, MissingError) as error:
+        assert "\n" not in str(error) or "gates" in str(error)

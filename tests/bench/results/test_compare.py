@@ -1,0 +1,116 @@
+"""`normalbench compare`: nothing of the same work, exactly what is another, times only beyond chance."""
+
+import itertools
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_readme import a_copy_of_the_rooms
+
+from normalbench.bench.results.comparison import compared, mann_whitney
+from normalbench.bench.results.runs import Done, read_run
+
+MACHINE = {"machine": {"GL": "one"}}
+
+
+def run_of(*rows: dict, facts=MACHINE) -> Done:
+    return Done(facts, [{"table": "t", "key": {"encoding": row["encoding"]}, "rows": [row]} for row in rows])
+
+
+def timed(name: str, times) -> dict:
+    return {"encoding": name, "ms_frame": float(np.median(times)), "ms_frame_each": " ".join(map(str, times))}
+
+
+def test_the_rank_test_is_exact():
+    """Against every way to deal nine ranks; and the known least of nine against nine, 2 / 48620."""
+    one, other = [1.0, 4.0, 2.5, 8.0], [3.0, 9.0, 7.0, 6.0, 5.0]
+    u = sum(a > b for a in one for b in other)
+    dealt = [
+        sum(a > b for a in chosen for b in set(range(9)) - set(chosen))
+        for chosen in itertools.combinations(range(9), 4)
+    ]
+    exact = np.mean([abs(k - 10) >= abs(u - 10) for k in dealt])
+    assert mann_whitney(one, other) == pytest.approx(exact, abs=1e-12)
+    assert mann_whitney(range(9), range(10, 19)) == pytest.approx(2 / 48620, rel=1e-9)
+    assert mann_whitney([1, 1, 1], [1, 1, 1]) == 1
+
+
+def test_figures_are_compared_exactly_and_nan_is_itself():
+    same = {"encoding": "a", "psnr_db": 1 / 3, "angle": float("nan"), "clock": "wall", "ms_frame": 1.0}
+    assert compared(run_of(same), run_of(same | {"ms_frame": 9.0, "clock": "query"})) == []
+    (change,) = compared(run_of(same), run_of(same | {"psnr_db": np.nextafter(1 / 3, 1)}))
+    assert (change["table"], change["row"], change["column"]) == ("t", "a", "psnr_db")
+
+
+def test_steps_that_one_run_lacks_are_named():
+    a, b = {"encoding": "a", "x": 1}, {"encoding": "b", "x": 1}
+    (change,) = compared(run_of(a, b), run_of(b))
+    assert (change["row"], change["before"], change["after"]) == ("a", True, False)
+
+
+def step_of(*rows: dict) -> Done:
+    return Done(MACHINE, [{"table": "cost", "key": {"family": "navi31"}, "rows": list(rows)}])
+
+
+def test_rows_of_one_step_are_paired_by_what_they_are():
+    """A row that one run lacks is named, and moves no other; two rows of one name are paired in their order."""
+    names = [("xyz", "encode"), ("xyz", "decode"), ("octahedral", "encode"), ("octahedral", "encode")]
+    about = [
+        {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "x": x}
+        for x, (e, o) in enumerate(names)
+    ]
+    changes = compared(step_of(*about), step_of(about[0], about[2], about[3] | {"x": 9}))
+    lost, other = sorted(changes, key=lambda change: change["column"])
+    assert (lost["row"], lost["change"]) == ("xyz decode fragment navi31", "only one has it")
+    assert (other["row"], other["before"], other["after"]) == ("octahedral encode fragment navi31", 3, 9)
+
+
+def test_a_small_difference_is_none_however_sure():
+    base = 10 + np.linspace(0, 0.01, 9)
+    for factor, changed in ((1.02, False), (0.98, False), (1.08, True), (0.92, True)):
+        assert mann_whitney(base, base * factor) < 1e-4
+        assert bool(compared(run_of(timed("a", base)), run_of(timed("a", base * factor)))) == changed
+
+
+def test_times_count_beyond_chance_and_a_least_effect_and_on_one_machine():
+    rng = np.random.default_rng(0)
+    base = 10 + rng.uniform(-0.5, 0.5, 9)
+    slow, slightly, noisy = base * 1.2, base * 1.02, 10 + rng.uniform(-3, 3, 9) + 0.6
+    for times, changed in ((slow, True), (slightly, False), (noisy, False), (rng.permutation(base), False)):
+        rows = compared(run_of(timed("a", base)), run_of(timed("a", times)))
+        assert bool(rows) == changed, (times, rows)
+    elsewhere = run_of(timed("a", slow), facts={"machine": {"GL": "two"}})
+    assert compared(run_of(timed("a", base)), elsewhere) == []
+
+
+def in_a_copy(folder: Path, name: str) -> None:
+    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "quality", "--count", "4096", "-o", name]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.usefixtures("gl")
+def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_its_rows_alone(run, tmp_path):
+    """The stereographic scale of another number: every row of it and no other."""
+    package = a_copy_of_the_rooms(tmp_path)
+    in_a_copy(tmp_path, "one")
+    in_a_copy(tmp_path, "two")
+    status, out, err = run("compare", str(tmp_path / "one"), str(tmp_path / "two"), "--format", "json")
+    assert (status, json.loads(out)) == (0, []) and "no change in" in err
+    path = package / "encodings/normals/stereographic.py"
+    path.write_text(path.read_text().replace("SCALE = 1.7777", "SCALE = 1.7"))
+    in_a_copy(tmp_path, "altered")
+    status, out, _ = run("compare", str(tmp_path / "one"), str(tmp_path / "altered"), "--format", "json")
+    rows = json.loads(out)
+    assert status == 0 and {row["row"].split()[0] for row in rows} == {"stereographic"}
+    altered = {step["key"]["backend"] for step in read_run(tmp_path / "one").steps}
+    assert len({row["row"] for row in rows if row["column"] == "psnr_db"}) == 2 * 2 * len(altered)
+    assert "row" in run("compare", str(tmp_path / "one"), str(tmp_path / "altered"))[1]
+
+
+def test_what_is_no_run_is_one_line(run, tmp_path):
+    status, out, err = run("compare", str(tmp_path), str(tmp_path))
+    assert (status, out) == (2, "") and "is no results folder" in err and err.count("\n") == 1

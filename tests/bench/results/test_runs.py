@@ -1,0 +1,245 @@
+"""Results folders: what finished stays, what was stopped goes on, and reading never writes."""
+
+import json
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.isa import isa, spirv
+from normalbench.bench.output import journal
+from normalbench.bench.normals import normal_sets
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.suite import run_command, short
+from normalbench.bench.output.errors import UsageError
+from normalbench.bench.results.runs import ROWS, Step, opened, read_run, same_work, sources, unfinished
+from normalbench.bench.suite.suite import TABLES, SuiteRequest
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.reports import tables
+
+FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
+
+
+def steps(count: int, measured: list[int]) -> list[Step]:
+    def measure(number: int) -> list[dict]:
+        measured.append(number)
+        return [{"number": number, "figure": number / 3, "nothing": None}]
+
+    return [Step("table", {"number": n}, lambda n=n: measure(n)) for n in range(count)]
+
+
+def test_a_finished_step_is_not_measured_twice(tmp_path):
+    measured: list[int] = []
+    for last in (3, 5):
+        with opened(tmp_path / "run", FACTS) as run:
+            rows = [run.rows(step) for step in steps(last, measured)]
+    assert measured == [0, 1, 2, 3, 4] and rows[1] == [{"number": 1, "figure": 1 / 3, "nothing": None}]
+    assert [row["number"] for row in read_run(tmp_path / "run").tables["table"]] == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("cut", range(1, 80, 7))
+def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
+    folder, measured = tmp_path / "run", []
+    with opened(folder, FACTS) as run:
+        for step in steps(3, measured):
+            run.rows(step)
+    whole = (folder / ROWS).read_bytes()
+    (folder / ROWS).write_bytes(whole[:-cut])
+    assert len(read_run(folder).tables["table"]) == 2, "the cut line is not there"
+    assert (folder / ROWS).read_bytes() == whole[:-cut], "reading does not write"
+    measured.clear()
+    with opened(folder, FACTS) as run:
+        for step in steps(3, measured):
+            run.rows(step)
+    assert measured == [2] and (folder / ROWS).read_bytes() == whole
+
+
+@pytest.mark.parametrize(
+    "file, text, said",
+    [
+        ("run.json", "[" * 100_000, "is no results folder"),
+        (ROWS, '{"table": "quality", "key": {}, "rows": 3}', "line 1 is no step"),
+        (ROWS, '{"table": ["x"], "key": 3, "rows": []}', "line 1 is no step"),
+        (ROWS, '{"table": "quality", "key": {}, "rows": [1]}', "line 1 is no step"),
+    ],
+)
+def test_a_damaged_folder_is_one_line_and_no_failed_gate(run, tmp_path, file, text, said):
+    folder, gates = tmp_path / "run", tmp_path / "gates.toml"
+    folder.mkdir()
+    (folder / "run.json").write_text(json.dumps(FACTS | {"finished": True}))
+    (folder / file).write_text(text + "\n")
+    gates.write_text('[[gate]]\nencoding = "xyz"\npsnr_db = "at least 1"\n')
+    for command in (["report"], ["compare", str(folder)], ["check", str(gates), "--run"]):
+        status, out, err = run(*command, str(folder))
+        assert (status, out) == (2, "") and said in err and err.count("\n") == 1, (command, err)
+
+
+def test_two_processes_cannot_write_one_folder(tmp_path):
+    with opened(tmp_path / "run", FACTS), pytest.raises(UsageError, match="another process writes"):
+        opened(tmp_path / "run", FACTS).__enter__()
+
+
+def test_other_work_and_finished_runs_are_left_alone(tmp_path):
+    folder = tmp_path / "run"
+    with opened(folder, FACTS) as run:
+        run.rows(steps(1, [])[0])
+    before = (folder / ROWS).read_bytes()
+    for name in ("request", "sources", "machine"):
+        with pytest.raises(UsageError, match="other options, sources or machine"), opened(folder, FACTS | {name: "x"}):
+            pass
+    with opened(folder, FACTS) as run:
+        run.finish()
+    with pytest.raises(UsageError, match="finished run"), opened(folder, FACTS):
+        pass
+    assert (folder / ROWS).read_bytes() == before and read_run(folder).finished
+
+
+def test_a_folder_with_something_else_is_not_touched(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(UsageError, match="holds no run"), opened(tmp_path, FACTS):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+    with pytest.raises(UsageError, match="no results folder"):
+        read_run(tmp_path)
+
+
+def test_a_full_disk_loses_no_finished_row(tmp_path, monkeypatch):
+    folder, measured = tmp_path / "run", []
+    with opened(folder, FACTS) as run:
+        run.rows(steps(1, measured)[0])
+    before = (folder / ROWS).read_bytes()
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    with opened(folder, FACTS) as run:
+        monkeypatch.setattr(journal.os, "fsync", full)
+        with pytest.raises(UsageError, match="No space left on device; 1 finished steps are kept"):
+            run.rows(steps(2, measured)[1])
+    assert (folder / ROWS).read_bytes() == before
+
+
+def test_the_newest_stopped_run_of_the_same_work_goes_on(tmp_path):
+    for name, facts in (("1", FACTS), ("2", FACTS), ("3", FACTS | {"sources": "other"}), ("4", FACTS)):
+        with opened(tmp_path / name, facts) as run:
+            if name == "4":
+                run.finish()
+    assert unfinished(tmp_path, FACTS) == tmp_path / "2"
+    assert unfinished(tmp_path / "nowhere", FACTS) is None
+    assert same_work(FACTS, FACTS | {"time": "now", "finished": True})
+
+
+def test_sources_are_known_by_their_content():
+    assert sources() == sources() and len(sources()) == 16
+
+
+def begun(folder: Path, *arguments: str) -> subprocess.Popen:
+    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth", "-o", str(folder), *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def lines_of(folder: Path) -> list[str]:
+    path = folder / ROWS
+    return path.read_text().split("\n")[:-1] if path.exists() else []
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
+    """SIGKILL at random moments, ten of them: what was finished stays byte for byte, and the table is the same."""
+    undisturbed, killed = tmp_path / "undisturbed", tmp_path / "killed"
+    out, err = begun(undisturbed).communicate(timeout=120)
+    total, chance = len(lines_of(undisturbed)), random.Random(0)
+    assert total > 20, err
+    before: list[str] = []
+    for target in sorted(chance.sample(range(total), 10)):
+        process = begun(killed)
+        while process.poll() is None and len(lines_of(killed)) < target:
+            time.sleep(0.002)
+        time.sleep(chance.uniform(0, 0.05))
+        process.kill()
+        process.communicate()
+        now = lines_of(killed)
+        assert now[: len(before)] == before, "a finished row changed"
+        before = now
+    done = begun(killed)
+    resumed_out, resumed_err = done.communicate(timeout=120)
+    assert done.returncode == 0 and f"{len(before)} of {total} steps are there" in resumed_err, resumed_err
+    assert lines_of(killed)[: len(before)] == before
+    assert read_run(killed).tables == read_run(undisturbed).tables
+    assert resumed_out.replace(str(killed), "") == out.replace(str(undisturbed), "")
+    for name in ("depth.csv", "depth.json"):
+        assert (killed / name).read_bytes() == (undisturbed / name).read_bytes()
+
+
+def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, monkeypatch):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    case = quality.Case(Codec(ENCODINGS["octahedral"], STORAGES["rgba8"]), normal_sets.axes(0, 0), "jax")
+    rows = [quality.measure(case), quality.measure(case) | {"psnr_db": math.inf, "bits": None}]
+    run_command._write_table(tmp_path / "rows", rows)
+    table = parquet.read_table(tmp_path / "rows.parquet")
+    assert table.to_pylist() == rows
+    run_command._write_table(tmp_path / "wide", [{"codes": 2**130, "bits": None}, {"codes": 3, "bits": 8}])
+    wide = parquet.read_table(tmp_path / "wide.parquet").to_pylist()
+    assert wide == [{"codes": 2.0**130, "bits": None}, {"codes": 3.0, "bits": 8}]
+    assert [str(table.schema.field(name).type) for name in ("bits", "psnr_db", "exact")] == ["int64", "double", "bool"]
+    monkeypatch.setattr(tables, "find_spec", lambda _: None)
+    run_command._write_table(tmp_path / "others", rows)
+    assert sorted(path.suffix for path in tmp_path.glob("others.*")) == [".csv", ".json"]
+
+
+@pytest.mark.usefixtures("gl")
+def test_every_table_has_steps_and_its_short_form():
+    assert set(TABLES) == set(short.SHORT)
+    found = SuiteRequest(count=4096).steps()
+    compilers = not isa.missing() and spirv.version(spirv.COMPILER)
+    assert {step.table for step in found} == set(TABLES) - (set() if compilers else {"cost"})
+    keys = [json.dumps([step.table, step.key], sort_keys=True) for step in found]
+    assert len(set(keys)) == len(keys), "no two steps share a key"
+
+
+def test_an_unknown_table_is_one_line(run, tmp_path):
+    status, out, err = run("run", "--tables", "colours", "-o", str(tmp_path / "run"))
+    assert (status, out) == (2, "") and "unknown table 'colours'; known: all, quality" in err
+    assert not (tmp_path / "run").exists()
+
+
+@contextmanager
+def read_only(folder: Path):
+    """Nothing in a folder can be changed, by root either."""
+    tool, lock, unlock = ("chattr", "+i", "-i") if os.geteuid() == 0 else ("chmod", "a-w", "u+w")
+    if (
+        not shutil.which(tool)
+        or subprocess.run([tool, "-R", lock, folder], capture_output=True, check=False).returncode
+    ):
+        pytest.skip("root writes everywhere, and this file system cannot forbid it")
+    try:
+        yield
+    finally:
+        subprocess.run([tool, "-R", unlock, folder], check=True)
+
+
+def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path):
+    folder = tmp_path / "parent" / "run"
+    command = ("run", "--tables", "depth", "-o", str(folder))
+    assert run(*command)[0] == 0
+    lines, facts = (folder / ROWS).read_bytes().splitlines(keepends=True), (folder / "run.json").read_text()
+    (folder / ROWS).write_bytes(b"".join(lines[:3]))
+    (folder / "run.json").write_text(facts.replace('"finished": true', '"finished": false'))
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    with read_only(folder.parent):
+        for where in (folder, folder.with_name("other")):
+            status, out, err = run("run", "--tables", "depth", "-o", str(where))
+            assert (status, out, err.count("\n")) == (2, "", 1) and "cannot write" in err, err
+    assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
+    status, _, err = run(*command)
+    assert status == 0 and f"3 of {len(lines)} steps are there" in err
+    assert (folder / ROWS).read_bytes() == b"".join(lines)

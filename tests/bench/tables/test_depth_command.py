@@ -1,0 +1,151 @@
+"""`normalbench depth`: what it prints, what it writes, and what it says of bad input."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.tables.depth import measure as depth
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.gbuffer.gl.device import NoDeviceError
+
+QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--count", "500", "--backend", "jax"]
+
+
+def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
+    status, out, err = run(*QUICK, "--distance", "5,50", "--format", "json")
+    rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
+    assert status == 0 and err == ""
+    assert all(tuple(row) == depth.COLUMNS for row in rows)
+    linear = [row for row in rows if (row["depth"], row["storage"]) == ("linear", "packed16")]
+    assert [row["distance"] for row in linear] == [5, 50, None]
+    for row in rows:
+        assert row["error_mean"] <= row["error_max"] <= row["bound"] and row["half_step"] <= row["bound"], row
+        assert row["ratio"] == 100 and row["count"] == 500 and row["skipped"] is None
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
+    status, out, _ = run(*QUICK[:-2], "--distance", "5,50")
+    rows = json.loads(run(*QUICK[:-2], "--distance", "5,50", "--format", "json")[1])
+    assert status == 0
+    line = next(line for line in out.splitlines() if line.split()[:2] == ["window", "depth16"] and "glsl" in line)
+    wanted = [row for row in rows if (row["depth"], row["storage"], row["backend"]) == ("window", "depth16", "glsl")]
+    assert all(f"{row['error_max']:#.4g}" in line or f"{row['error_max']:.2e}" in line for row in wanted), line
+
+
+def test_what_overflows_is_infinite_and_null_in_json(run):
+    """A half float ends at 65504: linear depth beyond is lost, and the bound says so."""
+    arguments = ["--near", "1", "--far", "1e6", "--distance", "100,1e5", "--format", "json", "--backend", "jax"]
+    status, out, _ = run("depth", "--depth", "linear", "--storage", "r16f", "--count", "100", *arguments)
+    rows = json.loads(out)
+    assert status == 0 and [row["error_max"] is None for row in rows] == [False, True, True]
+    assert [row["bound"] is None for row in rows] == [False, True, True]
+
+
+def test_every_way_is_measured_where_there_is_one(run):
+    status, out, err = run(*QUICK, "--rebuild", "all", "--storage", "depth24", "--format", "json")
+    assert status == 0 and err == ""
+    found = {(row["depth"], row["rebuilt"]) for row in json.loads(out)}
+    assert found == {("linear", "eye_ray"), ("window", "inverse_projection"), ("window", "eye_ray")}
+
+
+BAD = {
+    "a depth": (["--depth", "lineal"], ["'lineal'", "linear", "reversed_window"]),
+    "a storage": (["--storage", "depth8"], ["'depth8'", "packed16", "depth32f"]),
+    "a way": (["--rebuild", "guess"], ["'guess'", "inverse_projection", "eye_ray"]),
+    "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
+    "near zero": (["--near", "0"], ["--near 0", "1e-06"]),
+    "near below": (["--near", "-1"], ["--near -1"]),
+    "far before near": (["--near", "5", "--far", "1"], ["--near 5 --far 1"]),
+    "far at near": (["--near", "5", "--far", "5"], ["--near 5 --far 5"]),
+    "no number": (["--near", "close"], ["--near close", "numbers from"]),
+    "nothing": (["--far", ","], ["--far ,", "numbers from"]),
+    "not a number": (["--near", "nan"], ["--near nan"]),
+    "infinite": (["--far", "inf"], ["--far inf"]),
+    "too far": (["--far", "1e30"], ["--far 1e30", "1e+09"]),
+    "beyond far": (["--distance", "2000"], ["--distance 2000", "far 1000"]),
+    "before near": (["--near", "1", "--distance", "0.5"], ["--distance 0.5", "near 1"]),
+    "no points": (["--count", "0"], ["--count 0"]),
+    "too many points": (["--count", "99999999999"], ["--count 99999999999", "from 2 to"]),
+    "a seed": (["--seed", "-1"], ["--seed -1"]),
+    "a view": (["--fov", "180"], ["--fov 180", "170"]),
+    "no view": (["--fov", "nan"], ["--fov nan", "170"]),
+    "no room": (["--depth", "linear_sign", "--storage", "depth24"], ["linear_sign/depth24", "no room for a sign"]),
+    "no projection": (["--depth", "linear", "--rebuild", "inverse_projection"], ["linear/packed16"]),
+    "a plot": (["--plot", "plot.gif"], ["plot.gif", ".png"]),
+    "no folder": (["-o", "/proc/nowhere/rows.csv"], ["/proc/nowhere"]),
+    "plot nowhere": (["--plot", "/proc/nowhere/plot.png"], ["/proc/nowhere"]),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+    arguments, said = BAD[what]
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("depth", *arguments)
+    assert status == 2 and out == ""
+    lines = err.splitlines()
+    assert len(lines) == 1 and lines[0].startswith("normalbench: "), err
+    assert all(part in err for part in said), err
+    assert not list(tmp_path.iterdir()), "something was left behind"
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(
+    "arguments, said", [(["--near", "20"], "room"), (["--images", "/proc/nowhere"], "/proc/nowhere")]
+)
+def test_pictures_that_cannot_be_are_one_line(run, tmp_path, arguments, said):
+    status, out, err = run("depth", "--images", str(tmp_path / "pictures"), *arguments)
+    assert status == 2 and out == "" and err.count("\n") == 1 and said in err, err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_pictures_show_the_error_and_the_terraces(run, tmp_path):
+    """The picture of the error has the colours of its scale; where steps are coarse the lit surface is striped."""
+    codes = ["--depth", "linear", "--storage", "packed16,r32f", "--near", "1", "--count", "100", "--backend", "glsl"]
+    status, _, err = run("depth", *codes, "--images", str(tmp_path))
+    assert status == 0, err
+    names = [
+        f"room-1-1000-linear-{s}-eye_ray-{k}.png" for s in ("packed16", "r32f") for k in ("position_error", "shaded")
+    ]
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([*names, "room-1-1000.png"])
+    coarse, fine = (
+        [np.asarray(Image.open(tmp_path / name)).astype(int)[24:] for name in names[i : i + 2]] for i in (0, 2)
+    )
+    # Viridis goes from violet to yellow: green grows with the error, here 10^-2 to 10^-7.
+    assert np.median(coarse[0][..., 1]) > 100 > 40 > np.median(fine[0][..., 1])
+    wall = (slice(90, 220), slice(210, 400))
+    assert fine[1][wall].std() < 5 < 20 < coarse[1][wall].std(), "a wall is flat, unless its depth has steps"
+
+
+def test_the_plot_is_drawn(run, tmp_path):
+    for name, head in (("plot.png", b"\x89PNG"), ("plot.svg", b"<?xml")):
+        status, _, err = run(*QUICK, "--plot", str(tmp_path / name))
+        assert status == 0, err
+        assert (tmp_path / name).read_bytes().startswith(head)
+    svg = (tmp_path / "plot.svg").read_text()
+    assert all(f"<!-- {label} -->" in svg for label in ("linear packed16", "window depth32f", "near 1, far 100")), svg[
+        :500
+    ]
+
+
+def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
+    """The others say what to install; GLSL alone, and pictures, are status 3."""
+
+    def no_device():
+        raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
+
+    for module in (depth, quality):
+        monkeypatch.setattr(module, "device", no_device)
+    status, out, err = run(*QUICK[:-2], "--format", "json", "--plot", str(tmp_path / "plot.png"))
+    rows = json.loads(out)
+    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert {row["backend"] for row in rows if row["error_max"] is None} == {"glsl"}
+    assert {row["backend"] for row in rows if row["error_max"] is not None} == {"jax"}
+    assert (tmp_path / "plot.png").stat().st_size > 10_000
+    for arguments in (["--backend", "glsl"], ["--images", str(tmp_path / "pictures")]):
+        status, _, err = run(*QUICK[:-2], *arguments)
+        assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err

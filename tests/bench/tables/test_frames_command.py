@@ -1,0 +1,219 @@
+"""`normalbench frames`: what is measured, its limits, what it prints, and what it says of bad input."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from written import as_document
+
+from normalbench.bench.metrics.code_limits import SCATTER
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.tangent_frames import measure as frames
+from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
+from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, frames_from, rotations
+from normalbench.encodings.catalogue import FRAME_ENCODINGS
+from normalbench.encodings.frame_codec import FrameCodec
+from normalbench.encodings.storage import FRAME_STORAGES
+from normalbench.gbuffer.gl.device import NoDeviceError
+from normalbench.gbuffer.scenes.mesh import sphere
+
+QUICK = ["frames", "--count", "4096", "--backend", "jax", "--encoding", "octahedral_angle,smallest_three"]
+
+
+def turned(angle: float, axis: int, count: int = 3) -> Frames:
+    """Frames turned about one of their own axes: 0 the tangent, 1 the bitangent, 2 the normal."""
+    cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    matrix = np.eye(3)
+    a, b = (axis + 1) % 3, (axis + 2) % 3
+    matrix[a, a] = matrix[b, b] = cosine
+    matrix[a, b], matrix[b, a] = -sine, sine
+    x, z = matrix[:, 0], matrix[:, 2]
+    return Frames(np.tile([*z, 1.0], (count, 1)), np.tile([*x, 0.0], (count, 1)))
+
+
+@pytest.mark.parametrize("angle", [1e-5, 0.1, 60.0, 180.0])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_angles_are_those_of_a_known_turn(angle, axis):
+    """About the tangent the normal alone moves, about the normal the tangent alone; the rotation is the turn."""
+    found = frames.frame_angles(turned(0, axis), turned(angle, axis))[:, 0]
+    expected = [0.0 if axis == 2 else angle, 0.0 if axis == 0 else angle, angle]
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-12)
+
+
+def test_a_hand_that_is_lost_and_a_decode_that_is_no_number_are_counted():
+    total = frames.Total()
+    given, found = turned(0, 0, 4), turned(1, 0, 4)
+    found.normals[0, 3] = -1
+    found.tangents[1, 0] = np.nan
+    with np.errstate(invalid="ignore"):
+        total.add(given, found)
+    assert (total.count, total.hands_lost, total.invalid) == (4, 1, 1)
+    assert total.largest[2] == 180 and total.sums[2] == pytest.approx(3 + 180)
+
+
+def test_random_rotations_are_spread_evenly():
+    """By Haar's measure the angle to a fixed rotation has the mean pi/2 + 2/pi, 126.5 degrees; half have each hand."""
+    count = 2 * CHUNK + 100
+    made = rotations(count, 0)
+    chunks = list(made.chunks())
+    normals, tangents = (np.concatenate([getattr(c, name) for c in chunks]) for name in ("normals", "tangents"))
+    assert normals.shape == tangents.shape == (count, 4)
+    still = Frames(*(np.tile(row, (count, 1)) for row in ([0.0, 0, 1, 1], [1.0, 0, 0, 0])))
+    angles = frames.frame_angles(still, Frames(normals, tangents))
+    for column, mean in ((0, 90.0), (1, 90.0), (2, np.degrees(np.pi / 2 + 2 / np.pi))):
+        assert angles[column].mean() == pytest.approx(mean, abs=5 * angles[column].std() / np.sqrt(count))
+    assert abs(normals[:, 3].mean()) < 5 / np.sqrt(count)
+    assert np.array_equal(made.chunk(0).normals, rotations(10**6, 0).chunk(0).normals), "a prefix is a prefix"
+    assert not np.array_equal(made.chunk(0).normals, rotations(count, 1).chunk(0).normals)
+
+
+def test_the_limit_of_few_codes_is_known():
+    """One rotation: every angle, up to 180 degrees. The cube's 24: 62.80 degrees at most and 40.74 in the mean between
+    two cubes (Mackenzie 1958), which is above the limit, and not by much."""
+    all_of_them = frame_limit(2)
+    assert all_of_them.max_deg == pytest.approx(180)
+    assert all_of_them.mean_deg == pytest.approx(np.degrees(np.pi / 2 + 2 / np.pi))
+    cube = frame_limit(48)
+    assert 0.85 * 62.80 < cube.max_deg < 62.80 and 0.97 * 40.74 < cube.mean_deg < 40.74
+
+
+@pytest.mark.parametrize("codes", [2, 3, 100, 2**26, 2**32, 2**64, 2**124])
+def test_the_limit_is_the_ball_that_is_its_share(codes):
+    """theta - sin theta = 2 pi / N, and by a series where float64 cancels; bits of the limit's RMS are the codes'."""
+    least = frame_limit(codes)
+    theta = np.radians(least.max_deg)
+    exact = theta - np.sin(theta) if theta > 0.1 else theta**3 / 6 * (1 - theta**2 / 20)
+    assert exact == pytest.approx(2 * np.pi / codes, rel=1e-7)
+    assert least.mean_deg < least.rms_deg < least.max_deg
+    assert frame_effective_bits(least.rms_deg) == pytest.approx(math.log2(codes), abs=1e-9)
+    if codes > 2**20:
+        assert least.rms_deg / least.max_deg == pytest.approx(np.sqrt(3 / 5), rel=1e-3)
+        assert least.mean_deg / least.max_deg == pytest.approx(3 / 4, rel=1e-3)
+    assert ball_moment(np.pi, 0) == pytest.approx(1)
+
+
+def test_what_no_codes_can_do_is_said():
+    least = frame_limit(2**20)
+    assert not frames_broken(2**20, 10**6, least.mean_deg, least.rms_deg)
+    spared = 1 - 2 * SCATTER / 1000
+    assert "RMS" in frames_broken(2**20, 10**6, least.mean_deg, least.rms_deg * spared)
+    assert "mean" in frames_broken(2**20, 10**6, least.mean_deg * spared, least.rms_deg)
+    assert frame_effective_bits(0.0) == np.inf and frame_effective_bits(170.0) == 1
+
+
+@pytest.mark.parametrize("backend", ["jax", "glsl"])
+def test_every_code_keeps_its_hand_and_its_limit(request, backend):
+    if backend == "glsl":
+        request.getfixturevalue("gl")
+    for encoding in FRAME_ENCODINGS.values():
+        for storage in encoding.storages:
+            codec = FrameCodec(encoding, FRAME_STORAGES[storage])
+            row = frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+            assert tuple(row) == frames.COLUMNS
+            assert row["skipped"] is None and row["hands_lost"] == row["invalid"] == 0, row
+            assert not row["below_limit"] and row["reached_rms_percent"] < 90, row
+            assert row["effective_bits"] < row["bits"], row
+
+
+def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
+    """What `settle` is for: without it rounding takes normals to the other side, and their tangents anywhere."""
+    settled = FRAME_ENCODINGS["octahedral_angle"]
+    found = [
+        frames.measure(frames.Case(FrameCodec(encoding, FRAME_STORAGES["rgb10a2"]), rotations(2**14, 0), "jax"))
+        for encoding in (settled, replace(settled, settle=None))
+    ]
+    assert found[0]["rotation_max_deg"] < 0.3 and found[1]["rotation_max_deg"] > 90
+
+
+def test_json_is_flat_rows_the_best_first(run):
+    status, out, err = run(*QUICK, "--storage", "rgba8,rgb10a2", "--format", "json")
+    rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
+    assert (status, err) == (0, "") and len(rows) == 4
+    assert [row["rotation_rms_deg"] for row in rows] == sorted(row["rotation_rms_deg"] for row in rows)
+    assert all(tuple(row) == frames.COLUMNS and row["count"] == 4096 for row in rows)
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
+    status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")
+    lines = [line.split() for line in out.splitlines() if line.startswith("rgba")]
+    assert status == 0 and len(lines) == 8
+    assert all(a[0] == b[0] and {a[1], b[1]} == {"jax", "glsl"} for a, b in zip(lines[::2], lines[1::2], strict=True))
+
+
+def test_the_frames_of_a_mesh_are_its_vertices(run, tmp_path):
+    """Authored tangents and their signs under a mirrored node; no limit, for they are not spread evenly."""
+    as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
+    status, out, err = run(*QUICK, "--frames", str(tmp_path / "scene.glb"), "--format", "json")
+    rows = json.loads(out)
+    assert status == 0, err
+    assert {row["frame_set"] for row in rows} == {"scene.glb"} and {row["count"] for row in rows} == {17 * 9}
+    assert all(row["limit_rms_deg"] is None and row["effective_bits"] is None for row in rows)
+    assert all(row["rotation_max_deg"] < 1.3 and row["hands_lost"] == 0 for row in rows)
+
+
+def test_tangents_that_lean_or_vanish_make_frames_all_the_same():
+    normals = np.float64([[0, 0, 1], [0, 0, 1], [1, 0, 0]])
+    made = frames_from(normals, np.float64([[1, 0, 1, -1], [0, 0, 1, 1], [0, 0, 0, 1]]))
+    n, t = made.normals[:, :3], made.tangents[:, :3]
+    assert np.sum(n * t, axis=1) == pytest.approx(0, abs=1e-7) and np.linalg.norm(t, axis=1) == pytest.approx(1)
+    assert t[0] == pytest.approx([1, 0, 0]) and made.normals[:, 3].tolist() == [-1, 1, 1]
+
+
+BAD = {
+    "an encoding": (["--encoding", "smallest_four"], ["'smallest_four'", "smallest_three", "qtangent"]),
+    "a storage": (["--storage", "rg8"], ["'rg8'", "rgb10a2", "rgba16_snorm"]),
+    "a set": (["--frames", "turns"], ["'turns'", "rotations", ".glb"]),
+    "a file": (["--frames", "missing.glb"], ["missing.glb"]),
+    "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
+    "no frames": (["--count", "0"], ["--count 0"]),
+    "a seed": (["--seed", "-1"], ["--seed -1"]),
+    "no room": (["--encoding", "qtangent", "--storage", "rgb10a2"], ["qtangent/rgb10a2", "number 4 has 2 bits"]),
+    "no room for an index": (["--storage", "rgba8_10_10_11_1", "--encoding", "smallest_three"], ["has 4 values"]),
+    "no folder": (["-o", "/proc/nowhere/rows.csv"], ["/proc/nowhere"]),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+    arguments, said = BAD[what]
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("frames", *arguments)
+    assert status == 2 and out == ""
+    assert err.count("\n") == 1 and err.startswith("normalbench: "), err
+    assert all(part in err for part in said), err
+    assert not list(tmp_path.iterdir()), "something was left behind"
+
+
+def test_a_row_below_its_limit_is_named_and_the_status_is_1(run, monkeypatch):
+    monkeypatch.setattr(frames, "frames_broken", lambda *_: "RMS 0.1 degrees, of 0.2 at least")
+    status, _, err = run(*QUICK, "--storage", "rgb10a2")
+    assert status == 1 and err.count("\n") == 2 and "octahedral_angle/rgb10a2: RMS 0.1 degrees" in err
+
+
+def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
+    def no_device():
+        raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
+
+    for module in (frames, quality):
+        monkeypatch.setattr(module, "device", no_device)
+    command = ["frames", "--count", "100", "--encoding", "qtangent", "--storage", "rgba8", "--format", "json"]
+    status, out, err = run(*command)
+    rows = {row["backend"]: row for row in json.loads(out)}
+    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert rows["jax"]["rotation_max_deg"] < 1 and rows["glsl"]["rotation_max_deg"] is None
+    status, _, err = run(*command, "--backend", "glsl")
+    assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+
+
+def test_a_lost_hand_counts_whichever_it_was():
+    given = rotations(8, 0).chunk(0)
+    assert set(given.normals[:, 3]) == {-1.0, 1.0}
+    for lost in (given.normals[:, 3] > 0, given.normals[:, 3] < 0):
+        normals = given.normals.copy()
+        normals[lost, 3] *= -1
+        total = frames.Total()
+        total.add(given, Frames(normals, given.tangents))
+        assert total.hands_lost == lost.sum() > 0

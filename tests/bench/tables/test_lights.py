@@ -1,0 +1,380 @@
+"""Light added up, resolved and shown: the model, the GL device, and what the articles found."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from drawing import FP32, scene_of
+
+from normalbench.bench.options.light_names import light_buffers_named
+from normalbench.bench.tables.lights import measure as lights
+from normalbench.bench.tables.lights.images import Lit, Resolves, Shot, targets_of, with_power
+from normalbench.bench.tables.lights.sums import (
+    ORDERS,
+    ROUNDINGS,
+    Adder,
+    banding,
+    chromaticity,
+    coloured_lights,
+    equal_lights,
+    gradient,
+    ordered,
+    random_lights,
+    steps_apart,
+)
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.gl.device import NoDeviceError
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import displayed, rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+EVERY = sorted(LIGHT_ENCODINGS)
+(LINEAR_1,) = light_buffers_named("linear:1")
+LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
+
+
+def by_model(name: str) -> Adder:
+    return Adder(LIGHT_ENCODINGS[name], None)
+
+
+# Known figures: N equal lights that sum to S, stored with rounding at every blend; to the digits given.
+TABLE = [
+    *(("linear", "rgba", s, n, v) for s, n, v in ((1, 8, 1.004), (1, 64, 1.004), (1, 256, 0), (4, 64, 2))),
+    *(("srgb", "rgb", s, n, v) for s, n, v in ((1, 8, 1.006), (1, 64, 0.970), (1, 256, 0.485), (4, 64, 2))),
+    *(("log", "rgba", s, n, v) for s, n, v in ((1, 8, 1.006), (1, 64, 0.983), (1, 256, 0.471), (4, 64, 3.994))),
+    *(("r11g11b10f", c, 1, 256, v) for c, v in (("rg", 0.5), ("b", 0.25))),
+    *(("r11g11b10f", "rgb", s, n, v) for s, n, v in ((1, 8, 1), (1, 64, 1), (4, 64, 4))),
+    *(("rgba16f", "rgba", s, n, v) for s, n, v in ((1, 8, 1), (1, 64, 1), (1, 256, 1), (4, 64, 4))),
+]
+
+
+@pytest.mark.parametrize("name, channels, total, count, value", TABLE)
+def test_the_model_gives_the_accumulation_table(name, channels, total, count, value):
+    found = {}
+    for row in equal_lights(by_model(name), [float(total)], [count]):
+        found |= dict.fromkeys(row["channel"], row["model"])
+    for channel in channels:
+        assert abs(found[channel] - value) <= 0.0005, f"{name} {channel}: {found[channel]} for {value}"
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
+    """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
+    encoding = LIGHT_ENCODINGS[name]
+    with Adder(encoding, gl) as adder:
+        rounding = adder.rounding
+        assert rounding
+        if rounding.name not in ROUNDINGS:
+            assert encoding.storage.curved and rounding.name.startswith("its own conversion"), rounding
+            return
+        assert rounding.share >= 0.99, rounding
+        for total, count in ((1.0, 8), (1.0, 64), (1.0, 256), (4.0, 64)):
+            light = np.full((count, 1, 4), total / count, np.float32)
+            got = adder.device(light)
+            apart = steps_apart(encoding.storage, adder.model(light, None, ROUNDINGS[rounding.name]).texels, got.texels)
+            allowed = 1 if encoding.storage.kind == "float" else 1e-3
+            assert apart.max() <= allowed, f"{name}, {count} lights that sum to {total}: {apart.max()} steps apart"
+
+
+@pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
+def test_random_lights_add_up_to_the_same_texels(gl, name):
+    """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
+    encoding = LIGHT_ENCODINGS[name]
+    with Adder(encoding, gl) as adder:
+        light = coloured_lights(256, 1.0, 0)
+        model = adder.model(light, None, ROUNDINGS[adder.rounding.name])
+        apart = steps_apart(encoding.storage, model.texels, adder.device(light).texels)
+        assert apart.max() <= (1 if encoding.storage.kind == "float" else 1e-3), f"{name}: {apart.max()} steps"
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_no_error_is_beyond_the_blends_times_half_a_step(name):
+    """Of the model, which rounds to nearest: equal and random lights, in every order, every number of them."""
+    adder = by_model(name)
+    rows = [*equal_lights(adder, [1.0, 4.0], [8, 64, 256]), *random_lights(adder, 1.0, [8, 64, 256], 0)]
+    for row in rows:
+        error = abs(row["error"]) if "error" in row else row["model_max"]
+        # float32 rounds as well.
+        assert error <= row["bound"] + row["lights"] * 2.0**-23, f"{name}: {row}"
+
+
+def test_light_beyond_the_range_is_in_the_bound():
+    for name, total in (("linear:0.01", 1.0), ("srgb", 4.0), ("rgbm:1", 30.0)):
+        (encoding,) = light_buffers_named(name)
+        for row in random_lights(Adder(encoding, None), total, [1, 8], 0):
+            assert row["model_max"] <= row["bound"] + 1e-4 * total, (name, row)
+
+
+def test_the_bound_is_half_a_code_a_blend():
+    """linear: 2/255 is a code; log: near 1 a code is 1/(255 2^-L ln 2) of light."""
+    linear, log = (next(iter(equal_lights(by_model(name), [1.0], [64]))) for name in ("linear", "log"))
+    assert abs(linear["bound"] / (64 / 255) - 1) < 0.01, linear
+    assert abs(log["bound"] / (64 * 0.5 / (255 * 0.5 * np.log(2))) - 1) < 0.01, log
+
+
+@pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f")])
+def test_dim_lights_first_lose_less(name):
+    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere."""
+    rms = {row["order"]: row["model_rms"] for row in random_lights(by_model(name), 1.0, [64], 0)}
+    assert rms["dimmest first"] < rms["as drawn"] <= rms["brightest first"] * 1.05, rms
+
+
+def test_orders_are_permutations():
+    light = coloured_lights(16, 2.0, 3)
+    assert abs(light.sum(axis=0).max() - 2) < 1e-5 and light.min() >= 0
+    energies = {order: ordered(light, order).sum(axis=(1, 2)) for order in ORDERS}
+    assert np.all(np.diff(energies["dimmest first"]) >= 0) and np.all(np.diff(energies["brightest first"]) <= 0)
+    for energy in energies.values():
+        assert np.array_equal(np.sort(energy), np.sort(energies["as drawn"]))
+
+
+def bands(name: str, peak: float) -> dict[str, dict]:
+    found = {}
+    for row in banding(by_model(name), [peak]):
+        found |= dict.fromkeys(row["channel"], row)
+    return found
+
+
+def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
+    """Seed 003, two targets: less banding in dim light, smooth falloff to the edge; one: the highlight's stays."""
+    for peak in (0.1, 1.0):
+        linear, srgb = bands("linear", peak), bands("srgb", peak)
+        assert srgb["r"]["shown_step"] < linear["r"]["shown_step"] / 8, (peak, srgb["r"], linear["r"])
+        assert srgb["a"]["shown_step"] == linear["a"]["shown_step"] and srgb["a"]["levels"] == linear["a"]["levels"]
+    assert bands("srgb", 0.1)["r"]["levels"] > 4 * bands("linear", 0.1)["r"]["levels"]
+
+
+def test_log_light_holds_more_and_is_coarser_at_its_end():
+    """Seed 003: extended range; a single lamp of 3 is cut off by linear and not by log, whose steps grow with light."""
+    peak = gradient(3.0)
+    linear, log = (by_model(name).model(peak[None]).light[:, 0] for name in ("linear", "log"))
+    assert linear.max() == 2.0 and abs(log.max() - 3.0) < 0.05
+    assert bands("log", 3.0)["r"]["largest_step"] > 5 * bands("linear", 3.0)["r"]["largest_step"]
+
+
+def test_log_light_is_coarser_in_the_dark_than_rgba8_that_holds_no_more_than_1():
+    """Seed 003, whose plain RGBA8 held [0, 1]: slightly worse on dim lights. Steps of 1/(255 ln 2) to 1/255."""
+    plain, log = Adder(LINEAR_1, None), by_model("log")
+    steps = [next(iter(banding(adder, [0.1])))["largest_step"] for adder in (plain, log)]
+    assert abs(steps[0] * 255 - 1) < 1e-3 and 1.4 < steps[1] / steps[0] < 1.6, steps
+    dim = np.stack([gradient(0.1 / 8)] * 8)
+    lost = [np.abs(adder.model(dim).light - dim.sum(axis=0)).mean() for adder in (plain, log)]
+    assert lost[1] > lost[0], lost
+
+
+def test_a_range_may_be_given_and_both_languages_know_it(gl):
+    with Adder(LINEAR_1, gl) as adder:
+        light = np.full((3, 1, 4), 0.2, np.float32)
+        model, got = adder.model(light).light[0], adder.device(light).light[0]
+    assert LINEAR_1.name == "linear:1" and np.allclose(model, 153 / 255) and np.allclose(got, model)
+    ranged = [encoding.name for encoding in light_buffers_named("srgb:4,rgbm:51.5,log")]
+    assert ranged == ["srgb:4", "rgbm:51.5", "log"]
+    assert light_buffers_named("rgbm:51.5")[0].limit == 51.5
+
+
+def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
+    """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
+    expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
+    for name, encoding in LIGHT_ENCODINGS.items():
+        with Adder(encoding, gl) as adder:
+            for row in chromaticity(adder) if encoding.has_alpha else ():
+                for prefix in ("", "gl_"):
+                    amplification = row[f"{prefix}amplification"]
+                    if amplification is None:
+                        assert name == "rgba32f", row
+                    else:
+                        assert abs(amplification / expected[row["colour"]] - 1) < 0.01, (name, row)
+
+
+def plan(name: str, targets: int, samples: int = 1) -> Plan:
+    return Plan((160, 120), samples, FP32, LIGHT_ENCODINGS[name], targets, True, 1.0)
+
+
+def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
+    with rendering(gl, PIPELINES[pipeline], scene_of("room"), made_with) as made:
+        made.draw()
+        return made.image()
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("pipeline", LIGHT_PIPELINES)
+def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples):
+    """Near the reference, and finite: by blending and by reading, with one target and two, also at several samples."""
+    samples = gl.given_samples(samples)
+    most = max(PIPELINES[pipeline].light_targets)
+    reference = displayed(frame(gl, pipeline, plan("rgba32f", most, samples)))
+    several = ("r11g11b10f", "srgb", "log", "nao32")  # of each blending
+    for encoding in LIGHT_ENCODINGS.values() if samples == 1 else map(LIGHT_ENCODINGS.get, several):
+        for targets in targets_of(PIPELINES[pipeline], encoding, [1, 2]):
+            image = frame(gl, pipeline, plan(encoding.name, targets, samples))
+            assert np.isfinite(image).all(), f"{encoding.name}x{targets}"
+            psnr = -10 * np.log10(np.mean((displayed(image) - reference) ** 2) + 1e-30)
+            assert psnr > 40, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
+
+
+@pytest.fixture(scope="module")
+def few_lights():
+    """`gloss` under six lights, as in seed 003."""
+    return SCENES["gloss"].make(Setting(lights=6))
+
+
+@pytest.mark.parametrize("power", [1.0, 47.0, 256.0])
+def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, few_lights, power):
+    """Seed 003's pictures as figures: below the range, of the image, at specular powers 1, 47 and 256."""
+    lit = Lit(gl, PIPELINES["prepass"], with_power(Shot("gloss", few_lights, (320, 240), 0), power))
+    held = {
+        (name, targets): lit.measure(LIGHT_ENCODINGS[name], targets)[0]["held_psnr_db"]
+        for name in ("linear", "srgb")
+        for targets in (1, 2)
+    }
+    assert held["srgb", 2] > held["linear", 2] + 3, held
+    assert held["linear", 1] - 0.5 < held["srgb", 1] < held["linear", 1] + 2, held
+
+
+@pytest.fixture(scope="module")
+def resolves(gl):
+    shot = Shot("objects", SCENES["objects"].make(Setting(objects=60)), (160, 120), 0)
+    return {n: Resolves(gl, shot, list(LIGHT_ENCODINGS.values()), n) for n in {1, gl.given_samples(4)}}
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
+    """The hardware averages texels: the model of that gives its picture, where the device stores as the model does."""
+    encoding, samples = LIGHT_ENCODINGS[name], gl.given_samples(4)
+    made, single = resolves[samples], resolves[1]
+    found = made.compared(made.device(encoding), single.device(encoding))
+    model = made.compared(made.model(encoding), single.model(encoding))
+    assert found["light_psnr_db"] >= found["code_psnr_db"] - 1e-9
+    assert found["aliased_psnr_db"] < 45, "antialiasing changed the picture"
+    with Adder(encoding, gl) as adder:
+        as_model = ROUNDINGS.get(adder.rounding.name)
+    if as_model and as_model.rounding == "nearest":
+        for figure in ("code_psnr_db", "light_psnr_db"):
+            assert abs(found[figure] - model[figure]) < 0.1, (figure, found, model)
+
+
+def test_codes_that_do_not_average_show_it_at_edges(gl, resolves):
+    """Seed 003: NAO32 and RGBM gain colour artefacts under antialiasing; linear and float codes do not."""
+    made = resolves[gl.given_samples(4)]
+    wrong = {
+        name: made.compared(made.device(encoding), resolves[1].device(encoding))["wrong_percent"]
+        for name, encoding in LIGHT_ENCODINGS.items()
+    }
+    assert wrong["nao32"] > wrong["rgbm"] > wrong["srgb"] and wrong["rgba16f"] == 0, wrong
+    assert wrong["rgb9e5"] > wrong["nao32"], wrong
+
+
+QUICK = ("--size", "64x48", "--lights", "6", "--objects", "20", "--scene", "gloss", "--counts", "8", "--power", "47")
+
+
+def test_rows_say_everything_once(run, gl):
+    status, out, err = run(
+        "lights", *QUICK, "--light-buffer", "linear,log,rgbm", "--samples", "1,4", "--format", "json"
+    )
+    rows = json.loads(out)
+    assert (status, err) == (0, "")
+    assert all(tuple(row) == lights.COLUMNS for row in rows)
+    assert list(dict.fromkeys(row["experiment"] for row in rows)) == list(lights.EXPERIMENTS)
+    assert {row["device"] for row in rows} == {gl.renderer} and not any(row["skipped"] for row in rows)
+    resolve = [(r["samples"], r["samples_asked"]) for r in rows if r["experiment"] == "resolve"]
+    assert set(resolve) == {(1, "1"), (gl.given_samples(4), "4")}
+    image = {(r["light_buffer"], r["light_targets"]) for r in rows if r["experiment"] == "image"}
+    assert image == {("linear", 2), ("linear", 1), ("log", 2), ("log", 1), ("rgbm", 2)}
+
+
+def test_samples_that_a_device_does_not_have_are_said_together(run, gl):
+    arguments = ("--experiment", "resolve", "--light-buffer", "rgbm", "--samples", "2,64", "--format", "json")
+    rows = json.loads(run("lights", *QUICK, *arguments)[1])
+    given = {}
+    for asked in (2, 64):
+        given.setdefault(gl.given_samples(asked), []).append(str(asked))
+    assert {(row["samples"], row["samples_asked"]) for row in rows} == {(n, ",".join(a)) for n, a in given.items()}
+
+
+def test_tables_are_one_for_each_experiment(run):
+    status, out, _ = run("lights", *QUICK, "--light-buffer", "linear,log", "--experiment", "equal,banding")
+    assert status == 0 and out.count("experiment equal") == out.count("experiment banding") == 1
+    assert "shown" not in out.split("experiment equal")[0], "no table has another's columns"
+    status, out, _ = run(
+        "lights", *QUICK, "--light-buffer", "linear", "--experiment", "equal,banding", "--format", "csv"
+    )
+    assert tuple(next(csv.reader(out.splitlines()))) == lights.COLUMNS
+
+
+def test_pictures_and_plot_are_written(run, tmp_path):
+    from PIL import Image
+
+    images, plot = tmp_path / "pictures", tmp_path / "plot.svg"
+    asked = ("--light-buffer", "srgb,nao32", "--samples", "4", "--images", str(images), "--plot", str(plot))
+    status, _, err = run("lights", *QUICK, *asked)
+    assert (status, err) == (0, "")
+    names = {path.name for path in images.iterdir()}
+    kinds = ("code", "light", "difference", "change")
+    assert {f"resolve-gloss-nao32-4x-{kind}.png" for kind in kinds} <= names
+    assert {"banding-srgb.png", "image-gloss-prepass-power47-srgbx1-final.png"} <= names
+    for path in images.iterdir():
+        pixels = np.asarray(Image.open(path))
+        assert pixels.max() > 0 or "change" in path.name or "difference" in path.name, f"{path.name} is black"
+    assert "srgb" in plot.read_text() and "dotted" in plot.read_text()
+
+
+def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
+    def missing():
+        raise NoDeviceError("no GL 4.3 device: none; install a GL driver")
+
+    monkeypatch.setattr(quality, "device", missing)
+    status, out, err = run("lights", "--light-buffer", "log", "--counts", "8", "--format", "json")
+    rows = json.loads(out)
+    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    equal = [row for row in rows if row["experiment"] == "equal"]
+    assert equal and all(row["model"] is not None and row["gl"] is None for row in equal)
+    assert {row["experiment"] for row in rows} == set(lights.EXPERIMENTS)
+    status, out, err = run("lights", "--experiment", "image")
+    assert (status, out) == (3, "") and err.count("\n") == 1 and "install a GL driver" in err
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["--experiment", "glow"], "unknown experiment 'glow'; known: all, equal, random"),
+        (["--light-buffer", "rgbe"], "unknown light buffer 'rgbe'; known: all, rgba32f"),
+        (
+            ["--light-buffer", "log:2"],
+            "light buffer log:2: of linear, srgb, rgbm the range may be given, as in linear:1",
+        ),
+        (["--light-buffer", "linear:wide"], "light buffer linear:wide: a range is"),
+        (["--light-buffer", "linear:-1"], "light buffer linear:-1: a range is"),
+        (["--light-targets", "3"], "unknown number of light targets '3'"),
+        (["--counts", "0"], "--counts 0: whole numbers from 1 to 4096"),
+        (["--counts", "8,many"], "--counts 8,many: whole numbers"),
+        (["--counts", ""], "--counts : whole numbers"),
+        (["--sum", "-1"], "--sum -1: numbers from"),
+        (["--sum", "nan"], "--sum nan: numbers from"),
+        (["--sum", "1e99"], "--sum 1e99: numbers from"),
+        (["--peak", "inf"], "--peak inf: numbers from"),
+        (["--samples", "65"], "--samples 65: whole numbers from 1 to 64"),
+        (["--power", "0"], "--power 0: numbers from 1 to 2048"),
+        (["--pipeline", "forward"], "unknown pipeline 'forward'; known: all, deferred"),
+        (["--scene", "sponza"], "unknown scene 'sponza'"),
+        (["--size", "1x"], "WIDTHxHEIGHT"),
+        (["--size", "8192x8192"], "2^25"),
+        (["--lights", "-1"], "--lights -1: from 0"),
+        (["--seed", "-1"], "--seed -1"),
+        (["--plot", "plot.gif"], "a plot's name ends in"),
+        (["--plot", "plot.png", "--experiment", "banding"], "--plot draws the experiments equal and random"),
+        (["--images", "/proc/none"], "cannot write to /proc/none"),
+        (["--images", "pictures", "--experiment", "equal"], "--images draws the experiments banding"),
+        (["--experiment", "chromaticity", "--light-buffer", "rgbm"], "nothing to measure: one light target"),
+        (["-o", "/proc/none/rows.csv"], "cannot write"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("lights", *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1 and said in err, err
+    assert not list(tmp_path.iterdir())

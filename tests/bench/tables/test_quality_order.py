@@ -1,0 +1,52 @@
+"""The quality table as people read it."""
+
+import csv
+import io
+
+from normalbench.bench.metrics.code_limits import code_limit
+
+SMALL = ("--count", "20000", "--backend", "jax")
+
+
+def lines(out: str) -> list[list[str]]:
+    return [line.strip("| ").split() for line in out.splitlines()]
+
+
+def test_rows_are_grouped_by_bits_the_best_first_and_the_limit_last(run):
+    """Whatever the order asked for; two sets are two groups of each size."""
+    words = [
+        "--encoding",
+        "xy,spherical,octahedral,xyz",
+        "--storage",
+        "rgba8,rgb10a2",
+        "--normals",
+        "sphere,hemisphere",
+    ]
+    status, out, _ = run("quality", *words, *SMALL, "--format", "csv")
+    rows = list(csv.DictReader(io.StringIO(out)))
+    keys = [(row["normals"] == "hemisphere", int(row["bits"]), -float(row["effective_bits"])) for row in rows]
+    assert status == 0 and len(rows) == 16 and keys == sorted(keys)
+    status, out, _ = run("quality", *words, *SMALL, "--format", "markdown")
+    table = [cells.split("|") for cells in out.splitlines() if cells.startswith("| ")][1:]
+    names, bits = [cells[1].strip() for cells in table], [int(cells[4]) for cells in table]
+    ends = [i for i, name in enumerate(names) if name == "limit"]
+    assert [bits[i] for i in ends] == [16, 20, 24, 30] * 2 and ends[-1] == len(names) - 1
+    assert all(bits[i + 1] != bits[i] for i in ends[:-1])
+
+
+def test_the_limit_row_says_what_its_bits_could_do(run):
+    status, out, _ = run(
+        "quality", "--encoding", "octahedral,xy", "--normals", "hemisphere", *SMALL, "--format", "markdown"
+    )
+    (row,) = [cells for cells in lines(out) if cells[:1] == ["limit"]]
+    least = code_limit(2**16, 2 * 3.141592653589793)
+    assert status == 0 and "bits 16" in out and "domain hemisphere" in out
+    assert f"{least.rms_deg:#.4g}" in row and f"{least.max_deg:#.4g}" in row and "16.00" in row
+
+
+def test_on_normals_that_are_not_uniform_the_limit_is_named_for_what_it_is(run):
+    """Codes that favour what is seen may beat it; effective bits are not theirs either."""
+    status, out, _ = run("quality", "--encoding", "octahedral", "--normals", "axes", *SMALL, "--format", "markdown")
+    assert status == 0 and "| limit if uniform |" in out
+    status, out, _ = run("quality", "--encoding", "octahedral", "--normals", "axes", *SMALL, "--format", "csv")
+    assert status == 0 and "limit if" not in out, "programs get what was measured"

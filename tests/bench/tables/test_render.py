@@ -1,0 +1,257 @@
+"""`normalbench render`: rows, pictures, and what it says of bad input."""
+
+import json
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.metrics import images as image_metrics
+from normalbench.bench.tables.render import measure as rendering
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import WALL, displayed
+from normalbench.gbuffer.render import rendering as render
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+pytestmark = pytest.mark.usefixtures("gl")
+SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
+QUICK = ["render", *SMALL, "--scene", "room", "--encoding", "octahedral,xy", "--format", "json"]
+# Every encoding in some channel formats, and numbers across channels with a few.
+CODECS = [
+    Codec(encoding, storage)
+    for name, encoding in ENCODINGS.items()
+    for storage in STORAGES.values()
+    if (
+        name in ("octahedral", "octahedral_precise", "tetrahedral", "xyz")
+        if storage.is_packed
+        else storage.channels > 2
+    )
+]
+CODECS = [codec for codec in CODECS if codec.fits and codec.storage.name != "rgb8_12_12_snorm"]
+
+
+def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
+    status, out, _ = run(*QUICK, "--pipeline", "deferred,forward")
+    rows = json.loads(out)
+    assert status == 0 and all(tuple(row) == rendering.COLUMNS for row in rows)
+    octahedral, xy, forward = rows
+    assert (octahedral["pipeline"], octahedral["encoding"], octahedral["storage"]) == (
+        "deferred",
+        "octahedral",
+        "rgba8",
+    )
+    assert octahedral["psnr_db"] > xy["psnr_db"] > 20 and xy["flip"] is None
+    assert (octahedral["rank"], xy["rank"], octahedral["normal_rank"], xy["normal_rank"]) == (1, 2, 1, 2)
+    assert octahedral["bytes_per_pixel"] == 64 + 4 + 5 + 16, "the normal's RGBA32F still holds the depth"
+    assert forward["layout"] is None and forward["exact"] and forward["psnr_db"] is None
+    assert octahedral["ms_frame"] > 0 and octahedral["ms_lights"] > 0 and octahedral["ms_forward"] is None
+    assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
+
+
+def test_flip_is_measured_where_it_is_asked_for(run):
+    pytest.importorskip("flip_evaluator")
+    status, out, _ = run(*QUICK, "--pipeline", "deferred", "--flip")
+    octahedral, xy = json.loads(out)
+    assert status == 0 and 1 > xy["flip"] > octahedral["flip"] > 0
+
+
+def test_flip_that_is_not_installed_is_one_line(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
+    status, out, err = run(*QUICK, "--flip")
+    assert (status, out) == (3, "") and err.count("\n") == 1 and "pip install flip-evaluator" in err
+
+
+def test_layouts_are_measured_as_they_are(run):
+    status, out, _ = run(*QUICK[:-4], "--format", "json", "--pipeline", "hybrid", "--layout", "hybrid,kajiya")
+    rows = json.loads(out)
+    assert status == 0 and [(row["layout"], row["storage"]) for row in rows] == [
+        ("hybrid", "rg16f"),
+        ("kajiya", "rgba8 11:10:11"),
+    ]
+    assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
+
+
+def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
+    """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; all of it for each sample."""
+    arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
+    figures = [json.loads(run(*QUICK[:-4], *arguments, "--format", "json", "--samples", n)[1]) for n in ("1", "2")]
+    assert [row["bytes_per_pixel"] for row in figures[0]] == [17 + 4 + 16, 21 + 16]
+    given = gl.given_samples(2)
+    assert [row["bytes_per_pixel"] for row in figures[1]] == [given * 37, given * 37]
+    read = json.loads(run(*QUICK[:-4], *arguments[:-1], "rgbm", "--format", "json")[1])
+    assert read[0]["bytes_per_pixel"] == 17 + 4 + 2 * 2 * 4, "what is read while it is written has two copies"
+
+
+def test_codecs_are_ranked_among_their_like(run):
+    """With and without shadows are two contests."""
+    _, out, _ = run(*QUICK[:-2], "--format", "json", "--pipeline", "deferred,hybrid", "--shadow", "on,off")
+    assert [row["rank"] for row in json.loads(out)].count(1) == 4
+
+
+def test_what_does_not_suit_is_left_out_and_named(run):
+    status, out, err = run(
+        *QUICK[:-4], "--format", "json", "--pipeline", "deferred,prepass", "--layout", "normal_depth"
+    )
+    assert status == 0 and [row["pipeline"] for row in json.loads(out)] == ["prepass"]
+    assert err.startswith("normalbench: left out: deferred needs albedo.b") and err.count("\n") == 1
+
+
+def test_pictures_show_what_was_rendered(run, tmp_path):
+    """Final, reference and difference; the difference of a coarse codec is not black, the final is no black picture."""
+    status, *_ = run(*QUICK, "--pipeline", "hybrid", "--images", str(tmp_path))
+    assert status == 0 and len(list(tmp_path.iterdir())) == 6
+    pixels = {
+        kind: np.asarray(Image.open(tmp_path / f"room-hybrid-fp32-xy-rgba8-rgba32fx2-{kind}.png")).astype(int)
+        for kind in ("final", "reference", "difference")
+    }
+    assert all(image.shape == (72, 96, 3) for image in pixels.values())
+    assert 60 < pixels["final"].mean() < 200 and (pixels["final"].max(axis=2) > 8).mean() > 0.99
+    apart = abs(pixels["final"] - pixels["reference"])
+    assert abs(np.minimum(apart * 16, 255) - pixels["difference"]).max() <= 16
+
+
+def test_one_light_target_is_held_against_two(run):
+    """One target rebuilds the highlights' colour: the row shows what that costs, and its reference does not do it."""
+    status, out, _ = run(
+        *("render", *SMALL, "--lights", "64", "--scene", "room", "--layout", "fp32", "--pipeline", "prepass,hybrid"),
+        *("--light-targets", "1,2", "--format", "json"),
+    )
+    figures = {(row["pipeline"], row["light_targets"]): row for row in json.loads(out)}
+    assert status == 0 and all(figures[p, 2]["exact"] for p in ("prepass", "hybrid"))
+    # The hybrid pays for it on special materials alone.
+    assert 30 < figures["prepass", 1]["psnr_db"] < figures["hybrid", 1]["psnr_db"] < 90
+
+
+def test_lower_resolutions_of_inferred_are_reported(run):
+    figures = []
+    for scale in ("1", "0.5", "0.25"):
+        arguments = ("--layout", "fp32", "--pipeline", "inferred", "--scale", scale, "--format", "json")
+        _, out, _ = run("render", *SMALL, "--scene", "room", *arguments)
+        figures += json.loads(out)
+    assert figures[0]["exact"] and figures[1]["psnr_db"] > figures[2]["psnr_db"] > 15
+    # At full size the image shares the G-buffer's depth and stencil.
+    assert [row["bytes_per_pixel"] for row in figures] == [101, 101 / 4 + 5, 101 / 16 + 5]
+
+
+def test_samples_beyond_the_device_are_asked_and_given(run, gl):
+    status, out, _ = run(*QUICK, "--samples", "64", "--pipeline", "deferred,inferred")
+    assert status == 0
+    for row in json.loads(out):
+        assert (row["samples_asked"], row["samples"]) == (64, gl.max_samples)
+        assert row["psnr_db"] > 20
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
+def test_samples_smooth_edges(gl, pipeline):
+    """At 4 samples the picture is nearer to one of 4 times the pixels than at 1 sample."""
+    chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
+    targets = max(chosen.light_targets, default=1)
+    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], targets, False, 1.0)
+
+    def image(plan: Plan) -> np.ndarray:
+        with render(gl, chosen, scene, plan) as made:
+            made.draw()
+            return made.image().astype(np.float64)
+
+    fine = image(replace(plan, size=(480, 360))).reshape(90, 4, 120, 4, 3).mean(axis=(1, 3))
+    one, four = (np.mean((displayed(image(replace(plan, samples=n))) - displayed(fine)) ** 2) for n in (1, 4))
+    # Inferred lighting shades once a pixel and stipples glass at any number of samples: only outlines are smoothed.
+    share = 0.9 if chosen.scaled else 0.5
+    assert four < share * one, f"{four:.2e} at 4 samples, {one:.2e} at 1"
+
+
+@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+def test_every_codec_gives_a_finite_image(gl, pipeline):
+    """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""
+    scene = SCENES["room"].make(Setting(lights=2))
+    chosen = PIPELINES[pipeline]
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], max(chosen.light_targets), False, 1.0)
+    worst = {}
+    with render(gl, chosen, scene, plan) as made:
+        made.draw()
+        exact = displayed(made.image())
+    # The last storage that an encoding fits, and the last encoding that a storage holds.
+    several = {**{c.encoding.name: c for c in CODECS}, **{c.storage.name: c for c in CODECS}}
+    assert ENCODINGS.keys() < several.keys()
+    for codec in dict.fromkeys(several.values()):
+        with render(gl, chosen, scene, replace(plan, layout=plan.layout.with_codec(codec))) as made:
+            made.draw()
+            error, broken = image_metrics.squared_error(displayed(made.image()), exact)
+        assert broken == 0, f"{codec.name}: {broken} pixels are no number"
+        worst[codec.name] = error
+    assert max(worst.values()) < 0.02, max(worst, key=lambda name: worst[name])
+
+
+def test_a_pixel_that_is_no_number_counts_in_full():
+    image = np.full((4, 4, 3), 0.5)
+    broken = image.copy()
+    broken[1, 2, 0] = np.nan
+    assert image_metrics.squared_error(broken, image) == (1 / 16, 1)
+    pytest.importorskip("flip_evaluator")
+    assert image_metrics.flip(broken, image) > 0
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["--size", "0x10"], "WIDTHxHEIGHT"),
+        (["--size", "640"], "WIDTHxHEIGHT"),
+        (["--size", "99999999x10"], "each from 1 to"),
+        (["--size", "16384x16384"], "2^25"),
+        (["--frames", "1000"], "2^25"),
+        (["--layout", ""], "no layout named"),
+        (["--encoding", ""], "no encoding named"),
+        (["--layout", "hybrid", "--rounding", "up"], "unknown rounding 'up'"),
+        (["--layout", "hybrid,hybrid.toml"], "two layouts are called hybrid"),
+        (["--samples", "0"], "--samples 0: from 1 to 64"),
+        (["--scale", "0"], "a scale is 0.05 to 1"),
+        (["--scale", "nan"], "a scale is 0.05 to 1"),
+        (["--lights", "-1"], "--lights -1: from 0"),
+        (["--objects", "0"], "--objects 0: from 1"),
+        (["--frames", "-1"], "--frames -1"),
+        (["--repeats", "0"], "--repeats 0"),
+        (["--seed", "-1"], "--seed -1"),
+        (["--pipeline", "raytraced"], "unknown pipeline 'raytraced'; known: all, forward"),
+        (["--layout", "mine"], "unknown layout 'mine'; known: all, fp32"),
+        (["--layout", "missing.toml"], "cannot be read as a layout"),
+        (["--layout", "clash.toml"], "normal.x lies in two places"),
+        (["--layout", "hybrid", "--encoding", "xy_sign"], "keeps no depth"),
+        (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs albedo.b"),
+        (["--light-buffer", "rgba8"], "unknown light buffer 'rgba8'"),
+        (["--light-buffer", "r11g11b10f", "--light-targets", "1"], "one light target needs an alpha channel"),
+        (["--light-targets", "3"], "unknown number of light targets '3'; known: all, 1, 2"),
+        (["--scene", "sponza"], "unknown scene 'sponza'; known: all, playground"),
+        (["--shadow", "yes"], "unknown shadow 'yes'; known: all, on, off"),
+        (["--encoding", "cubemap"], "unknown encoding 'cubemap'"),
+        (["--encoding", "xyz", "--storage", "rg8"], "more components"),
+        (["--images", "/proc/none"], "cannot write to /proc/none"),
+        (["-o", "/proc/none/rows.csv"], "cannot write"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    clash = "encoding = 'xy'\n[[targets]]\nformat = 'rgba8'\nholds = 'normal.x normal.y normal.x'\n"
+    (tmp_path / "clash.toml").write_text(clash)
+    (tmp_path / "hybrid.toml").write_text(clash.replace(" normal.x'", "'"))
+    status, out, err = run("render", "--pipeline", "hybrid", *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1 and said in err, err
+    assert {path.name for path in tmp_path.iterdir()} == {"clash.toml", "hybrid.toml"}
+
+
+def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
+    """Values through a float target come back as they were, after a frame that blends and tests depth."""
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
+    with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
+        made.draw()
+    values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)
+    assert np.array_equal(gl.through(values, STORAGES["rgba32f"]), values)
+    assert gl.context.error == "GL_NO_ERROR"

@@ -1,0 +1,191 @@
+"""What `normalbench sweep` prints, keeps and refuses."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.tables.sweep import measure as sweep
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+pytestmark = pytest.mark.usefixtures("gl")
+
+SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
+SWEEP = ["sweep", *SMALL, "--objects", "3,5", "--pipeline", "prepass,hybrid"]
+
+
+def test_a_sweep_counts_what_each_pass_draws(run):
+    """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
+    status, out, _ = run(*SWEEP, "--format", "json")
+    rows = json.loads(out)
+    assert status == 0 and all(tuple(row) == sweep.COLUMNS for row in rows)
+    assert [(r["shadow"], r["objects"], r["pipeline"]) for r in rows] == [
+        (shadow, objects, pipeline)
+        for shadow in (True, False)
+        for objects in (3, 5)
+        for pipeline in ("prepass", "hybrid")
+    ]
+    for row in rows:
+        scene = SCENES["objects"].make(Setting(row["objects"], 4))
+        general, special = (
+            sum(len(p.mesh.triangles) * np.sum([(scene.materials[m].kind != "general") == s for m in p.materials])
+                for p in scene.parts)
+            for s in (False, True)
+        )  # fmt: skip
+        assert row["triangles_geometry"] == general + special
+        assert row["triangles_material"] == special + (general if row["pipeline"] == "prepass" else 0)
+        assert (row["triangles_shadow_map"] > 0) == row["shadow"]
+
+
+def test_a_sweep_writes_its_rows_and_its_plot(run, tmp_path):
+    rows, plot = tmp_path / "rows.csv", tmp_path / "plot.png"
+    status, out, _ = run(*SWEEP, "--format", "csv", "-o", str(rows), "--plot", str(plot))
+    assert (status, out) == (0, "") and len(list(csv.DictReader(rows.read_text().splitlines()))) == 8
+    pixels = np.asarray(Image.open(plot).convert("RGB"))
+    assert pixels.shape[1] > 800 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 50
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["plot.png", "rows.csv"], "the journal is gone"
+
+
+def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
+    """Rows that were measured before are kept to the last digit, a line that was cut off is measured again."""
+    output = tmp_path / "rows.json"
+    measure, measured = sweep.measure, []
+
+    def stopping(device, point):
+        if len(measured) == 3:
+            raise KeyboardInterrupt
+        measured.append(point)
+        return measure(device, point)
+
+    monkeypatch.setattr(sweep, "measure", stopping)
+    status, out, err = run(*SWEEP, "--format", "json", "-o", str(output))
+    assert (status, out) == (130, "") and "3 of 8 rows are kept; the same command goes on" in err
+    journal = tmp_path / ".rows.json.rows"
+    kept = [json.loads(line) for line in journal.read_text().splitlines()]
+    with journal.open("a") as file:
+        file.write('{"pipeline": "pre')
+    monkeypatch.setattr(sweep, "measure", lambda device, point: measured.append(point) or measure(device, point))
+    status, _, err = run(*SWEEP, "--format", "json", "-o", str(output))
+    assert status == 0 and "3 of 8 rows were measured before" in err and len(measured) == 8
+    rows = json.loads(output.read_text())
+    assert rows[:3] == kept and len(rows) == 8 and not journal.exists()
+
+
+def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, monkeypatch):
+    """A layout that changed behind its name is another sweep."""
+    monkeypatch.chdir(tmp_path)
+    layout = "encoding = 'octahedral'\n[[targets]]\nformat = '{}'\nholds = 'normal.x normal.y'\n"
+    measure, rows = sweep.measure, []
+
+    def stopping(device, point):
+        if rows:
+            raise SystemExit(143)
+        rows.append(measure(device, point))
+        return rows[0]
+
+    command = (
+        "sweep",
+        *SMALL,
+        "--pipeline",
+        "prepass",
+        "--objects",
+        "3,5",
+        "--layout",
+        "mine.toml",
+        "-o",
+        "new/rows.csv",
+    )
+    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
+    monkeypatch.setattr(sweep, "measure", stopping)
+    with pytest.raises(SystemExit):
+        run(*command)
+    journal = tmp_path / "new" / ".rows.csv.rows"
+    kept = journal.read_text()
+    (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
+    status, _, err = run(*command)
+    assert status == 2 and "keeps 1 rows of another sweep" in err and journal.read_text() == kept
+    (tmp_path / "mine.toml").write_text(layout.format("rg8"))
+    monkeypatch.setattr(sweep, "measure", measure)
+    assert run(*command)[0] == 0 and not journal.exists()
+
+
+def test_a_sweep_goes_through_a_pipe(run, tmp_path):
+    """What is no file has no journal beside it."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
+    status, *_ = run(*SWEEP, "--format", "csv", "-o", str(pipe))
+    assert status == 0 and reader.communicate(timeout=20)[0].count("\n") == 9
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
+
+
+def test_two_sweeps_do_not_share_an_output(run, tmp_path):
+    with sweep.journal_beside(tmp_path / "rows.csv"):
+        status, _, err = run(*SWEEP, "-o", str(tmp_path / "rows.csv"))
+    assert status == 2 and "another process writes" in err and err.count("\n") == 1
+
+
+def test_an_interrupted_process_leaves_its_journal(tmp_path):
+    output = tmp_path / "rows.csv"
+    command = [sys.executable, "-m", "normalbench.bench", "sweep", *SMALL, "--objects", "2000", "--repeats", "50"]
+    command += ["--pipeline", "all", "-o", str(output)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"})
+    deadline = time.monotonic() + 60
+    while not (tmp_path / ".rows.csv.rows").exists() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    # Python ends itself by the signal where that came in the middle of an import; to a shell that is 130 as well.
+    assert process.returncode in (130, -signal.SIGINT) and "rows are kept" in err and "Traceback" not in err
+    assert not output.exists()
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["--objects", "100,x"], "comma-separated"),
+        (["--objects", "0"], "numbers from 1"),
+        (["--objects", "9" * 5000], "numbers from 1"),
+        (["--samples", "0"], "--samples 0: from 1 to 64"),
+        (["--scale", "2"], "a scale is 0.05 to 1"),
+        (["--layout", ""], "no layout named"),
+        (["--objects", ""], "numbers from 1"),
+        (["--size", "0x0"], "WIDTHxHEIGHT"),
+        (["--plot", "plot.jpg"], "a plot's name ends in .png, .svg, .pdf"),
+        (["--plot", "."], "is a folder"),
+        (["--pipeline", "none"], "unknown pipeline 'none'"),
+        (["-o", "."], "is a folder"),
+        (["--layout", "normal_depth", "--pipeline", "hybrid"], "hybrid needs"),
+    ],
+)
+def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("sweep", *arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
+    assert not list(tmp_path.iterdir())
+
+
+def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
+    """As JAX's does in the garbage collector: no traceback, and the next step ends."""
+    program = (
+        "import gc, os, signal, sys\n"
+        "from normalbench.bench.cli import app as cli\n"
+        "def callback(*_):\n"
+        "    if 'normalbench.bench.tables.sweep.measure' in sys.modules and not sent:\n"
+        "        sent.append(os.kill(os.getpid(), signal.SIGINT))\n"
+        "sent = []\n"
+        "gc.callbacks.append(callback)\n"
+        "sys.exit(cli.main())\n"
+    )
+    command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode in (130, -signal.SIGINT), done.stderr
+    assert "rows are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr

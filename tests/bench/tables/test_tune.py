@@ -1,0 +1,366 @@
+"""Tuned encodings: what is fitted agrees with theory, and what is gained is of normals that were held out."""
+
+import itertools
+import json
+import math
+from dataclasses import replace
+
+import jax
+import numpy as np
+import pytest
+
+from normalbench.bench.normals.normal_sets import NormalSet, axes, from_arrays, hemisphere, playground, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.tune.expected_errors import Normals, smooth_objective
+from normalbench.bench.tables.tune.halves import halves_of
+from normalbench.bench.tables.tune.tuning import Measure, Tuned, fitted, spreads, wanted_bits
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.normals import best_fit
+from normalbench.encodings.storage import STORAGES, storage_of
+
+FINE = "rgb8_12_12"
+
+
+def all_of(chosen: NormalSet) -> Normals:
+    """Every normal of a set that counts."""
+    chunks = [load() for load in chosen.loads()]
+    n, view = (
+        np.concatenate([np.stack([np.asarray(c) for c in planes], axis=1) for planes in kind])
+        for kind in zip(*((chunk.n, chunk.view) for chunk in chunks), strict=True)
+    )
+    covered = np.concatenate([np.asarray(chunk.covered) for chunk in chunks])
+    return Normals(n[covered], view[covered])
+
+
+def codec_of(encoding: str, storage: str) -> Codec:
+    found = storage_of(storage)
+    assert found
+    return Codec(ENCODINGS[encoding], found)
+
+
+def tuned(codec: Codec, normals: Normals, goal: str, with_bits: bool = False) -> Tuned:
+    return fitted(codec, normals, goal, list(codec.encoding.published), with_bits)
+
+
+def seen(n: np.ndarray, view: np.ndarray) -> Normals:
+    """Those of unit normals that face the eye along their rays."""
+    faces = np.sum(n * view, axis=1) < 0
+    return Normals(n[faces].astype(np.float32), view[faces].astype(np.float32))
+
+
+def ball_that_fills_the_view(fov_deg: float, count: int) -> Normals:
+    """A sphere of radius 1 straight ahead whose outline touches a round view, as far as the eye sees it."""
+    n = all_of(sphere(count)).n.astype(np.float64)
+    return seen(n, n - [0, 0, 1 / math.sin(math.radians(fov_deg / 2))])
+
+
+def anything_in_the_view(fov_deg: float, count: int) -> Normals:
+    """Surfaces of every slope on rays all over a round view, half of them at its edge."""
+    random = np.random.default_rng(1)
+    edge = math.cos(math.radians(fov_deg / 2))
+    z = np.where(random.uniform(size=count) < 0.5, edge, random.uniform(edge, 1, count))
+    around, r = random.uniform(0, 2 * math.pi, count), np.sqrt(1 - z * z)
+    return seen(all_of(sphere(count)).n, np.stack([r * np.cos(around), r * np.sin(around), -z], axis=1))
+
+
+@pytest.mark.parametrize(
+    "name, storage",
+    [
+        *itertools.product(("stereographic", "octahedral"), (FINE, "rg8", "rg16f")),
+        *(("latitude_longitude", FINE), ("latitude_longitude", "rg8"), ("spheremap", "rgb8_12_12_snorm")),
+    ],
+)
+def test_the_smooth_objective_is_what_is_measured(name, storage):
+    """The RMS within 2 %: the objective knows no rounding, and the measured error is of nothing else."""
+    codec, normals = codec_of(name, storage), all_of(hemisphere(2**15))
+    values = codec.encoding.published
+    with jax.enable_x64(True):
+        expected, _ = smooth_objective(codec, "rms", *normals.planes(np.float64))(np.array(list(values.values())))
+    measured = math.sqrt(Measure(codec, normals, "rms")(values))
+    assert math.degrees(expected) == pytest.approx(measured, rel=0.02)
+
+
+@pytest.mark.parametrize("goal", ["rms", "mean", "max"])
+@pytest.mark.parametrize("name, values", [("stereographic", [1.1]), ("spherical", [0.35, 0.6])])
+def test_gradients_are_those_of_differences(name, values, goal):
+    """Some normals are clipped at these values, so both parts of the objective have their share."""
+    codec, normals = codec_of(name, "rg8"), all_of(playground()).some(2**12)
+    with jax.enable_x64(True):
+        objective = smooth_objective(codec, goal, *normals.planes(np.float64))
+        _, slope = objective(np.array(values))
+        for found, step in zip(slope, 1e-6 * np.eye(len(values)), strict=True):
+            above, below = (float(objective(np.array(values) + s * step)[0]) for s in (1, -1))
+            assert float(found) == pytest.approx((above - below) / 2e-6, rel=2e-3), (name, goal, step)
+
+
+@pytest.mark.parametrize(
+    "view, farthest_deg",
+    # The outline of a ball that fills a view of 60 degrees is where rays, 30 degrees off the axis, touch it.
+    # Whatever else is in such a view may turn 90 degrees from a ray that is 30 degrees off the axis itself.
+    [(ball_that_fills_the_view, 90 - 30), (anything_in_the_view, 90 + 30)],
+)
+def test_the_stereographic_scale_is_that_of_theory(view, farthest_deg):
+    """tan(t / 2) for normals up to t from the axis: 0.577 for a ball in a view of 60 degrees, 1.732 for anything in it.
+
+    What is found is below by no more than what clipping costs less than wider steps do: at the disk's edge a step is
+    cos^2(t / 2) of one at its centre, whose worst normal is off by sqrt(2) half steps.
+    """
+    normals = view(60.0, 2**18)
+    farthest = math.degrees(math.acos(normals.n[:, 2].min()))
+    assert farthest == pytest.approx(farthest_deg, abs=0.5), "and no sample is farther than theory says"
+    theory = math.tan(math.radians(farthest_deg / 2))
+    found = tuned(codec_of("stereographic", FINE), normals, "max").values["scale"]
+    assert found == pytest.approx(theory, rel=0.01), (found, theory)
+    # With 8 bits that is up to 6 half steps of 1 / 255, and what the farthest sample is short of the edge.
+    coarse = tuned(codec_of("stereographic", "rg8"), normals, "max").values["scale"]
+    assert theory * (1 - 7 / 255) <= coarse <= theory * (1 + 1 / 255), (coarse, theory)
+
+
+def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
+    """Every step of stereographic is as wide as the scale, so nothing is gained beyond the last normal."""
+    for goal, view in itertools.product(("psnr", "mean"), (ball_that_fills_the_view, anything_in_the_view)):
+        normals = view(60.0, 2**16)
+        edge = math.tan(math.acos(normals.n[:, 2].min()) / 2)
+        found = tuned(codec_of("stereographic", "rg8"), normals, goal).values["scale"]
+        assert 0.6 * edge < found < 1.005 * edge, (goal, found, edge)
+
+
+def test_the_scale_of_2010_was_found_well():
+    """On the scene it was found on 1.7777 is within 1 % of the best for PSNR, and what is found is no worse there."""
+    chosen = halves_of(playground(), 0, by_tiles=False)
+    codec = codec_of("stereographic", "rg8")
+    found = tuned(codec, chosen.fitting, "psnr")
+    before, after = (
+        quality.measure(quality.Case(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
+        for e in (codec.encoding, codec.encoding.with_parameters(found.values))
+    )
+    assert found.values["scale"] == pytest.approx(1.7777, rel=0.01)
+    assert after >= before, found
+
+
+def test_bits_are_split_as_the_closed_form_says():
+    """Longitude is worth 8/3 of latitude on the sphere: a mean of (pi sin)^2 against (pi / 2)^2, as log4."""
+    wanted = wanted_bits(codec_of("latitude_longitude", "rg16"), {}, all_of(sphere(2**16)))
+    assert wanted[0] - wanted[1] == pytest.approx(math.log(8 / 3, 4), rel=0.01)
+    assert wanted[0] + wanted[1] == 32
+
+
+@pytest.mark.parametrize("cap_deg", [5.0, 60.0, 180.0])
+def test_the_best_split_of_all_is_found(cap_deg):
+    """Near the pole longitude needs few bits, far from it more: of all splits the one with the least error is found."""
+    normals = all_of(sphere(2**18))
+    normals = Normals(*(a[normals.n[:, 2] >= math.cos(math.radians(cap_deg))] for a in (normals.n, normals.view)))
+    codec = codec_of("latitude_longitude", "rg8")
+    errors = {
+        bits: Measure(replace(codec, storage=storage_of(f"rg8_{bits}_{16 - bits}")), normals, "rms")({})
+        for bits in range(4, 13)
+    }
+    best = min(errors, key=lambda bits: errors[bits])
+    assert tuned(codec, normals, "rms", with_bits=True).codec.storage.bits[0] == best, errors
+
+
+def test_splits_keep_what_they_must():
+    """As many bits as before, those of one of few values untouched, and four at least for any other."""
+    octahedral = codec_of("octahedral", "rgba8")
+    assert [s.name for s in spreads(octahedral, {0: 8.5, 1: 7.5})] == ["rg8_9_7"]
+    assert [s.name for s in spreads(octahedral, {0: 12.5, 1: 3.5})] == ["rg8_12_4"]
+    signed = codec_of("signed_octahedral", "rgb10a2")
+    assert {s.bits[2] for s in spreads(signed, {0: 10.6, 1: 9.4})} <= {signed.storage.bits[2]}
+
+
+def test_halves_are_the_set_and_share_nothing():
+    for by_tiles in (True, False):
+        chosen = halves_of(playground(), 0, by_tiles)
+        whole = np.count_nonzero(np.concatenate([np.asarray(load().covered) for load in playground().loads()]))
+        assert len(chosen.fitting) + chosen.held_out.count == whole
+        assert abs(len(chosen.fitting) / whole - 0.5) < 0.02
+    chosen = halves_of(sphere(2**12), 3, by_tiles=True)
+    together = np.concatenate([chosen.fitting.n, all_of(chosen.held_out).n])
+    assert len(np.unique(together, axis=0)) == 2**12
+    other = halves_of(sphere(2**12), 4, by_tiles=True)
+    assert not np.array_equal(other.fitting.n, chosen.fitting.n)
+
+
+def rows_of(run, *arguments: str) -> tuple[dict[str, dict], str]:
+    status, out, err = run("tune", *arguments, "--format", "json")
+    assert status == 0, err
+    return {row["quantity"]: row for row in json.loads(out)}, err
+
+
+def test_the_gain_is_of_the_held_out_half(run):
+    """The figures of both codecs measured anew on that half, by the names that the rows give them."""
+    rows, err = rows_of(run, "spherical", "--storage", "rg8", "--seed", "5")
+    assert rows["psnr_db"]["gain"] > 2.5 and rows["psnr_db"]["unit"] == "dB", rows
+    held = halves_of(playground(), 5, by_tiles=False).held_out
+    assert held.count == rows["psnr_db"]["held_out"]
+    for side, encoding, storage in (("published", "encoding", "storage"), ("tuned", "tuned_encoding", "tuned_storage")):
+        (codec,) = quality.codecs_named(rows["psnr_db"][encoding], rows["psnr_db"][storage], "nearest")
+        row = quality.measure(quality.Case(codec, held, "jax"))
+        for figure in ("psnr_db", "angle_mean_deg", "angle_max_deg"):
+            assert rows[figure][side] == pytest.approx(row[figure], rel=1e-9), (figure, side)
+    mean = rows["angle_mean_deg"]
+    assert mean["gain"] == pytest.approx(100 * (1 - mean["tuned"] / mean["published"]))
+    assert f"--encoding {rows['psnr_db']['tuned_encoding']}" in err
+
+
+def test_where_nothing_is_gained_that_is_said(run):
+    """Octahedral treats its two numbers alike, and so does the sphere."""
+    rows, err = rows_of(run, "octahedral", "--storage", "rg8", "--normals", "sphere", "--count", "65536")
+    assert rows["bits_x"]["tuned"] == rows["bits_y"]["tuned"] == 8
+    assert rows["psnr_db"]["gain"] == 0 and rows["psnr_db"]["tuned_encoding"] == "octahedral"
+    assert "nothing is gained" in err
+
+
+def test_the_same_is_found_again(run):
+    arguments = ("stereographic", "--normals", "hemisphere", "--count", "65536", "--storage", "rg8")
+    assert rows_of(run, *arguments) == rows_of(run, *arguments)
+
+
+def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
+    """A few half steps of 1 / 255, as everywhere: the last ring of normals is clipped for finer steps."""
+    rows, _ = rows_of(run, "stereographic", "--normals", "hemisphere", "--count", "65536", "--parameter", "scale")
+    assert 1 - 9 / 255 < rows["scale"]["tuned"] <= 1 + 1 / 255 and "bits_x" not in rows, rows["scale"]
+    assert rows["psnr_db"]["gain"] > 4
+    assert rows["scale"]["glsl"] == "STEREOGRAPHIC_SCALE"
+
+
+@pytest.mark.parametrize("storage", ["rgba8", "rgba8_snorm"])
+def test_a_look_up_has_the_best_of_all_scales_for_its_normals(storage):
+    """Against every scale tried on the normals of one texel, rounded to the storage's numbers one by one."""
+    numbers = STORAGES[storage].numbers(0)
+    centre = np.float64([100.5 / 1024 * 700.5 / 1024, 700.5 / 1024, 1.0])
+    n = centre + np.random.default_rng(2).uniform(-5e-5, 5e-5, (16, 3))
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    errors = {}
+    for scale in numbers[numbers > 0]:
+        code = numbers[np.abs(n[:, :, None] / n[:, 2:, None] * scale - numbers).argmin(axis=2)]
+        across = np.linalg.norm(np.cross(n, code), axis=1) / np.linalg.norm(code, axis=1)
+        errors[np.float32(scale)] = np.mean(across**2)
+    found = best_fit.fit(n, len(numbers), 0.0)[100, 700, 0]
+    assert errors[found] <= min(errors.values()) * 1.001, (found, errors[found], min(errors.values()))
+
+
+def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
+    """The published one is for UNORM8: in 10 bits another is worth 10 dB; it is written and read, and measured anew."""
+    path = tmp_path / "scales.npy"
+    rows, err = rows_of(run, "best_fit", "--storage", "rgba8_snorm", "--table", str(path))
+    assert rows["psnr_db"]["gain"] > 5, rows["psnr_db"]
+    assert rows["texels_changed"]["tuned"] > 10**5
+    (codec,) = quality.codecs_named(f"best_fit:table={path}", "rgba8_snorm", "nearest")
+    held = halves_of(playground(), 0, by_tiles=True).held_out
+    assert quality.measure(quality.Case(codec, held, "jax"))["psnr_db"] == pytest.approx(rows["psnr_db"]["tuned"])
+    assert f"best_fit:table={path}" in err
+
+
+@pytest.mark.usefixtures("gl")
+def test_tuned_encodings_are_the_same_in_both_languages(tmp_path):
+    np.save(tmp_path / "scales.npy", np.sqrt(best_fit.centres()))
+    names = f"spherical:bias=0.35:scale=0.7,stereographic:scale=1.31,best_fit:table={tmp_path}/scales.npy"
+    for codec in quality.codecs_named(names, "rgba8,rg8_7_9,rgb8_13_11_snorm", "nearest"):
+        if codec.fits:
+            db = {b: quality.measure(quality.Case(codec, playground(), b))["psnr_db"] for b in ("jax", "glsl")}
+            plain = replace(codec, encoding=ENCODINGS[codec.encoding.prefix])
+            assert abs(db["jax"] - db["glsl"]) <= 0.02, (codec.name, db)
+            assert abs(db["jax"] - quality.measure(quality.Case(plain, playground(), "jax"))["psnr_db"]) > 0.1
+
+
+@pytest.mark.usefixtures("gl")
+def test_tuned_encodings_are_rendered(run):
+    status, out, err = run(
+        *(
+            "render",
+            "--encoding",
+            "stereographic,stereographic:scale=1.31,stereographic:scale=1.5",
+            "--size",
+            "160x120",
+        ),
+        *("--repeats", "1", "--format", "json"),
+    )
+    assert status == 0, err
+    assert len({row["normal_psnr_db"] for row in json.loads(out)}) == 3, out
+
+
+def one_direction(tmp_path):
+    np.save(tmp_path / "one.npy", np.tile(np.float32([0, 0, 1]), (4096, 1)))
+    return str(tmp_path / "one.npy")
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["nope"], "unknown encoding 'nope'"),
+        (["stereographic,spherical"], "one encoding at a time"),
+        (["octahedral", "--storage", "rg16f"], "nothing to tune"),
+        (["spherical_fibonacci", "--storage", "rg8"], "nothing to tune"),
+        (["xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
+        (["spherical", "--storage", "rg8,rg16"], "one storage at a time"),
+        (["spherical", "--parameter", "turn"], "unknown parameter 'turn'; known: all, bias, scale, bits"),
+        (["best_fit", "--storage", "rgba16f"], "nothing to tune"),
+        (["stereographic", "--normals", "nope"], "unknown normal set 'nope'"),
+        (["stereographic", "--normals", "sphere,axes"], "one normal set at a time"),
+        (["stereographic", "--normals", "sphere", "--count", "200"], "200 normals are too few"),
+        (["stereographic", "--normals", "sphere", "--count", "17000000"], "at most 16777216"),
+        (["stereographic", "--error", "median"], "unknown error 'median'; known: all, psnr"),
+        (["stereographic", "--error", "all"], "one error at a time"),
+        (["stereographic", "--table", "x.npy"], "no look-up"),
+        (["stereographic", "--seed", "-1"], "--seed -1"),
+        (["stereographic", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),
+        (["stereographic", "--storage", "rg8_9_9"], "so many bits lie in rgb8_9_9"),
+    ],
+)
+def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
+    status, out, err = run("tune", *arguments)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["stereographic:scale=1.2"], "tune begins with what was published; name stereographic"),
+        (["best_fit", "--storage", "rgba8", "--table", "my,ta.npy"], "a name without : and comma"),
+    ],
+)
+def test_names_that_could_not_be_given_back_are_refused(run, arguments, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("tune", *arguments, "--normals", "hemisphere", "--count", "4096")
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_set_of_one_normal_is_refused(run, tmp_path):
+    status, _, err = run("tune", "stereographic", "--normals", one_direction(tmp_path))
+    assert status == 2 and "every normal to fit to is the same" in err and err.count("\n") == 1, err
+
+
+@pytest.mark.parametrize(
+    "name, said",
+    [
+        ("stereographic:scale=0", "scale is a number from 0.0088 to 114"),
+        ("stereographic:scale=nan", "scale is a number"),
+        ("stereographic:bias=1", "no parameter 'bias'; known: scale"),
+        ("stereographic:scale", "each once, such as stereographic:scale=1.7777"),
+        ("stereographic:scale=1:scale=2", "each once"),
+        ("best_fit:table=", "each once, such as best_fit:table=FILE.npy"),
+        ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: none"),
+        ("all:scale=1", "unknown encoding 'all'"),
+        ("best_fit:table=missing.npy", "cannot read missing.npy: No such file"),
+        ("best_fit:table=text.npy", "not a NumPy file"),
+        ("best_fit:table=small.npy", "is float32 of shape (1024, 1024, 1)"),
+        ("best_fit:table=zero.npy", "scales above 0 and up to 1"),
+    ],
+)
+def test_a_bad_name_is_one_line(run, name, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "text.npy").write_text("no array")
+    np.save(tmp_path / "small.npy", np.ones((4, 4, 1), np.float32))
+    np.save(tmp_path / "zero.npy", np.zeros((1024, 1024, 1), np.float32))
+    status, out, err = run("quality", "--encoding", name)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+
+
+def test_axes_are_enough_to_fit_to():
+    """384 normals, the least set there is."""
+    assert len(halves_of(axes(), 0, by_tiles=False).fitting) >= 128
+    n = np.float32([[0, 0, 1], [1, 0, 0]] * 200)
+    assert halves_of(from_arrays("two", "two", n, n, np.ones(400, bool)), 0, by_tiles=False).held_out.count == 200

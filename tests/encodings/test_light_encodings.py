@@ -1,0 +1,360 @@
+"""Light codes: the languages agree before storage, formats store as emulated, and codes hold what they say."""
+
+import inspect
+import itertools
+import re
+from functools import cache
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from mutants import swapped_calls
+
+from normalbench.bench.options.light_names import light_buffers_named
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS, LIGHT_NAMES
+from normalbench.encodings.chromaticity import chromaticity, coloured, luminance
+from normalbench.encodings.light.nao32 import INVERSE, MATRIX
+from normalbench.encodings.light_buffer import stored
+from normalbench.encodings.light_encoding import BLENDS
+from normalbench.encodings.storage import R11G11B10F, SRGB8_A8, from_srgb, store_small_float, store_srgb, to_srgb
+from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
+from normalbench.gbuffer.codecs.light_passes import exact_light, light_defines
+from normalbench.gbuffer.gl import shader
+from normalbench.gbuffer.gl.shader import ShaderError, Source
+
+ROOT = Path(__file__).parents[2]
+ULP = 2.0**-23
+EVERY = sorted(LIGHT_ENCODINGS)
+SPECIAL = np.float32([0, -0.0, 1e-45, 1e-39, 2.0**-126, -1, -1e30, np.nan, np.inf, -np.inf, 3e38, 65408, 65504, 65536])
+
+
+def planes(array: np.ndarray) -> Vec4:
+    return Vec4(*(jnp.asarray(np.ascontiguousarray(c)) for c in array.T))
+
+
+def rows(planes) -> np.ndarray:
+    return np.stack([np.asarray(c) for c in planes], axis=1)
+
+
+def lights(count: int = 2**15) -> np.ndarray:
+    """Light from below what a float holds to beyond what a half does, special numbers in every channel, and numbers at
+    and beside powers of two, shared exponents' ties and the steps of RGBM's multiplier; float32 (count, 4)."""
+    rng = np.random.default_rng(0)
+    wide = np.exp2(rng.uniform(-150, 127, (count, 1)) * rng.uniform(0, 1, (count, 1)) + rng.uniform(-9, 0, (count, 4)))
+    edges = np.concatenate([2.0 ** np.arange(-26, 17), 511.5 * 2.0 ** np.arange(-24, 7), np.arange(256) * 6 / 255])
+    edges = np.concatenate(
+        [edges.astype(np.float32)] + [np.nextafter(np.float32(edges), s, dtype=np.float32) for s in (0, 9e9)]
+    )
+    beside = np.concatenate([np.stack([edges, 0.3 * edges, edges * 0, edges], 1), np.stack([edges] * 4, 1)])
+    special = np.array(list(itertools.product(SPECIAL, repeat=2)), np.float32)
+    special = np.concatenate([special[:, [0, 1, 1, 0]], special[:, [1, 1, 0, 0]]])
+    return np.concatenate([special, beside, wide]).astype(np.float32)
+
+
+def given_texels(encoding, texels: np.ndarray) -> np.ndarray:
+    """Texels to decode, as the format gives them back: any bytes, or floats that were stored."""
+    if encoding.storage.kind == "float":
+        return texels
+    codes = np.random.default_rng(1).integers(0, 256, texels.shape)
+    corners = np.array(list(itertools.product((0, 1, 128, 255), repeat=4)))
+    codes[: len(corners)] = corners
+    return codes.astype(np.float32) * np.float32(1 / 255)
+
+
+@cache
+def expected(name: str):
+    encoding, light = LIGHT_ENCODINGS[name], lights()
+    texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
+    given = given_texels(encoding, texels)
+    return light, texels, given, decoded(name, given)
+
+
+def decoded(name: str, texels: np.ndarray) -> np.ndarray:
+    return rows(jax.jit(LIGHT_ENCODINGS[name].decode)(planes(texels)))
+
+
+def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """How far light is apart, in units in the last place of the brightest channel."""
+    return in_ulps(one, other, np.maximum(np.abs(one).max(axis=1), 2.0**-100))
+
+
+def in_ulps(one: np.ndarray, other: np.ndarray, of: np.ndarray) -> np.ndarray:
+    """The largest difference in units in the last place of a number. What is below 2^-126 may be 0 in either language;
+    what is no number is as far as can be."""
+    difference = np.abs(one.astype(np.float64) - other).max(axis=1)
+    ulps = np.where(difference < 2.0**-126, 0, difference) / of / ULP
+    return np.where(np.all(np.isfinite(other), axis=1), ulps, np.inf)
+
+
+def disagreement(gl, name: str) -> list[tuple[float, str]]:
+    """The worst difference of encode and decode, with its story.
+
+    Texels of an encoder agree if they are near each other, or stand for light that is: beside a step of a shared
+    multiplier or exponent two codes far apart do.
+    """
+    light, texels, given, light_of_given = expected(name)
+    gl_texels, gl_light = exact_light(gl, LIGHT_ENCODINGS[name], light, given)
+    as_texels = (
+        np.abs(texels.astype(np.float64) - gl_texels).max(axis=1) / np.maximum(1, np.abs(texels).max(axis=1)) / ULP
+    )
+    as_texels = np.where(np.all(np.isfinite(gl_texels), axis=1), as_texels, np.inf)
+    encode = np.minimum(as_texels, apart(decoded(name, texels), decoded(name, gl_texels)))
+    decode = apart(light_of_given, gl_light)
+    i, j = int(np.argmax(encode)), int(np.argmax(decode))
+    return [
+        (
+            float(encode[i]),
+            f"{name}_encode {light[i]!r}: JAX {texels[i]!r}, GLSL {gl_texels[i]!r}, {encode[i]:.1f} ulp",
+        ),
+        (
+            float(decode[j]),
+            f"{name}_decode {given[j]!r}: JAX {light_of_given[j]!r}, GLSL {gl_light[j]!r}, {decode[j]:.1f} ulp",
+        ),
+    ]
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_before_storage_the_languages_differ_by_no_more_ulps_than_the_encoding_states(gl, name):
+    for (ulps, story), allowed in zip(disagreement(gl, name), LIGHT_ENCODINGS[name].ulps, strict=True):
+        assert ulps <= allowed, f"{story}; allowed {allowed}: {LIGHT_ENCODINGS[name].ulps_reason}"
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_no_light_makes_a_texel_that_is_no_number(gl, name):
+    """Denormals, infinities, NaN and negative light: texels are finite in both languages, and so is their light."""
+    light, texels, _, _ = expected(name)
+    gl_texels, _ = exact_light(gl, LIGHT_ENCODINGS[name], light, texels)
+    for language, found in (("JAX", texels), ("GLSL", gl_texels), ("decoded", decoded(name, texels))):
+        bad = ~np.isfinite(found).all(axis=1)
+        assert not bad.any(), f"{name} by {language}: {light[bad][0]!r} gives {found[bad][0]!r}"
+
+
+def mutants() -> list:
+    found = []
+    for name in EVERY:
+        text = LIGHT_ENCODINGS[name].glsl.read_text()
+        found += [pytest.param(name, changed, id=f"{name}: {what}") for what, changed in swapped_calls(text)]
+    return found
+
+
+@pytest.mark.parametrize("name, text", mutants())
+def test_swapping_two_arguments_is_noticed(gl, monkeypatch, name, text):
+    original = shader.read_shader
+    monkeypatch.setattr(shader, "read_shader", lambda p: text if p == LIGHT_ENCODINGS[name].glsl else original(p))
+    try:
+        found = disagreement(gl, name)
+    except ShaderError:
+        return
+    allowed = LIGHT_ENCODINGS[name].ulps
+    assert any(ulps > most for (ulps, _), most in zip(found, allowed, strict=True)), [story for _, story in found]
+
+
+def test_the_catalogue_and_the_files_are_the_same():
+    files = {suffix: {p.stem for p in (ROOT / "encodings/light").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
+    assert files[".py"] == files[".glsl"] == set(LIGHT_NAMES) == set(LIGHT_ENCODINGS)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_light_encoding_is_complete(name):
+    encoding = LIGHT_ENCODINGS[name]
+    assert encoding.name == name and encoding.blend in BLENDS
+    assert encoding.title and encoding.citation and encoding.ulps_reason
+    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "what is cut off is said"
+    text = encoding.glsl.read_text()
+    assert re.search(rf"vec4 {name}_encode\(vec4 light\)", text) and re.search(rf"vec4 {name}_decode\(vec4 e\)", text)
+    assert f"{name}.py" in text.splitlines()[0], "the twin is named"
+    python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
+    assert python == set(re.findall(r"^    // (.+)$", text, re.M)), "the twins carry the same formula"
+
+
+def round_trip(name: str, light) -> np.ndarray:
+    encoding = LIGHT_ENCODINGS[name]
+    whole = np.repeat(np.atleast_1d(np.float32(light))[:, None], 4, axis=1)
+    return rows(encoding.decode(stored(encoding, encoding.encode(light_or_none(planes(whole))))))
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_no_light_is_exactly_none_and_what_an_empty_buffer_holds(name):
+    encoding = LIGHT_ENCODINGS[name]
+    assert np.all(round_trip(name, 0.0) == 0.0)
+    empty = Vec4(*[jnp.full(1, encoding.no_light, jnp.float32)] * 4)
+    assert np.all(rows(encoding.decode(empty)) == 0.0)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_limit_is_the_most_white_light_that_comes_back(name):
+    """The catalogue's figure: log2(255) = 7.994 for log, the range of linear, sRGB and RGBM, the formats' largest."""
+    encoding = LIGHT_ENCODINGS[name]
+    below = np.float32(min(encoding.limit * 0.999, BRIGHTEST))
+    kept, most = round_trip(name, below)[0, :3], round_trip(name, 1e30)[0, :3]
+    if encoding.storage.kind == "float":
+        # Exactly the largest of the format's least channel; RGBA32F's is not reached by light that is bounded.
+        largest = {32: float(np.finfo(np.float32).max), 16: 65504.0, 11: 64512.0}[encoding.storage.bits[0]]
+        assert encoding.limit == largest
+    tolerance = {"nao32": 0.02, "log": 0.05}.get(name, 0.01)
+    assert np.all(np.abs(kept / below - 1) < tolerance), f"{name}: {below!r} comes back as {kept!r}"
+    if encoding.limit < 1e30 and np.all(np.isfinite(most)):
+        assert abs(most.min() / encoding.limit - 1) < tolerance, f"{name}: at most {most!r}, said {encoding.limit}"
+
+
+@pytest.mark.parametrize("name", ["rgbm", "rgb9e5", "linear", "srgb"])
+def test_light_that_is_read_and_written_again_stays_as_it_is(name):
+    """A light pass that adds nothing changes nothing: no step is lost to a rounding crumb, again and again.
+
+    The first time RGBM may find a smaller multiplier for what it kept; from then on it stays.
+    """
+    encoding = LIGHT_ENCODINGS[name]
+    light = np.random.default_rng(0).uniform(0, 1.5, (4096, 4)).astype(np.float32)
+    light *= np.linspace(0, 1, 4096, dtype=np.float32)[:, None]
+    texels = stored(encoding, encoding.encode(planes(light)))
+    texels = stored(encoding, encoding.encode(light_or_none(encoding.decode(texels))))
+    again = stored(encoding, encoding.encode(light_or_none(encoding.decode(texels))))
+    held = 4 if encoding.has_alpha else 3
+    changed = np.abs(rows(encoding.decode(again)) - rows(encoding.decode(texels)))[:, :held].max(axis=1) > 1e-6
+    assert not changed.any(), f"{name}: {light[changed][0]!r} becomes {rows(again)[changed][0]!r}"
+
+
+@pytest.mark.parametrize("name", ["linear:1.7", "srgb:5.3", "rgbm:11.1"])
+def test_a_range_that_is_no_power_of_two_is_the_same_in_both_languages(gl, name):
+    """A unit each for the reciprocal, the product and the way back."""
+    (encoding,) = light_buffers_named(name)
+    light = lights(2**12)
+    texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
+    given = given_texels(encoding, texels)
+    gl_texels, gl_light = exact_light(gl, encoding, light, given)
+    by_jax, *as_light = (rows(jax.jit(encoding.decode)(planes(found))) for found in (given, texels, gl_texels))
+    for what, ulps in (("encode", apart(*as_light).max()), ("decode", apart(by_jax, gl_light).max())):
+        assert ulps <= 4, f"{name} {what}: {ulps:.1f} ulp"
+
+
+def test_the_log_codes_range_is_7_994():
+    assert abs(LIGHT_ENCODINGS["log"].limit - np.log2(255)) < 1e-12
+    steps = np.diff(rows(LIGHT_ENCODINGS["log"].decode(planes(np.float32([[c / 255] * 4 for c in (1, 2, 3)]))))[:, 0])
+    assert abs(steps[0] + 1) < 1e-6, "the last step is a whole 1.0 of light"
+
+
+def test_nao32_multiplies_by_the_inverse_of_its_matrix():
+    """Published with four digits; these make a product of the two one to float32."""
+    product = np.reshape(MATRIX, (3, 3)) @ np.reshape(INVERSE, (3, 3))
+    assert np.abs(product - np.eye(3)).max() < 2e-8
+    published = np.array([6.0013, -2.7, -1.7995, -1.332, 3.1029, -5.772, 0.3007, -1.088, 5.6268])
+    assert np.abs(published - INVERSE).max() < 1e-3
+
+
+def test_rgb9e5_stores_what_the_specification_says():
+    """Against the specification's arithmetic in float64: B = 15, N = 9, the largest 65408."""
+    rng = np.random.default_rng(0)
+    light = np.exp2(rng.uniform(-26, 17, (4096, 1)) + rng.uniform(-11, 0, (4096, 4))).astype(np.float32)
+    clamped = np.minimum(light[:, :3].astype(np.float64), 65408)
+    exponent = np.maximum(np.floor(np.log2(clamped.max(axis=1))), -16) + 16
+    largest = np.floor(clamped.max(axis=1) / 2.0 ** (exponent - 24) + 0.5)
+    exponent = np.where(largest == 512, exponent + 1, exponent)
+    mantissas = np.floor(clamped / 2.0 ** (exponent - 24)[:, None] + 0.5)
+    got = rows(LIGHT_ENCODINGS["rgb9e5"].decode(stored_texels("rgb9e5", light)))[:, :3]
+    assert np.array_equal(got, (mantissas * 2.0 ** (exponent - 24)[:, None]).astype(np.float32))
+
+
+def stored_texels(name: str, light: np.ndarray) -> Vec4:
+    encoding = LIGHT_ENCODINGS[name]
+    return stored(encoding, encoding.encode(light_or_none(planes(light))))
+
+
+def small_floats(bits: int) -> np.ndarray:
+    """Every finite unsigned float of 11 or 10 bits: five of exponent."""
+    mantissa = bits - 5
+    codes = np.arange(31 << mantissa)
+    exponent, fraction = codes >> mantissa, (codes & (1 << mantissa) - 1) / (1 << mantissa)
+    return np.where(exponent == 0, fraction * 2.0**-14, (1 + fraction) * 2.0 ** (exponent - 15.0))
+
+
+@pytest.mark.parametrize("bits", [11, 10])
+@pytest.mark.parametrize("rounding", ["nearest", "truncate"])
+def test_small_floats_round_to_the_nearest_or_are_cut_off(bits, rounding):
+    """Every value, every tie and what lies beside them, against a search of all values."""
+    values = small_floats(bits)
+    ties = (values[1:] + values[:-1]) / 2
+    x = np.concatenate([values, ties, ties * (1 + 1e-6), ties * (1 - 1e-6), [values[-1] * 2, 1e30]]).astype(np.float32)
+    above = np.searchsorted(values, x, side="right").clip(1, len(values) - 1)
+    low, high = values[above - 1], values[above]
+    nearest = np.where(
+        x - low == high - x, np.where((above - 1) % 2 == 0, low, high), np.where(x - low < high - x, low, high)
+    )
+    expected = np.where(x >= values[-1], values[-1], nearest if rounding == "nearest" else low)
+    got = np.asarray(store_small_float(jnp.asarray(x), bits, rounding))
+    wrong = got != expected
+    assert not wrong.any(), f"{x[wrong][0]!r} is stored as {got[wrong][0]!r}, not {expected[wrong][0]!r}"
+
+
+def test_small_floats_have_no_sign_and_keep_infinity_and_nan():
+    x = jnp.float32([-1.0, -0.0, -np.inf, np.inf, np.nan])
+    assert np.array_equal(np.asarray(store_small_float(x, 11)), [0, 0, 0, np.inf, np.nan], equal_nan=True)
+
+
+def test_the_device_stores_small_floats_as_it_is_said_to(gl):
+    values = np.concatenate(
+        [small_floats(11), np.random.default_rng(0).uniform(0, 4, 4096), [7e4, np.inf, -1, -np.inf]]
+    )
+    rounding = gl.native_rounding(R11G11B10F)
+    assert rounding in ("nearest", "truncate"), f"{gl.renderer} rounds r11g11b10f in a way that is not emulated"
+    got = gl.through(np.repeat(values.astype(np.float32)[None, :, None], 4, axis=2), R11G11B10F)[0]
+    for channel, bits in enumerate((11, 11, 10)):
+        expected = np.asarray(store_small_float(jnp.asarray(values, jnp.float32), bits, rounding))
+        assert np.array_equal(got[:, channel], expected), f"channel {channel}, {rounding}"
+
+
+def test_the_srgb_curve_is_the_standards():
+    """IEC 61966-2-1 in float64; the two branches meet, and every code comes back as itself."""
+    x = np.linspace(0, 1, 100_001)
+    exact = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    assert np.abs(np.asarray(to_srgb(jnp.asarray(x, jnp.float32))) - exact).max() < 3e-7
+    codes = jnp.asarray(np.arange(256), jnp.float32) * jnp.float32(1 / 255)
+    linear = from_srgb(codes)
+    assert float(linear[255]) == 1.0 and float(linear[0]) == 0.0
+    assert np.array_equal(np.asarray(store_srgb(linear, 255)), np.asarray(linear))
+    assert SRGB8_A8.curved == 3
+
+
+def test_whole_powers_and_logarithms_are_exact():
+    powers = np.arange(-126, 128)
+    exact = np.ldexp(np.float32(1), powers).astype(np.float32)
+    assert np.array_equal(np.asarray(power_of_two(jnp.asarray(powers, jnp.float32))), exact)
+    for factor in (1.0, 1.5, np.float32(2) - np.float32(2.0**-22)):
+        assert np.array_equal(np.asarray(floor_log2(jnp.asarray(exact[:-1] * np.float32(factor)))), powers[:-1])
+    assert float(floor_log2(jnp.float32(0))) == -127
+
+
+def test_what_is_no_light_is_none_and_infinite_light_is_bounded():
+    light = light_or_none(Vec4(*(jnp.float32([x]) for x in (-1.0, np.nan, np.inf, 2.0))))
+    assert [float(c[0]) for c in light] == [0, 0, BRIGHTEST, 2]
+
+
+def test_a_highlight_has_the_diffuse_lights_colour_and_black_gives_no_nan():
+    """chroma(D) A: luminance A in the colour of D; white light of luminance A where D is black."""
+    diffuse = Vec3(*(jnp.float32([r, 0.0]) for r in (0.2, 0.4, 0.1)))
+    highlight = coloured(diffuse, jnp.float32([0.5, 0.5]))
+    assert abs(float(luminance(highlight)[0]) - 0.5) < 1e-6
+    assert [float(c[1]) for c in highlight] == [0.5, 0.5, 0.5]
+    blue = chromaticity(Vec3(jnp.float32(0), jnp.float32(0), jnp.float32(1e-3)))
+    assert abs(float(blue.z) * 0.0722 - 1) < 1e-6, "a blue of luminance 1 is 13.85"
+
+
+def test_both_languages_rebuild_the_same_colour(gl):
+    """chromaticity.glsl beside chromaticity.py, black and nearly black included."""
+    rng = np.random.default_rng(0)
+    given = np.exp2(rng.uniform(-110, 20, (4096, 4))).astype(np.float32)
+    given[:64, :3], given[64:128, :2] = 0, 0
+    source = Source(Path(__file__).with_name("chromaticity.comp"), light_defines(LIGHT_ENCODINGS["rgba32f"]))
+    compute = gl.context.compute_shader(source.text)
+    inputs, outputs = gl.context.buffer(given.tobytes()), gl.context.buffer(reserve=given.nbytes)
+    for binding, buffer in enumerate((inputs, outputs)):
+        buffer.bind_to_storage_buffer(binding)
+    compute.run(group_x=64)
+    got = np.frombuffer(outputs.read(), np.float32).reshape(-1, 4)[:, :3]
+    for thing in (compute, inputs, outputs):
+        thing.release()
+    by_jax = rows(jax.jit(lambda p: coloured(p.xyz, p.w))(planes(given)))
+    assert np.isfinite(got).all()
+    ulps = np.abs(by_jax - got) / np.maximum(by_jax.max(axis=1, keepdims=True), 1e-30) / ULP
+    assert ulps.max() <= 4, f"{given[ulps.max(axis=1).argmax()]!r}: {ulps.max():.1f} ulp"

@@ -1,0 +1,142 @@
+"""Angular errors of published and independently computed codes are reproduced."""
+
+import math
+
+import numpy as np
+import pytest
+from exact_codes import storage as made
+
+from normalbench.bench.normals.normal_sets import from_arrays, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.worst_case.search import worst_case
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+
+COUNT = 4_000_000
+
+# Mean, RMS and supremum of the angle in degrees, uniform directions, computed in float64 with a search for the worst
+# case. Octahedral 8:8 and xyz SNORM8 also stand in Cigolle et al., JCGT 3(2), 2014 (0.33709 and 0.17015).
+FIGURES = [
+    ("octahedral", "rg8_snorm", "nearest", "sphere", 0.336890, 0.371170, 0.956992),
+    ("octahedral", "rg8", "nearest", "sphere", 0.335610, 0.369824, 0.953181),
+    ("octahedral", "rg8", "truncate", "sphere", 0.671067, 0.739498, 1.906265),
+    ("spherical", "rg8", "nearest", "sphere", 0.372156, 0.461192, 5.075859),
+    ("spheremap", "rg8", "nearest", "hemisphere", 0.352483, 0.379227, 0.899604),
+    # In float32 only the n / p form keeps to the supremum near -z; the Lambert form has a test of its own.
+    ("spheremap_classic", "rg8", "nearest", "sphere", 0.492355, 0.719445, 11.918),
+    ("stereographic", "rg8", "nearest", "hemisphere", 0.458578, 0.498289, 1.129611),
+    ("xy", "rg8", "nearest", "hemisphere", 0.467529, 0.778805, 5.959707),
+    ("xyz_renormalised", "rgba8_snorm", "nearest", "sphere", 0.170119, 0.184113, 0.390376),
+    # With the table of 1024 x 1024; the nearest of all codes has 0.027989 and 0.034788. The axes are the worst.
+    ("best_fit", "rgba8", "nearest", "sphere", 0.031262, 0.038016, 0.317755),
+    ("octahedral", "rgb8_12_12_snorm", "nearest", "sphere", 0.020896, 0.023026, 0.059374),
+    ("octahedral", "rg16_snorm", "nearest", "sphere", 0.001306, 0.001439, 0.003709),
+    ("octahedral", "rg16f", "nearest", "sphere", 0.014993, 0.017636, 0.059345),
+]
+
+
+@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", FIGURES)
+def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup):
+    """Means within 0.2 %, RMS within 0.5 %, suprema within 0.1 %; the largest of four million samples is below the
+    supremum, and not far."""
+    how = {"encoding": encoding, "storage": storage, "rounding": rounding, "normals": normals}
+    row = normalbench.quality(**how, count=COUNT, worst_case=True)
+    assert row["count"] == COUNT
+    at_least = {"angle_mean_deg": mean * 0.998, "angle_rms_deg": rms * 0.995, "angle_sup_deg": sup * 0.999}
+    at_least["angle_max_deg"] = sup * 0.9
+    at_most = {"angle_mean_deg": mean * 1.002, "angle_rms_deg": rms * 1.005, "angle_sup_deg": sup * 1.001}
+    # At 16 bits float32's own rounding of input and decode adds up to 1e-5 degrees.
+    at_most["angle_max_deg"] = row["angle_sup_deg"] * 1.0001 + 1e-5
+    row.assert_that(**{column: f"at least {least}" for column, least in at_least.items()})
+    row.assert_that(**{column: f"at most {most}" for column, most in at_most.items()})
+
+
+# Cigolle et al. 2014, table 2: mean and the largest of their samples. SNORM10 is no format of a render target.
+PUBLISHED = [
+    (Codec(ENCODINGS["octahedral"], STORAGES["rg8_snorm"]), 0.33709, 0.94424),
+    (Codec(ENCODINGS["xyz_renormalised"], STORAGES["rgba8_snorm"]), 0.17015, 0.38588),
+    (Codec(ENCODINGS["octahedral"], made("snorm", 10, 10)), 0.08380, 0.23467),
+    (Codec(ENCODINGS["octahedral"], STORAGES["rgb8_12_12_snorm"]), 0.02091, 0.05874),
+]
+
+
+@pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
+def test_published_maxima_are_those_of_samples(codec, mean, largest):
+    """Some hundred thousand samples have the published maximum, give or take; the supremum is 1.0 to 1.4 % above it."""
+    few, many = (quality.measure(quality.Case(codec, sphere(2**bits), "jax")) for bits in (14, 22))
+    assert many["angle_mean_deg"] == pytest.approx(mean, rel=0.002)
+    assert few["angle_max_deg"] < largest < many["angle_max_deg"]
+    assert 0.010 < 1 - largest / worst_case(codec).angle_deg < 0.014
+
+
+def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
+    """As published, 8 z + 8 cancels: mean and RMS stay, but 3e-4 rad from -z a direction turns by tens of degrees."""
+    row = normalbench.quality(encoding="spheremap", storage="rg8", normals="sphere", count=COUNT)
+    assert row["angle_mean_deg"] == pytest.approx(0.492355, rel=0.005)
+    assert row["angle_rms_deg"] == pytest.approx(0.719445, rel=0.01)
+    around = np.linspace(0, 2 * np.pi, 1000)
+    n = np.stack([3e-4 * np.cos(around), 3e-4 * np.sin(around), np.full(1000, -math.sqrt(1 - 9e-8))], axis=1)
+    near_pole = from_arrays("", "", n, n, np.ones(1000, bool))
+    largest = {
+        name: quality.measure(quality.Case(Codec(ENCODINGS[name], STORAGES["rgba32f"]), near_pole, "jax"))[
+            "angle_max_deg"
+        ]
+        for name in ("spheremap", "spheremap_classic", "cryengine3")
+    }
+    assert 10 < largest["spheremap"] < 100 and max(largest["spheremap_classic"], largest["cryengine3"]) < 0.2, largest
+
+
+@pytest.mark.parametrize("name", sorted(ENCODINGS))
+def test_no_row_is_better_than_its_codes_allow(normalbench, name):
+    """The RMS of N codes cannot beat the hexagonal quantiser's: effective bits never exceed the bits stored."""
+    for storage in ("rgba8", "rgb10a2", "rgba8_snorm"):
+        if not Codec(ENCODINGS[name], STORAGES[storage]).fits:
+            continue
+        row = normalbench.quality(encoding=name, storage=storage, normals="sphere", count=2**20)
+        row.assert_that(effective_bits=f"at most {row['bits'] + 1e-3}")
+
+
+def test_effective_bits_of_the_limit_itself():
+    """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
+    from normalbench.bench.metrics.code_limits import effective_bits
+
+    assert effective_bits(0.31773, 4 * math.pi) == pytest.approx(16, abs=1e-4)
+
+
+def test_unorm8_cannot_hold_an_axis_and_snorm8_can(normalbench):
+    """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact to the set's own few ulps."""
+    largest = {storage: normalbench.quality(storage=storage, normals="axes") for storage in ("rg8", "rg8_snorm")}
+    # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
+    assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
+    largest["rg8_snorm"].assert_that(angle_max_deg="at most 1e-4")
+
+
+def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere(normalbench):
+    """Poles and rims included, none of the six axes comes back as another direction."""
+    whole = ",".join(name for name, encoding in ENCODINGS.items() if encoding.domain == "sphere")
+    normalbench.quality(encoding=whole, normals="axes").assert_that(angle_max_deg="at most 12")
+
+
+def test_lattices_are_as_good_as_published(normalbench):
+    """2^16 codes: the Fibonacci lattice's mean; the rings' largest error, which is their covering radius."""
+    fibonacci, rings = (
+        normalbench.quality(encoding=name, storage="rg8", normals="sphere", backend="jax", count=COUNT)
+        for name in ("spherical_fibonacci", "optimised_rings")
+    )
+    fibonacci.assert_that(angle_mean_deg="at most 0.3042")
+    fibonacci.assert_that(angle_mean_deg="at least 0.3017")
+    rings.assert_that(angle_max_deg="at most 0.5625")
+    rings.assert_that(angle_max_deg="at least 0.5596")
+
+
+def test_twelve_bits_cut_off_by_hand(normalbench):
+    """floor(f 4095) doubles the mean error of octahedral 12:12; floor(f 4095.5) leaves 39 % more of it."""
+    mean = {
+        rounding: normalbench.quality(
+            encoding="octahedral", storage="rgb8_12_12", rounding=rounding, normals="sphere", backend="jax", count=2**20
+        )["angle_mean_deg"]
+        for rounding in ("nearest", "truncate", "truncate_half")
+    }
+    assert mean["truncate"] / mean["nearest"] == pytest.approx(2, rel=0.005), mean
+    assert mean["truncate_half"] / mean["nearest"] == pytest.approx(1.39, rel=0.01), mean

@@ -1,0 +1,196 @@
+"""What the emulation stores is what the GL device stores, bit for bit."""
+
+import itertools
+from contextlib import ExitStack
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from neighbours import around
+
+from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_number, store_texel, store_unorm
+from normalbench.gbuffer.codecs.codec_passes import storage_defines
+from normalbench.gbuffer.gl.device import read_pixels
+
+INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.is_packed]
+PACKED = [name for name, s in STORAGES.items() if s.is_packed]
+FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
+FLOAT_ROUNDINGS = ROUNDINGS[:2]
+
+
+OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.inf, -np.inf], np.float32)
+
+
+def integer_inputs(storage) -> np.ndarray:
+    """Every code and every tie between codes with neighbours, values out of range, infinities, and random ones."""
+    scale = storage.scale(0)
+    codes = np.arange(-scale if storage.kind == "snorm" else 0, scale + 1)
+    random = np.random.default_rng(0).uniform(-1.2, 1.2, 2**16)
+    return np.concatenate([around(codes / scale), around((codes + 0.5) / scale), OUTSIDE, random.astype(np.float32)])
+
+
+def half_inputs() -> np.ndarray:
+    """All finite half floats and every tie between neighbours, with their float32 neighbours, and what overflows."""
+    halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
+    exact = np.unique(halves[np.isfinite(halves)].astype(np.float32))
+    ties = (exact[1:] + exact[:-1]) / 2
+    edges = np.array([65504, 65519.996, 65520, 65536, 1e-8, 2.0**-25, 2.0**-26], np.float32)
+    return np.concatenate([around(exact, 1), around(ties, 2), edges, -edges, OUTSIDE])
+
+
+def as_pixels(values: np.ndarray) -> np.ndarray:
+    width = 1024
+    padded = np.zeros(-(-len(values) // width) * width, np.float32)
+    padded[: len(values)] = values
+    return np.repeat(padded.reshape(-1, width, 1), 4, axis=2)
+
+
+def emulated(values: np.ndarray, storage, rounding: str) -> np.ndarray:
+    return np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
+
+
+def assert_same_bits(values, expected, got, what: str) -> None:
+    # Bits, so that the sign of a zero counts; one NaN is as good as another.
+    same = (expected.view(np.uint32) == got.view(np.uint32)) | (np.isnan(expected) & np.isnan(got))
+    different = np.flatnonzero(~same)
+    if len(different):
+        i = different[0]
+        pytest.fail(f"{what}: {len(different)} of {len(values)} differ; {values[i]!r}: {expected[i]!r}, GL {got[i]!r}")
+
+
+@pytest.mark.parametrize("name", [*INTEGERS, *FLOATS])
+def test_the_device_stores_what_the_emulation_says(gl, name):
+    """The format's own conversion, for the rounding the device was found to use."""
+    storage = STORAGES[name]
+    rounding = gl.native_rounding(storage)
+    values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
+    got = gl.through(as_pixels(values), storage)[..., 0].ravel()[: len(values)].copy()
+    if rounding == "other":
+        # llvmpipe makes 10 bits of 16 by dropping six. Codecs round before the write, which the next test holds to the
+        # emulation.
+        assert name == "rgb10a2" and gl.is_software, f"{gl.renderer} rounds {name} in a way that is not emulated"
+        sixteen = np.rint(np.clip(values, 0, 1) * np.float32(65535)).astype(np.int64)
+        assert_same_bits(values, (sixteen >> 6).astype(np.float32) * np.float32(1 / 1023), got, name)
+        return
+    assert_same_bits(values, emulated(values, storage, rounding), got, f"{name} on {gl.renderer}, {rounding}")
+
+
+def rounded_in_the_shader(gl, values: np.ndarray, storage, rounding: str) -> np.ndarray:
+    """Numbers rounded by storage.glsl, written to the format and read back; (count, 4)."""
+    with ExitStack() as stack:
+        defines = storage_defines(storage, [rounding] * storage.channels, shader_rounds=True)
+        writes, reads = (
+            gl.owned(stack, gl.fragment_pass(Path(__file__).with_name("round.frag"), defines | {"READS": reads}))
+            for reads in (0, 1)
+        )
+        copy = gl.owned(stack, gl.fragment_pass("copy.frag"))
+        source = gl.owned(stack, gl.upload(as_pixels(values)))
+        target = gl.owned(stack, gl.target(source.size, storage.target))
+        result = gl.owned(stack, gl.target(source.size, STORAGES["rgba32f"]))
+        gl.render(writes, [target], source=source)
+        gl.render(reads if storage.is_packed else copy, [result], source=target)
+        return read_pixels(result).reshape(-1, 4)[: len(values)]
+
+
+@pytest.mark.parametrize(
+    "name, rounding", [*itertools.product(INTEGERS, ROUNDINGS), *itertools.product(FLOATS, FLOAT_ROUNDINGS)]
+)
+def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
+    """Rounded in the shader, then written: what the device's conversion does no longer matters."""
+    storage = STORAGES[name]
+    values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
+    got = rounded_in_the_shader(gl, values, storage, rounding)[:, 0]
+    assert_same_bits(
+        values, emulated(values, storage, rounding), got.copy(), f"{name} rounded in the shader, {rounding}"
+    )
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+@pytest.mark.parametrize("name", PACKED)
+def test_numbers_across_channels_come_back_as_the_emulation_says(gl, name, rounding):
+    """Every code of every number and every tie, by the integer's own bits; the other numbers have the same one."""
+    storage = STORAGES[name]
+    values = integer_inputs(storage)
+    with np.errstate(over="ignore"):
+        values = values * 2 - 1 if storage.is_biased else values
+    got = rounded_in_the_shader(gl, values, storage, rounding)
+    for channel in range(storage.channels):
+        expected = np.asarray(store_number(jnp.asarray(values), storage, channel, rounding))
+        assert_same_bits(values, expected, got[:, channel].copy(), f"{name}, number {channel}, {rounding}")
+
+
+def test_truncating_half_a_code_wider_is_floor_of_f_times_4095_and_a_half():
+    """As engines write it: 12 bits of f in [0, 1] are floor(f 4095.5)."""
+    f = np.random.default_rng(0).random(2**16, np.float32)
+    stored = np.asarray(store_unorm(jnp.asarray(f), 4095, "truncate_half")) * 4095
+    assert np.array_equal(np.round(stored), np.floor(f * np.float32(4095.5)))
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+def test_the_two_bits_of_alpha_are_rounded_by_their_own_scale(gl, rounding):
+    storage = STORAGES["rgb10a2"]
+    values = np.concatenate([around(np.arange(4) / 3), around((np.arange(3) + 0.5) / 3), OUTSIDE])
+    got = rounded_in_the_shader(gl, values, storage, rounding)[:, 3]
+    expected = np.asarray(store_unorm(jnp.asarray(values), storage.scale(3), rounding))
+    assert_same_bits(values, expected, got.copy(), f"alpha, {rounding}")
+
+
+def test_every_half_float_survives_both_roundings():
+    halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
+    for rounding in FLOAT_ROUNDINGS:
+        back = np.asarray(store_half(jnp.asarray(halves.astype(np.float32)), rounding)).astype(np.float16)
+        same = (back == halves) | (np.isnan(back) & np.isnan(halves))
+        assert same.all(), f"{rounding}: {halves[~same][0]!r} became {back[~same][0]!r}"
+
+
+def test_half_floats_round_as_numpy_rounds():
+    """NumPy's conversion is the oracle for nearest even, and for its overflow to infinity at 65520."""
+    values = half_inputs()
+    with np.errstate(over="ignore"):
+        expected = values.astype(np.float16).astype(np.float32)
+    assert_same_bits(values, expected, np.asarray(store_half(jnp.asarray(values))), "nearest")
+
+
+def test_truncated_halves_never_grow():
+    values = half_inputs()
+    kept = np.asarray(store_half(jnp.asarray(values), "truncate"))
+    finite = np.isfinite(values)
+    assert np.all(np.abs(kept[finite]) <= np.abs(values[finite]))
+    inside = np.abs(values) < 65504
+    step = np.spacing(np.abs(kept[inside]).astype(np.float16)).astype(np.float64)
+    assert np.all(np.abs(values[inside].astype(np.float64) - kept[inside]) < step), "more than a step was cut off"
+
+
+@pytest.mark.parametrize("name", INTEGERS)
+def test_every_code_decodes_to_itself(name):
+    storage = STORAGES[name]
+    codes = np.arange(-storage.scale(0) if storage.kind == "snorm" else 0, storage.scale(0) + 1).astype(np.float32)
+    back = emulated(codes * np.float32(1 / storage.scale(0)), storage, "nearest")
+    assert np.array_equal(np.round(back * storage.scale(0)), codes), f"{name}: a code is not stored as itself"
+
+
+@pytest.mark.parametrize("name", INTEGERS)
+def test_ties_of_the_float32_product_go_to_the_even_code(name):
+    storage = STORAGES[name]
+    scale = np.float32(storage.scale(0))
+    lower = np.arange(0, storage.scale(0), dtype=np.float32)
+    middle = (lower + np.float32(0.5)) / scale
+    ties = middle * scale == lower + np.float32(0.5)
+    stored = np.round(emulated(middle[ties], storage, "nearest") * scale)
+    assert ties.sum() > len(lower) / 2
+    assert np.all(stored % 2 == 0), f"{name}: {middle[ties][stored % 2 == 1][0]!r} goes to an odd code"
+
+
+def test_what_is_not_a_number_takes_the_lower_end(gl):
+    """Documented of the emulation, and what llvmpipe does; other devices may differ, and no encoder makes one."""
+    nan = np.float32([np.nan])
+    for name, lower in (("rgba8", 0), ("rgba8_snorm", -1)):
+        assert emulated(nan, STORAGES[name], "nearest")[0] == lower
+        if gl.is_software:
+            assert gl.through(np.full((1, 1, 4), np.nan, np.float32), STORAGES[name])[0, 0, 0] == lower
+
+
+def test_snorm_has_no_code_below_minus_one():
+    """-128 would equal -127: the emulation never makes it, and -1 is exact."""
+    assert emulated(np.float32([-1, -1.003, -5]), STORAGES["rg8_snorm"], "nearest").tolist() == [-1, -1, -1]

@@ -1,0 +1,257 @@
+"""Bad mesh files: each is refused in one line, and nothing is read outside its folder."""
+
+import json
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from damaged import mutated, refusal, revalued
+from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, as_document, chained, ply
+
+from normalbench.gbuffer.scenes.files import source
+from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file, seen
+from normalbench.gbuffer.scenes.files.source import SceneFileError
+from normalbench.gbuffer.scenes.mesh import sphere
+from normalbench.gbuffer.scenes.setting import Setting
+
+
+def broken(change) -> Document:
+    document = chained()
+    change(document.json)
+    return document
+
+
+def first_primitive(json):
+    return json["meshes"][0]["primitives"][0]
+
+
+def with_indices(document: Document, values) -> Document:
+    first_primitive(document.json)["indices"] = document.accessor(np.array(values, np.uint32))
+    return document
+
+
+BAD_GLTF = {
+    "an index out of range": (lambda: with_indices(chained(), [0, 1, 3]), ["index 2 names vertex 3", "there are 3"]),
+    "a cycle": (lambda: broken(lambda j: j["nodes"][0].update(children=[1])), ["nodes[0]", "cycle"]),
+    "a node that is its own child": (
+        lambda: broken(lambda j: j["nodes"].append({"children": [2]})),
+        ["nodes[2]", "cycle"],
+    ),
+    "two parents": (lambda: broken(lambda j: j["nodes"].append({"children": [0]})), ["nodes[0]", "child of"]),
+    "no such node": (lambda: broken(lambda j: j["nodes"][1].update(children=[7])), ["nodes[7]", "there are 2"]),
+    "a view beyond the buffer": (lambda: broken(lambda j: j["bufferViews"][0].update(byteLength=9999)), ["is cut off"]),
+    "too many": (lambda: broken(lambda j: j["accessors"][0].update(count=10**9)), ["1000000000 vertices", "2^22"]),
+    "a negative count": (lambda: broken(lambda j: j["accessors"][0].update(count=-1)), ["count is -1"]),
+    "of another type": (lambda: broken(lambda j: j["accessors"][0].update(type="MAT4")), ["POSITION", "'MAT4'"]),
+    "Draco": (
+        lambda: broken(lambda j: j.update(extensionsRequired=["KHR_draco_mesh_compression"])),
+        ["draco", "without"],
+    ),
+    "glTF 1": (lambda: broken(lambda j: j["asset"].update(version="1.0")), ["'1.0'", "glTF 2.0"]),
+    "no triangles": (lambda: broken(lambda j: first_primitive(j).update(mode=0)), ["nothing to draw"]),
+    "no numbers": (lambda: broken(lambda j: j["nodes"][0].update(scale=["a", 1, 1])), ["nodes[0].scale", "3 numbers"]),
+    "scaled to nothing": (lambda: broken(lambda j: j["nodes"][0].update(scale=[0, 0, 0])), ["nothing to draw"]),
+    "an image on the network": (
+        lambda: broken(lambda j: j.update(images=[{"uri": "https://example.org/a.png"}])),
+        ["images[0]", "nothing is fetched"],
+    ),
+    "not finite": (lambda: not_finite(), ["position of vertex 0", "nan"]),
+}
+
+
+def not_finite() -> Document:
+    document = Document()
+    document.node(mesh=document.mesh([(np.nan, 0, 0), *TRIANGLE[1:]]))
+    return document
+
+
+@pytest.mark.parametrize("what", BAD_GLTF)
+def test_a_bad_gltf_is_one_line(tmp_path, run, what):
+    make, said = BAD_GLTF[what]
+    err = refusal(run, make().write(tmp_path / "bad.glb"))
+    assert all(part in err for part in said), err
+
+
+ADDRESSES = {
+    "up": ("../secret.bin", "leaves the file's folder"),
+    "up, hidden": ("inner/%2e%2e/%2E%2e/secret.bin", "leaves the file's folder"),
+    "up, by backslashes": ("..\\secret.bin", "leaves the file's folder"),
+    "absolute": ("/etc/hostname", "leaves the file's folder"),
+    "absolute, hidden": ("%2Fetc/hostname", "leaves the file's folder"),
+    "a link": ("link.bin", "leaves the file's folder"),
+    "a link to a folder": ("folder/secret.bin", "leaves the file's folder"),
+    "the network": ("http://example.org/a.bin", "nothing is fetched"),
+    "a share": ("//example.org/a.bin", "nothing is fetched"),
+    "a file address": ("file:///etc/hostname", "nothing is fetched"),
+    "a drive": ("C:/a.bin", "nothing is fetched"),
+    "a pipe": ("pipe", "not a plain file"),
+    "the folder": (".", "not a plain file"),
+    "missing": ("missing.bin", "no such file"),
+    "bad base64": ("data:;base64,%%%", "data: address is damaged"),
+    "no base64": ("data:,hello", "data: address is damaged"),
+    "a zero": ("a\0b", "leaves the file's folder"),
+}
+
+
+@pytest.mark.parametrize("what", ADDRESSES)
+def test_nothing_is_read_outside_the_folder_or_from_the_network(tmp_path, run, opened, what):
+    address, said = ADDRESSES[what]
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    (tmp_path / "secret.bin").write_bytes(bytes(999))
+    (folder / "link.bin").symlink_to(tmp_path / "secret.bin")
+    (folder / "folder").symlink_to(tmp_path)
+    os.mkfifo(folder / "pipe")
+    document = chained()
+    text = json.dumps(document.json | {"buffers": [{"uri": address, "byteLength": len(document.data)}]})
+    (folder / "a.gltf").write_text(text)
+    (folder / "a.obj").write_text(f"mtllib {address.replace(chr(0), '')}\nv 0 0 0\n" if "link" in what else "f 1 2 3\n")
+    opened.clear()
+    for name in ("a.gltf", "a.obj") if "link" in what else ("a.gltf",):
+        err = refusal(run, folder / name)
+        assert said in err, err
+    assert opened and not any(name.endswith(("secret.bin", "hostname", "pipe")) for name in opened), opened
+
+
+BAD_TEXTS = {
+    "an OBJ index": ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ["line 4", "index 4", "there are 3"]),
+    "OBJ index 0": ("a.obj", "v 0 0 0\nf 0 1 1\n", ["line 2", "index 0"]),
+    "an OBJ number": ("a.obj", "v 0 zero 0\n", ["line 1", "'zero'"]),
+    "an OBJ line": ("a.obj", "vertex 0 0 0\n", ["line 1", "no line of an OBJ file"]),
+    "no faces": ("a.obj", "v 0 0 0\n", ["nothing to draw"]),
+    "an OBJ NaN": ("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ["position of vertex 0", "nan"]),
+    "an OBJ library outside": (
+        "a.obj",
+        "mtllib ../a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        ["leaves the file's folder"],
+    ),
+    "flat triangles": ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ["no triangle with an area"]),
+    "no PLY": ("a.ply", "plywood", ["no PLY header"]),
+    "a PLY without faces": (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",
+        ["faces"],
+    ),
+    "a PLY of too many": (
+        "a.ply",
+        ply("ascii", [[0, 1, 2]]).decode().replace("vertex 3", "vertex 99999999"),
+        ["cut off"],
+    ),
+    "a PLY list counted by floats": (
+        "a.ply",
+        ply("ascii", [[0, 1, 2]]).decode().replace("list uchar", "list float"),
+        ["whole numbers"],
+    ),
+    "no glTF": ("a.gltf", "{", ["its JSON", "cannot be read"]),
+    "a deep glTF": ("a.gltf", "[" * 100_000, ["its JSON", "cannot be read"]),
+    "a glTF list": ("a.gltf", "[]", ["is no object"]),
+    "a PLY index": ("a.ply", ply("ascii", [[0, 1, 3]]).decode(), ["names vertex 3", "there are 3"]),
+    "a negative PLY index": ("a.ply", ply("ascii", [[0, 1, -1]]).decode(), ["names vertex -1"]),
+}
+
+
+@pytest.mark.parametrize("what", BAD_TEXTS)
+def test_a_bad_text_is_one_line(tmp_path, run, what):
+    name, text, said = BAD_TEXTS[what]
+    (tmp_path / name).write_text(text)
+    err = refusal(run, tmp_path / name)
+    assert all(part in err for part in said), err
+
+
+def test_what_is_too_large_is_refused_before_it_is_read(tmp_path, run):
+    """A file of a terabyte that holds nothing, and a PLY header that promises more than there is room for."""
+    with (tmp_path / "a.glb").open("wb") as file:
+        file.truncate(2**40)
+    assert "1099511627776 bytes" in refusal(run, tmp_path / "a.glb")
+    head = ply("binary_little_endian", [[0, 1, 2]]).replace(b"vertex 3", b"vertex 8388608")
+    with (tmp_path / "a.ply").open("wb") as file:
+        file.write(head)
+        file.truncate(2**28)
+    assert "8388608 vertices" in refusal(run, tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize("cut", [0, 3, 11, 19, 40, 300, -1])
+def test_a_truncated_glb_is_one_line(tmp_path, run, cut):
+    whole = chained().write(tmp_path / "a.glb").read_bytes()
+    (tmp_path / "a.glb").write_bytes(whole[:cut])
+    assert "export it again" in refusal(run, tmp_path / "a.glb")
+
+
+# Fuzzing
+
+
+def specimens(tmp_path: Path) -> dict[str, bytes]:
+    document = as_document([sphere(1.0, 6, 4)], [True])
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    child = document.node(camera=0, translation=[0, 0, 4], rotation=[0, 0, 0, 1])
+    document.node(children=[child], scale=[1, 1, 1])
+    ball = sphere(1.0, 6, 4)
+    faces = ball.triangles.tolist()
+    (tmp_path / "a buffer.bin").write_bytes(document.data)
+    return {
+        "glb": document.write(tmp_path / "x.glb").read_bytes(),
+        "gltf": document.write(tmp_path / "x.gltf", "data").read_bytes(),
+        "obj": OBJ.replace("mtllib", "mtllib colours.mtl\nmtllib").encode(),
+        "mtl": b"newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nd 0.5\nmap_Kd a.png\n",
+        "ply": ply("ascii", faces, ball.positions, ball.normals),
+        "little ply": ply("binary_little_endian", faces, ball.positions, ball.normals),
+        "big ply": ply("binary_big_endian", [*faces, [0, 1, 2, 3]], ball.positions, ball.normals),
+    }
+
+
+@pytest.mark.parametrize("kind", ["glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply"])
+def test_damaged_files_are_read_or_refused_and_nothing_else(tmp_path, opened, kind, monkeypatch):
+    """250 seeded changes each: a scene that can be drawn, or one line, soon; nothing opened outside the folder."""
+    change = revalued if "values" in kind else mutated
+    kind = kind.removesuffix(" values")
+    data = specimens(tmp_path)[kind]
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / f"a.{'obj' if kind == 'mtl' else kind.split()[-1]}"
+    target = tmp_path / "colours.mtl" if kind == "mtl" else path
+    path.write_text(OBJ)
+    counts, slowest = {True: 0, False: 0}, 0.0
+    for seed in range(250):
+        target.write_bytes(change(data, np.random.default_rng(seed)))
+        opened.clear()
+        start = time.process_time()
+        try:
+            file = read_mesh_file(path)
+            made = seen(file, (16, 12))
+            assert np.isfinite(made.normals).all(), seed
+            assert file_scene(file, Setting(lights=2)).parts
+            counts[True] += 1
+        except SceneFileError as error:
+            counts[False] += 1
+            assert str(error).startswith(str(path)) and "\n" not in str(error), (seed, str(error))
+        slowest = max(slowest, time.process_time() - start)
+        outside = [
+            name for name in opened if not Path(name).is_relative_to(tmp_path) and not name.endswith((".py", ".pyc"))
+        ]
+        assert not outside, (seed, outside)
+    assert slowest < 2, f"{slowest:.1f} s"
+    assert min(counts.values()) > 5, f"changes must be both harmless and harmful: {counts}"
+
+
+def test_budgets_are_of_all_places_together(tmp_path, monkeypatch):
+    """Ten places of a mesh count ten times."""
+    document = Document()
+    mesh = document.mesh(POSITIONS, NORMALS)
+    for _ in range(10):
+        document.node(mesh=mesh)
+    path = document.write(tmp_path / "a.glb")
+    monkeypatch.setattr(source, "MAX_VERTICES", 29)
+    with pytest.raises(SceneFileError, match="30 vertices"):
+        read_mesh_file(path)
+
+
+def test_no_two_files_have_one_name(run, tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        chained().write(tmp_path / folder / "x.glb")
+    both = ",".join(str(tmp_path / folder / "x.glb") for folder in ("a", "b"))
+    for arguments in (("quality", "--normals", both), ("render", "--scene", both)):
+        status, out, err = run(*arguments)
+        if status != 3:
+            assert (status, out) == (2, "") and "two files are called x.glb" in err and err.count("\n") == 1

@@ -1,0 +1,279 @@
+"""Layouts: what lies where, what clashes, and that every preset gives back what was put in to within its bits."""
+
+from dataclasses import replace
+from functools import cache
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.depth_codec import DepthCodec
+from normalbench.encodings.position import Camera
+from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
+from normalbench.encodings.vec import Vec3, from_array, to_array
+from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.gl.device import device
+from normalbench.gbuffer.layouts.layout import PACKINGS, Layout, LayoutError, Target, read_layout
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import check, rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.scene import KINDS
+from normalbench.gbuffer.scenes.setting import Setting
+
+ROOM = SCENES["room"].make(Setting(lights=2))
+HAIR = KINDS.index("hair")
+
+
+def plan(layout: Layout, **changes) -> Plan:
+    return replace(Plan((160, 120), 1, layout, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0), **changes)
+
+
+@cache
+def kept(name: str) -> list[np.ndarray]:
+    """What the G-buffer of a layout gives back of the room: position, direction, albedo and power, specular."""
+    with rendering(device(), PIPELINES["prepass"], ROOM, plan(LAYOUTS[name])) as made:
+        made.draw()
+        return made.gbuffer()
+
+
+def layout(*targets: Target, encoding: str = "octahedral", **more) -> Layout:
+    return Layout("mine", "mine", targets, encoding, "a test", **more)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_a_preset_says_what_it_is_and_where_it_comes_from(name):
+    preset = LAYOUTS[name]
+    assert preset.name == name and preset.title and preset.source
+    assert 4 <= preset.bytes_per_pixel - 5 <= 64 and preset.normal_bits >= 16
+
+
+def test_words_fill_a_target_in_order_from_the_most_significant_bit():
+    """11:10:11 in RGBA8: the y starts at bit 11, the z at bit 21."""
+    words = {w.component: (w.target, w.first, w.bits) for w in LAYOUTS["kajiya"].words}
+    assert words["normal.x"] == (0, 0, 11) and words["normal.y"] == (0, 11, 10) and words["normal.z"] == (0, 21, 11)
+    assert words["albedo.g"] == (1, 1, 0), "a word without bits counts channels"
+
+
+@pytest.mark.parametrize(
+    "targets, more, said",
+    [
+        ([("rgba8", "normal.x normal.y normal.x")], {}, "normal.x lies in two places"),
+        ([("rgba8", "normal.x normal.y depth:24")], {}, "more than its 32 bits"),
+        ([("rg8", "normal.x normal.y power")], {}, "more than its 16 bits"),
+        ([("rgba8", "normal.x depth")], {}, "octahedral needs normal.x, normal.y, and no more"),
+        ([("rgba8", "normal.x normal.y normal.z")], {}, "octahedral needs normal.x, normal.y, and no more"),
+        ([("rgba8", "normal.x:12 normal.y:12 colour")], {}, "unknown component 'colour'"),
+        ([("rgba8", "normal.x:12 normal.y power:8")], {}, "starts within a channel"),
+        ([("rgba16f", "normal.x:12 normal.y:12")], {}, "8-bit UNORM"),
+        ([("rgba8", "normal.x:30")], {}, "up to 24 bits"),
+        ([("rgba8", "normal.x:0 normal.y:12")], {}, "at least 1 bit"),
+        ([("rgba8", "normal.x:99999 normal.y:12")], {}, "unknown component"),
+        ([("rgba8", "normal.x:12 normal.y:12 kind:1")], {}, "kind needs 2 bits, not 1"),
+        ([("rgba8", "normal.x:12 normal.y:12 instance:4")], {}, "instance needs 8 bits, not 4"),
+        ([("rgba8", "normal.x:12 normal.y:12 depth:1")], {"encoding": "xy_sign"}, "depth needs 2 bits, not 1"),
+        ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "in fixed point and not otherwise"),
+        ([("rgba8", "normal.x:8 normal.y:8 normal.z:1")], {"encoding": "tetrahedral"}, "normal.z has 4 values"),
+        ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
+        ([("rgb565", "normal.x normal.y")], {}, "unknown format 'rgb565'; known: rgba8"),
+        ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "keeps no depth"),
+        ([("rg16f", "normal.x normal.y")], {"encoding": "cubemap"}, "unknown encoding 'cubemap'"),
+        ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
+        ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
+        ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
+        ([("rg16f", "normal.x normal.y")], {"depth": "deep"}, "unknown depth 'deep'; known: linear"),
+        ([("rg16f", "normal.x normal.y"), ("r32f", "depth")], {"depth": "linear_sign"}, "does not suit octahedral"),
+        (
+            [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
+            {"encoding": "xy_sign", "depth": "logarithmic"},
+            "does not suit xy_sign, whose depth is linear_sign",
+        ),
+    ],
+)
+def test_a_layout_that_clashes_is_one_line(targets, more, said):
+    with pytest.raises(LayoutError) as caught:
+        layout(*(Target(*target) for target in targets), **more)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("title = 'x", "cannot be read as a layout"),
+        ("title = " + "9" * 5000, "cannot be read as a layout"),
+        ("targets = " + "[" * 100_000, "cannot be read as a layout"),
+        ("encoding = 'octahedral'", "targets is a list of tables"),
+        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'", "targets is a list of tables"),
+        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 3", "targets is a list of tables"),
+        ("[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "encoding must be given"),
+        ("encoding = 'octahedral'\ncolour = 3\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "'colour'"),
+        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "octahedral needs"),
+    ],
+)
+def test_a_file_that_is_no_layout_is_one_line(tmp_path, text, said):
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    with pytest.raises(LayoutError) as caught:
+        read_layout(path)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_layout_is_read_from_a_file(tmp_path):
+    path = tmp_path / "mine.toml"
+    targets = "[[targets]]\nformat = 'rgba8'\nholds = 'normal.x:12 normal.y:12 power'\n"
+    path.write_text(f"encoding = 'octahedral'\nspace = 'world'\npacking = 'truncate'\ndepth = 'logarithmic'\n{targets}")
+    read = read_layout(path)
+    assert (read.name, read.space, read.packing, read.normal_bits) == ("mine", "world", "truncate", 24)
+    assert read.depth == "logarithmic" and "logarithmic depth" in read.summary
+    assert read.normal_storage == "rgba8 12:12"
+
+
+def test_a_codec_takes_the_place_of_a_layouts_normal():
+    """The normal moves to a target of its own, what lay beside it stays in its channels."""
+    changed = LAYOUTS["normal_depth"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16_snorm"]))
+    assert [t.holds for t in changed.targets] == ["- - depth:16", "normal.x normal.y"]
+    assert changed.codec.name == "octahedral/rg16_snorm" and changed.components == LAYOUTS["normal_depth"].components
+    moved = LAYOUTS["unreal5_substrate_32"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16"]))
+    assert len(moved.targets) == 3 and moved.bytes_per_pixel == LAYOUTS["unreal5_substrate_32"].bytes_per_pixel
+    with pytest.raises(LayoutError, match="keeps no depth"):
+        LAYOUTS["hybrid"].with_codec(Codec(ENCODINGS["xy_sign"], STORAGES["rg8"]))
+
+
+def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
+    monkeypatch.setattr(gl, "max_targets", 3)
+    with pytest.raises(LayoutError, match=r"fp32 has 4 targets, and a light buffer comes on top; .* has 3"):
+        check(gl, PIPELINES["deferred"], plan(LAYOUTS["fp32"], light_targets=1))
+    check(gl, PIPELINES["forward"], plan(LAYOUTS["fp32"]))
+    monkeypatch.setattr(gl, "max_targets", 4)
+    check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"]))
+
+
+def test_a_pipeline_says_what_a_layout_lacks(gl):
+    with pytest.raises(LayoutError, match=r"deferred needs albedo.b, .*, which layout normal_depth does not keep"):
+        check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
+    with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
+        light = LIGHT_ENCODINGS["r11g11b10f"]
+        check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"], light_targets=1, light_buffer=light))
+
+
+def covered() -> np.ndarray:
+    return kept("fp32")[0][..., 2] != 0
+
+
+# The largest error of a number that is rounded to a word's bits, in steps.
+HALF = 0.5 + 1e-3
+
+
+def steps(name: str, component: str) -> float | None:
+    """What a component's codes are apart, of a range of 1; None where it is kept in floats."""
+    preset = LAYOUTS[name]
+    word = next(w for w in preset.words if w.component == component)
+    storage = preset.targets[word.target].storage
+    bits = word.bits or storage.bits[word.first]
+    return None if storage.kind == "float" else 1 / (2**bits - 1)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.usefixtures("gl")
+def test_depth_comes_back_to_half_a_code(name):
+    """Linear depth in n bits over the far plane's distance; native depth to float32's precision there."""
+    exact, got = (kept(n)[0][..., 2][covered()].astype(np.float64) for n in ("fp32", name))
+    stored = "depth" in LAYOUTS[name].components
+    step = (steps(name, "depth") if stored else None) or 0.0
+    # Native depth: a unit in the last place of z/w near 1 is z^2 / near times as much of z.
+    native = 0 if stored else exact**2 / ROOM.view.near * 2.0**-23
+    bound = HALF * step * ROOM.view.far + native + abs(exact) * 2.0**-20
+    worst = np.max(abs(got - exact) / bound)
+    assert worst <= 1, f"{worst:.3f} times the bound"
+
+
+@pytest.mark.parametrize("holds", ["depth:16 power", "depth:24", "depth"])
+@pytest.mark.parametrize("name", DEPTH_ENCODINGS)
+def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
+    """The room through a layout that names its depth's code: packed in 16 and 24 bits, and in a float of its own."""
+    normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
+    home = Target("r32f" if holds == "depth" else "rgba8", holds)
+    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=name)
+    storage = {"depth:16 power": "packed16", "depth:24": "packed24", "depth": "r32f"}[holds]
+    exact = -kept("fp32")[0][..., 2][covered()].astype(np.float64)
+    with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as made:
+        made.draw()
+        got = -made.gbuffer()[0][..., 2][covered()].astype(np.float64)
+    camera = Camera(ROOM.view.near, ROOM.view.far, ROOM.view.fov, 4 / 3)
+    bounds = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES[storage]).furthest(exact, camera)
+    worst = int(np.argmax(abs(got - exact) / bounds))
+    assert abs(got - exact)[worst] <= bounds[worst], f"{exact[worst]} came back as {got[worst]}, bound {bounds[worst]}"
+
+
+def test_a_layout_keeps_the_depth_that_suits_its_normal():
+    assert LAYOUTS["normal_depth"].depth_encoding.name == "linear"
+    assert LAYOUTS["xy_depth_sign"].depth_encoding.name == "linear_sign"
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.usefixtures("gl")
+def test_material_comes_back_to_half_a_code(name):
+    """Colours in 8 bits, powers by their logarithm in 8 or 10; kinds exactly."""
+    exact, got = ([image[covered()].astype(np.float64) for image in kept(n)] for n in ("fp32", name))
+    for image, channel, component in [(2, c, f"albedo.{'rgb'[c]}") for c in range(3)] + [(3, 0, "specular.r")]:
+        if component in LAYOUTS[name].components:
+            worst = abs(got[image][:, channel] - exact[image][:, channel]).max()
+            assert worst <= HALF * (steps(name, component) or 0), f"{component}: {worst}"
+    if "power" in LAYOUTS[name].components:
+        worst = abs(np.log2(got[2][:, 3]) - np.log2(exact[2][:, 3])).max() / 11
+        assert worst <= HALF * (steps(name, "power") or 1e-6), f"power: {worst}"
+    if "kind" in LAYOUTS[name].components:
+        assert np.array_equal(got[1][:, 3], exact[1][:, 3]) and set(exact[1][:, 3]) == set(range(len(KINDS)))
+
+
+def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Directions through a layout's codec as the JAX half computes it, its packing in NumPy; (count, 3)."""
+    preset = LAYOUTS[name]
+    axes = np.linalg.inv(ROOM.view.matrix())[:3, :3] if preset.space == "world" else np.eye(3)
+    n, view = (from_array((a @ axes.T).astype(np.float32)) for a in (n, position))
+    encoding, codec = ENCODINGS[preset.encoding], preset.codec
+    code = encoding.encode(n, view)
+    bits_of = {word.component: word.bits for word in preset.words}
+    bits = [bits_of[f"normal.{axis}"] for axis in "xyz"[: encoding.components]]
+    if not any(bits):
+        stored = codec.store(code)
+    else:
+        widen, bias = PACKINGS[preset.packing]
+        numbers = []
+        for c, count in zip(code, bits, strict=True):
+            scale = 2.0**count - 1
+            unit = np.asarray(c, np.float64) * 0.5 + 0.5
+            integer = np.minimum(np.floor(unit * (scale + widen) + bias), scale)
+            numbers.append(jnp.asarray(integer / scale * 2 - 1, jnp.float32))
+        stored = type(code)(*numbers)
+    decoded = to_array(Vec3(*encoding.decode(stored, view)))
+    return np.asarray(decoded, np.float64) @ axes
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.usefixtures("gl")
+def test_directions_come_back_as_the_codec_says(name):
+    """The G-buffer's normal is the JAX codec's of the exact one; a code beside a tie may be its neighbour."""
+    here = covered() & (kept("fp32")[1][..., 3] != HAIR)
+    position, exact, got = kept("fp32")[0][here][:, :3], kept("fp32")[1][here][:, :3], kept(name)[1][here][:, :3]
+    expected = expected_directions(name, exact, position)
+    # Along a world axis a number is 0, which lies on a tie between two codes: a unit in the last place decides.
+    world = exact @ np.linalg.inv(ROOM.view.matrix())[:3, :3].T
+    apart = np.degrees(np.linalg.norm(got - expected, axis=1))[abs(world).min(axis=1) > 1e-4]
+    assert len(apart) > 1500
+    same = np.mean(apart < 2e-3)
+    assert same > 0.985, f"{same:.4%} the same; worst {apart.max():.4f} degrees"
+
+
+@pytest.mark.usefixtures("gl")
+def test_world_space_is_not_view_space():
+    """The room's walls lie along the world's axes: RGB10A2 has no 0, and tilts them all by the same angle."""
+    n = kept("fp32")[1][covered()][:, :3].astype(np.float64)
+    world = n @ np.linalg.inv(ROOM.view.matrix())[:3, :3].T
+    walls = abs(world).max(axis=1) > 1 - 1e-6
+    error = np.linalg.norm(kept("unreal4")[1][covered()][:, :3] - n, axis=1)[walls]
+    # 0 becomes 1/1023 to either side, in two components: sqrt(2)/1023 of a radian.
+    same = np.mean(abs(error - np.sqrt(2) / 1023) < 2e-6)
+    assert walls.sum() > 2000 and same > 0.99, f"{same:.4%} of {walls.sum()}"

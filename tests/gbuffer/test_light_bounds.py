@@ -1,0 +1,182 @@
+"""The bounds that lights are drawn as: nothing missed, little wasted, no light where none reaches."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import relighting
+from drawing import FP32, SIZE, apart, covered_by_glass, draw, lamps, scene_of, towards
+from relighting import surfaces
+
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.mesh import plane
+from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View
+from normalbench.gbuffer.scenes.setting import Setting
+
+
+def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
+    """Pixels that each local light's bounds shade, and the surfaces."""
+    plan = Plan(size, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
+        r.draw()
+        r.passes["lights"].queries = []
+        r.passes["lights"]()
+        return np.array([query.samples for query in r.passes["lights"].queries]), surfaces(scene, r.gbuffer())
+
+
+def test_bounds_shade_little_more_than_lights_reach(gl):
+    """64 point lights over the objects at 640 x 480: never fewer pixels than lie within each radius, and together at
+    most half as many again."""
+    scene = SCENES["objects"].make(Setting(lights=64))
+    counted, seen = shaded(gl, scene, (640, 480))
+    reached = np.array(
+        [
+            np.sum(np.linalg.norm(seen.position - np.array(light.position), axis=1) < light.radius * (1 - 1e-6))
+            for light in lamps(scene)
+        ]
+    )
+    assert len(counted) == 64 and np.all(counted >= reached), f"light {np.argmin(counted - reached)} misses pixels"
+    assert reached.sum() > 50_000
+    ratio = counted.sum() / reached.sum()
+    assert ratio <= 1.5, f"{ratio:.3f} times"
+
+
+def test_bounds_of_spots_hold_their_cones(gl):
+    """In the room: never fewer pixels than lie within a spot's radius and outer angle, and together at most half as
+    many again."""
+    scene = scene_of("room")
+    counted, seen = shaded(gl, scene, SIZE)
+    spots = [index for index, light in enumerate(lamps(scene)) if light.kind == "spot"]
+    reached = []
+    for index in spots:
+        light = lamps(scene)[index]
+        way = seen.position - np.array(light.position)
+        distance = np.linalg.norm(way, axis=1)
+        cosine = way @ np.array(light.direction) / distance
+        reached.append(np.sum((distance < light.radius) & (cosine > np.cos(np.radians(light.outer)) + 1e-6)))
+    assert len(reached) == 3 and min(reached) > 100
+    assert np.all(counted[spots] >= reached), f"{counted[spots]} shaded, {reached} in reach"
+    assert counted[spots].sum() <= 1.5 * sum(reached), f"{counted[spots]} shaded, {reached} in reach"
+
+
+# View space, y up, looking down -z; near 0.5.
+IN_VIEW = {
+    "eye in the middle": Light("point", (30.0,) * 3, (0.0, 0.0, 0.0), 14.0),
+    "across the near plane": Light("point", (12.0,) * 3, (0.3, -0.2, -0.6), 10.0),
+    "small, across the near plane": Light("point", (3.0,) * 3, (1.5, -2.4, -3.0), 4.2),
+    "behind the eye": Light("point", (20.0,) * 3, (0.5, 0.3, 2.5), 12.0),
+    "eye on the rim": Light("point", (10.0,) * 3, (-3.0, -1.0, -6.0), float(np.sqrt(46.0))),
+    "all of it": Light("point", (4.0,) * 3, (0.0, 0.0, -5.0), 100.0),
+    "spot from behind the eye": Light("spot", (40.0,) * 3, (0.2, 0.1, 1.5), 16.0, towards(0.0, -0.1, -1.0), 15.0, 30.0),
+    "spot from the eye": Light("spot", (40.0,) * 3, (0.0, 0.0, 0.0), 16.0, towards(0.2, -0.2, -1.0), 10.0, 25.0),
+    "spot to the eye": Light("spot", (8.0,) * 3, (0.0, 1.0, -12.0), 14.0, towards(0.0, -0.08, 1.0), 25.0, 40.0),
+    "wide spot": Light("spot", (10.0,) * 3, (1.0, 2.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.0),
+    "spot wider than any cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 120.0),
+    "spot at the widest cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.3),
+    "spot past the eye": Light("spot", (10.0,) * 3, (-4.0, 0.0, -8.0), 12.0, towards(0.5, -0.1, 1.0), 20.0, 35.0),
+}
+
+
+def in_world(light: Light, view: View) -> Light:
+    to_world = np.linalg.inv(view.matrix())
+    position = to_world[:3, :3] @ np.array(light.position) + to_world[:3, 3]
+    return replace(light, position=tuple(position), direction=tuple(to_world[:3, :3] @ np.array(light.direction)))
+
+
+@pytest.mark.parametrize("far", [40.0, 11.0])
+@pytest.mark.parametrize("placed_at", IN_VIEW)
+def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at, far):
+    """Deferred against forward shading in the room, one light alone, the far plane behind the room or in it: 70 dB."""
+    scene = scene_of("room")
+    view = replace(scene.view, far=far)
+    scene = replace(scene, view=view, lights=(in_world(IN_VIEW[placed_at], view),))
+    forward = draw(gl, "forward", scene).image
+    unlit = draw(gl, "forward", replace(scene, lights=())).image
+    reached = np.mean(abs(forward - unlit).max(axis=2) > 0.002)
+    assert reached > 0.02, f"the light reaches {reached:.1%} of the image"
+    found = apart(draw(gl, "deferred", scene).image, forward)
+    assert found >= 70, f"{found:.1f} dB"
+
+
+@pytest.mark.parametrize("index", [0, 5, 11])
+def test_the_eye_may_stand_in_a_light(gl, index):
+    """Among the objects, deferred against forward shading: 70 dB."""
+    scene = scene_of("objects")
+    eye = np.array(lamps(scene)[index].position)
+    view = replace(scene.view, eye=tuple(eye), target=tuple(eye + np.array([0.4, -0.15, -1.0])), near=0.2)
+    moved = replace(scene, view=view)
+    found = apart(draw(gl, "deferred", moved).image, draw(gl, "forward", moved).image)
+    assert found >= 70, f"{found:.1f} dB"
+
+
+# One light
+
+
+@pytest.mark.parametrize("kind", ["point", "spot"])
+def test_no_light_past_the_radius_or_beside_the_cone(gl, kind):
+    """Exactly none, in the light buffer and in forward shading; within there is some."""
+    lamp = Light(kind, (9.0, 9.0, 9.0), (0.5, 3.5, 0.0), 4.0, tuple(np.array([0.6, -0.8, 0.0])), 20.0, 40.0)
+    scene = scene_of("room")
+    dull = tuple(replace(material, emissive=(0.0, 0.0, 0.0)) for material in scene.materials)
+    scene = replace(scene, lights=(lamp,), ambient=(0.0, 0.0, 0.0), materials=dull)
+    frame = draw(gl, "prepass", scene)
+    seen = surfaces(scene, frame.gbuffer)
+    way = seen.position - np.array(lamp.position)
+    distance = np.linalg.norm(way, axis=1)
+    outside = distance > lamp.radius * (1 + 1e-5)
+    if kind == "spot":
+        outside |= way @ np.array(lamp.direction) / distance < np.cos(np.radians(lamp.outer)) - 1e-5
+    assert outside.sum() > 2000 and (~outside).sum() > 500
+    opaque = ~covered_by_glass(gl, "room")[seen.covered]
+    pictures = {"D": frame.light[0], "S": frame.light[1], "forward": draw(gl, "forward", scene).image}
+    for name, picture in pictures.items():
+        rows = picture[seen.covered]
+        dark = outside if name != "forward" else outside & opaque
+        wrong = rows[dark].max(axis=1) > 0
+        assert not wrong.any(), f"{name}: {wrong.sum()} pixels, {rows[dark].max():.3g}"
+    bright = frame.light[0][seen.covered][~outside].any(axis=1)
+    assert bright.mean() > 0.5, f"{bright.mean():.0%} of what is in reach is lit"
+
+
+# A wall six before the eye, or a floor two below it; lamps one from it, and the foot of each, view space.
+WALL, FLOOR = "wall", "floor"
+LAMPS = {
+    "left": (WALL, (-1.5, 0.3, -5.0), (-1.5, 0.3, -6.0)),
+    "right": (WALL, (1.5, 0.3, -5.0), (1.5, 0.3, -6.0)),
+    "above": (WALL, (0.2, 1.3, -5.0), (0.2, 1.3, -6.0)),
+    "below": (WALL, (0.2, -1.3, -5.0), (0.2, -1.3, -6.0)),
+    "near": (FLOOR, (0.4, -1.0, -4.5), (0.4, -2.0, -4.5)),
+    "far": (FLOOR, (0.4, -1.0, -9.0), (0.4, -2.0, -9.0)),
+}
+
+
+@pytest.mark.parametrize("pipeline", ["forward", "deferred"])
+@pytest.mark.parametrize("side", LAMPS)
+def test_a_surface_is_brightest_at_the_foot_of_its_lamp(gl, side, pipeline):
+    """N.L over the squared distance peaks where the lamp is closest: within two pixels, whichever way the camera looks;
+    so no axis is swapped or turned around, and the distance does not count more than once."""
+    ground, lamp, foot = LAMPS[side]
+    view = View((3.0, -2.0, 5.0), (-4.0, 1.5, 9.0), 50.0, 0.5, 50.0)
+    model = np.eye(4)
+    if ground == WALL:
+        model[:3, :3], model[:3, 3] = np.array([(1, 0, 0), (0, 0, -1), (0, 1, 0)]), (0, 0, -6.0)
+    else:
+        model[:3, 3] = (0, -2.0, -10.0)
+    part = Part(plane(40.0, 40.0), (np.linalg.inv(view.matrix()) @ model)[None], np.array([0]))
+    white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
+    light = in_world(Light("point", (1.0, 1.0, 1.0), lamp, 6.0), view)
+    scene = Scene((part,), (white,), (light,), (0.0, 0.0, 0.0), view, view)
+    image = draw(gl, pipeline, scene).image[..., 0]
+    row, column = np.unravel_index(np.argmax(image), image.shape)
+    up = np.tan(np.radians(view.fov / 2)) * -foot[2]
+    expected = np.array([1 - foot[1] / up, 1 + foot[0] / up * SIZE[1] / SIZE[0]]) / 2 * SIZE[::-1] - 0.5
+    off = abs(np.array([row, column]) - expected).max()
+    assert off <= 2, f"brightest at row {row}, column {column}; the foot is at {expected.round(1)}"
+    # (1 - (1/6)^4)^2 / 2, straight below.
+    assert image.max() == pytest.approx((1 - 6.0**-4) ** 2 / 2, rel=0.01)

@@ -1,0 +1,95 @@
+"""The pipelines against each other, and the triangles that their passes draw."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
+
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.scene import KINDS, Scene
+from normalbench.gbuffer.scenes.setting import Setting
+
+
+@pytest.mark.parametrize("shadows", [False, True], ids=["no shadows", "shadows"])
+@pytest.mark.parametrize("name", SCENES)
+def test_all_pipelines_give_one_image(gl, name, shadows):
+    """In fp32 and at full size: 70 dB between any two, 55 with shadows, where a comparison of depths may go either way.
+    Inferred lighting on what no transparent surface covers."""
+    glass = covered_by_glass(gl, name)
+    images = {pipeline: drawn(gl, pipeline, name, shadows).image for pipeline in EXACT}
+    for one, other in combinations(EXACT, 2):
+        counts = ~glass if "inferred" in (one, other) else np.ones_like(glass)
+        found = apart(images[one][counts], images[other][counts])
+        assert found >= (55 if shadows else 70), f"{one} and {other} on {name}: {found:.1f} dB"
+
+
+def test_more_lights_than_the_stencil_counts(gl):
+    """600 lamps, each lighting each pixel once, in passes and all at once: 120 dB."""
+    scene = SCENES["playground"].make(Setting(lights=600))
+    found = apart(draw(gl, "forward_multipass", scene).image, draw(gl, "forward", scene).image)
+    assert found >= 120, f"{found:.1f} dB"
+
+
+@pytest.mark.parametrize("name", ["objects", "room"])
+def test_special_materials_look_the_same_forward_and_hybrid(gl, name):
+    """Over the pixels of each kind alone: 60 dB."""
+    forward, hybrid = (drawn(gl, pipeline, name, False) for pipeline in ("forward", "hybrid"))
+    kind = hybrid.gbuffer[1][..., 3]
+    for number, special in enumerate(KINDS[1:], 1):
+        here = kind == number
+        assert here.sum() > 20
+        found = apart(forward.image[here], hybrid.image[here])
+        assert found >= 60, f"{special} in {name}: {found:.1f} dB"
+
+
+def test_inferred_lighting_leaves_no_surface_dark(gl):
+    """At a quarter of the size some pixels find their own surface in none of the four texels: the nearest lights them.
+    In the room, which has no background, without ambient light; a few find one that is in the dark itself."""
+    scene = replace(scene_of("room"), ambient=(0.0, 0.0, 0.0))
+    opaque = ~covered_by_glass(gl, "room")
+    lit_pixels = opaque & (draw(gl, "forward", scene).image.max(axis=2) > 0.01)
+    inferred = draw(gl, "inferred", scene, scale=0.25).image.max(axis=2)
+    assert lit_pixels.sum() > 5000
+    dark = np.sum(inferred[lit_pixels] == 0)
+    assert dark < lit_pixels.sum() / 200, f"{dark} of {lit_pixels.sum()} pixels are dark"
+
+
+# Triangles
+
+
+def triangles_of(scene: Scene, wanted) -> int:
+    """Of the parts' instances whose material is wanted."""
+    counts = (
+        len(part.mesh.triangles) * sum(wanted(scene.materials[index], part) for index in part.materials)
+        for part in scene.parts
+    )
+    return sum(counts)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_passes_draw_the_triangles_they_are_for(gl, name):
+    """Geometry all opaque ones once; the second geometry pass all of them again in light pre-pass, and exactly the
+    special ones in hybrid; the shadow map what casts."""
+    scene = scene_of(name)
+    opaque = triangles_of(scene, lambda material, _: material.alpha == 1)
+    special = triangles_of(scene, lambda material, _: material.alpha == 1 and material.kind != "general")
+    expected = {
+        "shadow_map": triangles_of(scene, lambda material, part: material.alpha == 1 and part.casts),
+        "geometry": opaque,
+        "transparent": triangles_of(scene, lambda material, _: material.alpha < 1),
+    }
+    for pipeline, again in (("prepass", opaque), ("hybrid", special)):
+        plan = Plan(SIZE, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
+        with rendering(gl, PIPELINES[pipeline], scene, plan) as r:
+            counted = r.triangles()
+        expected["material"] = again
+        found = {stage: counted[stage] for stage in expected}
+        assert found == expected, f"{pipeline} on {name}"

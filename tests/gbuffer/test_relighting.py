@@ -1,0 +1,378 @@
+"""The renderer's light, shadows and positions against formulas in float64."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import relighting
+from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
+from relighting import relight, surfaces
+
+from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.gbuffer.defines.materials import CONSTANTS
+from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
+from normalbench.gbuffer.frame.scene_buffers import sun_matrix
+from normalbench.gbuffer.layouts.layout import Layout, Target
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.passes.passes import SHADOW_OFFSET
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.mesh import box, joined, plane, sphere
+from normalbench.gbuffer.scenes.playground import in_view_space
+from normalbench.gbuffer.scenes.rasterise import Camera, rasterise
+from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material, Part, Scene, View, placed
+
+
+@cache
+def lit(gl, scene: str):
+    """A scene's surfaces, and the light on them by the formulas, with shadows."""
+    frame = drawn(gl, "prepass", scene, True)
+    seen = surfaces(scene_of(scene), frame.gbuffer)
+    return seen, relight(scene_of(scene), seen, frame.shadow_map)
+
+
+# Light against formulas
+
+
+@pytest.mark.parametrize("which", ["diffuse", "specular"])
+@pytest.mark.parametrize("name", SCENES)
+def test_the_light_buffer_holds_what_the_formulas_say(gl, name, which):
+    """D in the first target and S in the second, all lights and shadows, over the pixels of each material kind: 80 dB
+    below the light's own peak or 1, whichever is more. Where float32 cannot tell a shadow either answer counts."""
+    seen, sums = lit(gl, name)
+    expected, slack = getattr(sums, which), getattr(sums, f"{which}_slack")
+    light = drawn(gl, "prepass", name, True).light[which == "specular"]
+    assert not light[~seen.covered].any(), "the background is lit"
+    error = np.maximum(abs(light[seen.covered][:, :3] - expected) - slack, 0)
+    for kind in np.unique(seen.kind):
+        here = seen.kind == kind
+        found = psnr(error[here], max(expected.max(), 1.0))
+        assert found >= 80, f"{name}, {which} light on {KINDS[kind]}: {found:.1f} dB, largest {error[here].max():.2g}"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_deferred_colour_is_what_the_formulas_say(gl, name):
+    """Emitted and reflected light in the light buffer of deferred shading, as displayed: 80 dB."""
+    scene, (seen, sums) = scene_of(name), lit(gl, name)
+    frame = drawn(gl, "deferred", name, True)
+    assert all(
+        np.array_equal(a, b) for a, b in zip(frame.gbuffer, drawn(gl, "prepass", name, True).gbuffer, strict=True)
+    )
+    expected = relighting.emissive(scene, seen) + seen.albedo * sums.diffuse + seen.specular * sums.specular
+    slack = seen.albedo * sums.diffuse_slack + seen.specular * sums.specular_slack
+    got = frame.light[0][seen.covered][:, :3]
+    found = apart(got, np.clip(got, expected - slack, expected + slack))
+    assert found >= 80, f"{name}: {found:.1f} dB, largest {abs(got - expected).max():.2g}"
+
+
+@pytest.mark.parametrize("pipeline", EXACT)
+@pytest.mark.parametrize("name", ["playground", "objects", "gloss"])
+def test_the_image_is_what_the_formulas_say(gl, name, pipeline):
+    """Of the scenes without transparent surfaces, ambient light included, without shadows: 80 dB as displayed."""
+    scene = scene_of(name)
+    seen = lit(gl, name)[0]
+    expected = relighting.image(scene, seen, unshadowed(gl, name))
+    found = apart(drawn(gl, pipeline, name, False).image, expected)
+    assert found >= 80, f"{pipeline} on {name}: {found:.1f} dB"
+
+
+@cache
+def unshadowed(gl, name: str):
+    return relight(scene_of(name), lit(gl, name)[0], None)
+
+
+def test_hardly_any_shadow_is_undecided(gl):
+    """float32 is in doubt about the shadow of fewer than one pixel in a thousand; and there are shadows to speak of.
+    The playground's upper slab keeps nearly all of the sun out."""
+    for name in SCENES:
+        seen, _ = lit(gl, name)
+        low, high = relighting.sunlit(scene_of(name), seen.position, drawn(gl, "prepass", name, True).shadow_map)
+        assert np.mean(low < high) < 1e-3, f"{name}: {np.sum(low < high)} of {low.size} in doubt"
+        dark, half = np.mean(high == 0), np.mean((low > 0) & (high < 1))
+        enough = dark > 0.01 and (half > 0.001 or name == "playground")
+        assert enough, f"{name}: {dark:.1%} in shadow, {half:.1%} at its edges"
+
+
+def test_the_room_shows_every_kind_of_light_and_of_material(gl):
+    """Each material on 20 pixels or more; each kind of light brings D of a hundredth or more to 500."""
+    scene, (seen, _) = scene_of("room"), lit(gl, "room")
+    assert all(np.sum(seen.kind == number) >= 20 for number in range(len(KINDS)))
+    for kind in LIGHT_KINDS:
+        chosen = replace(scene, lights=tuple(light for light in scene.lights if light.kind == kind))
+        reached = np.sum(relight(chosen, seen, None).diffuse.max(axis=1) > 0.01)
+        assert reached >= 500, f"{kind} light reaches {reached} pixels"
+
+
+@cache
+def line_up() -> Scene:
+    """A ball of each material kind in a row, strands upright; white lamps of each kind in the order of LIGHT_KINDS."""
+    upright = sphere(1.0, 96, 64).placed(np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)]), (0, 0, 0))
+    places = [(-2.4, 0, 0), (-0.8, 0.3, -0.5), (0.8, -0.2, 0.3), (2.4, 0.1, 0)]
+    materials = (
+        Material("general", (0.5, 0.4, 0.3), (0.3, 0.3, 0.3), 20.0),
+        Material("skin", (0.7, 0.5, 0.4), (0.2, 0.2, 0.2), 24.0),
+        Material("hair", (0.3, 0.2, 0.1), (0.2, 0.15, 0.1), 40.0),
+        Material("glossy", (0.5, 0.1, 0.1), (1.0, 1.0, 1.0), 30.0),
+    )
+    view = View((1.5, 1.2, 7.0), (0.0, 0.0, 0.0), 40.0, 1.0, 30.0)
+    return Scene(
+        parts=(Part(upright, placed(places, 0.75), np.arange(4)),),
+        materials=materials,
+        lights=(
+            Light("point", (9.0, 9.0, 9.0), (-0.5, 2.5, 2.5), 6.0),
+            Light("spot", (20.0, 20.0, 20.0), (1.0, 3.0, 3.0), 9.0, towards(-1.0, -3.0, -3.0), 15.0, 40.0),
+            Light("sun", (1.0, 1.0, 1.0), direction=towards(0.6, -0.5, -0.7)),
+        ),
+        ambient=(0.0, 0.0, 0.0),
+        view=view,
+        previous=view,
+    )
+
+
+@pytest.mark.parametrize("kind", LIGHT_KINDS)
+def test_each_kind_of_light_on_each_kind_of_material(gl, kind):
+    """One lamp alone: D and S on each ball 80 dB below their own peak there, which is bright enough to tell."""
+    scene = replace(line_up(), lights=(line_up().lights[LIGHT_KINDS.index(kind)],))
+    frame = draw(gl, "prepass", scene)
+    seen = surfaces(scene, frame.gbuffer)
+    sums = relight(scene, seen, None)
+    for which, light, expected in zip("DS", frame.light, (sums.diffuse, sums.specular), strict=True):
+        for number, material in enumerate(KINDS):
+            here = seen.kind == number
+            lit_pixels = np.sum(expected[here].max(axis=1) > 0.02)
+            assert lit_pixels > 50, f"{kind} light on {material}: {which} on {lit_pixels} pixels"
+            found = psnr(light[seen.covered][here][:, :3] - expected[here], expected[here].max())
+            assert found >= 80, f"{kind} light on {material}: {which} {found:.1f} dB"
+
+
+def test_strands_of_hair_run_along_v(gl):
+    """Upright on a ball whose axis is upright: along the meridians, and in either sign that faces the eye."""
+    scene = line_up()
+    seen = surfaces(scene, draw(gl, "prepass", scene).gbuffer)
+    hair = seen.kind == KINDS.index("hair")
+    outwards = (seen.position[hair] - scene.parts[0].models[2, :3, 3]) / 0.75
+    around = np.cross([0.0, 1.0, 0.0], outwards)
+    strand = seen.direction[hair]
+    assert hair.sum() > 500
+    assert abs(np.sum(strand * outwards, axis=1)).max() < 0.05
+    assert abs(np.sum(strand * around, axis=1)).max() < 0.05
+    forward = scene.view.matrix()[2, :3]
+    assert (strand @ forward).min() >= -1e-6, "a strand points away from the eye"
+
+
+def test_the_normal_map_tilts_against_its_slopes(gl):
+    """A level plane seen from above: its normal is N - strength (dh/du T + dh/dv B), T the way u grows and B the way v
+    does, to 0.02; the map is read back and magnified bilinearly."""
+    view = View((0.3, 3.0, 0.2), (0.3, 0.0, 0.0), 40.0, 0.5, 20.0)
+    bumpy = Material(bump=0.8, bump_repeat=1.0)
+    scene = Scene((Part(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
+    plan = Plan(SIZE, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
+        r.draw()
+        seen = surfaces(scene, r.gbuffer())
+        texture = r.frame.scene_buffers.bumps
+        slopes = np.frombuffer(texture.read(), np.float16).reshape(texture.height, texture.width, 2).astype(float)
+    x, z = seen.position[:, 0], seen.position[:, 2]
+    place = np.stack([x / 6 + 0.5, 0.5 - z / 6], axis=1) * texture.size - 0.5
+    corner = np.floor(place).astype(int)
+    slope = np.zeros((len(place), 2))
+    for right, up in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        weight = np.prod(1 - abs(place - corner - (right, up)), axis=1, keepdims=True)
+        slope += weight * slopes[(corner[:, 1] + up) % texture.height, (corner[:, 0] + right) % texture.width]
+    tilted = np.stack([-0.8 * slope[:, 0], np.ones(len(x)), 0.8 * slope[:, 1]], axis=1)
+    expected = tilted / np.linalg.norm(tilted, axis=1, keepdims=True)
+    assert np.ptp(expected, axis=0).max() > 0.8
+    error = abs(seen.direction - expected).max()
+    assert error < 0.02, f"{error:.3f}"
+
+
+@pytest.mark.parametrize("name", ["objects", "room"])
+def test_one_target_holds_diffuse_light_and_specular_luminance(gl, name):
+    """RGB is D, A the Rec. 709 luminance of S, 80 dB below the peak or 1; the material pass gives the highlight the
+    colour of D: 80 dB as displayed."""
+    scene, seen, sums = scene_of(name), lit(gl, name)[0], unshadowed(gl, name)
+    frame = draw(gl, "prepass", scene, targets=1)
+    luma = np.array([0.2126, 0.7152, 0.0722])
+    expected = np.concatenate([sums.diffuse, (sums.specular @ luma)[:, None]], axis=1)
+    found = psnr(frame.light[0][seen.covered] - expected, max(expected.max(), 1))
+    assert found >= 80, f"{name}: light {found:.1f} dB"
+    brightness = np.where(expected[:, :3].any(axis=1), sums.diffuse @ luma, 1.0)[:, None]
+    coloured = replace(sums, specular=sums.diffuse / brightness * expected[:, 3:])
+    opaque = ~covered_by_glass(gl, name)
+    found = apart(frame.image[opaque], relighting.image(scene, seen, coloured)[opaque])
+    assert found >= 80, f"{name}: image {found:.1f} dB"
+
+
+def test_one_white_light_gets_its_power_back_from_a_light_pass_without_powers(gl):
+    """[S / sum(N.L att)]^(m/n) sum(N.L att) is exact for a single white light: 60 dB to forward shading, on general
+    materials; highlights of power 4 to 1024 from one of 32."""
+    lamp = Light("point", (3.0, 3.0, 3.0), (2.0, 1.5, 5.0), 14.0)
+    scene = replace(scene_of("gloss"), lights=(lamp,))
+    bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), "xyz", "")
+    expected = draw(gl, "forward", scene).image
+    for targets in (1, 2):
+        found = apart(draw(gl, "prepass", scene, layout=bare, targets=targets).image, expected)
+        assert found >= 60, f"{targets} targets: {found:.1f} dB"
+    fixed = replace(scene, materials=tuple(replace(m, power=CONSTANTS["LIGHT_PASS_POWER"]) for m in scene.materials))
+    assert apart(draw(gl, "forward", fixed).image, expected) < 40, "the powers make no difference"
+
+
+def test_special_materials_may_give_off_light(gl):
+    """Every ball of the line-up glows, under all its lamps, the sun the last of them: 80 dB to the formulas."""
+    scene = line_up()
+    glowing = tuple(replace(m, emissive=(0.1, 0.2 + 0.1 * i, 0.3)) for i, m in enumerate(scene.materials))
+    scene = replace(scene, materials=glowing, ambient=(0.1, 0.05, 0.02))
+    seen = surfaces(scene, draw(gl, "prepass", scene).gbuffer)
+    expected = relighting.image(scene, seen, relight(scene, seen, None))
+    for pipeline in EXACT:
+        found = apart(draw(gl, pipeline, scene).image, expected)
+        assert found >= 80, f"{pipeline}: {found:.1f} dB"
+
+
+# Shadows
+
+
+SUN = towards(0.5, -0.8, -0.33)
+BLOCK = np.array([(-0.8, 0.5, -0.5), (0.8, 1.6, 0.5)])
+
+
+@cache
+def block_over_floor() -> Scene:
+    """A box that hovers over a wide floor under an oblique sun, white, with nothing but diffuse light."""
+    size = BLOCK[1] - BLOCK[0]
+    white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
+    view = View((3.0, 4.0, 6.0), (0.4, 0.3, -0.3), 50.0, 0.5, 50.0)
+    return Scene(
+        parts=(
+            Part(box(*size), placed(BLOCK.mean(axis=0)), np.array([0])),
+            Part(plane(30.0, 30.0), placed((0, 0, 0)), np.array([0]), casts=False),
+        ),
+        materials=(white,),
+        lights=(Light("sun", (1.0, 1.0, 1.0), direction=SUN),),
+        ambient=(0.0, 0.0, 0.0),
+        view=view,
+        previous=view,
+    )
+
+
+def meets_block(points: np.ndarray, grown: float) -> np.ndarray:
+    """Whether a ray from each point to the sun meets the box, grown by that much to each side."""
+    low, high = ((side - points) / -np.array(SUN) for side in (BLOCK[0] - grown, BLOCK[1] + grown))
+    enters, leaves = np.minimum(low, high).max(axis=1), np.maximum(low, high).min(axis=1)
+    return (leaves > enters) & (leaves > 0)
+
+
+def within_block(points: np.ndarray) -> np.ndarray:
+    """How far points on the box are from the nearest edge of their face."""
+    return np.sort(np.minimum(points - BLOCK[0], BLOCK[1] - points), axis=1)[:, 1]
+
+
+@pytest.mark.parametrize("pipeline", ["forward", "deferred"])
+def test_shadows_lie_where_rays_to_the_sun_are_blocked(gl, pipeline):
+    """On the floor, but for three texels on either side of the shadow's edge: dark inside, N.L outside. What the sun
+    sees of the box itself is fully lit up to three texels from its edges."""
+    scene = block_over_floor()
+    image = draw(gl, pipeline, scene, shadows=True).image[..., 0]
+    seen = surfaces(scene, draw(gl, "deferred", scene, shadows=True).gbuffer)
+    image = image[seen.covered]
+    texel = 1 / np.linalg.norm(sun_matrix(scene)[:2, :3], axis=1).min() / SHADOW_SIZE
+    floor = abs(seen.position[:, 1]) < 1e-4
+    dark = floor & meets_block(seen.position, -3 * texel)
+    bright = floor & ~meets_block(seen.position, 3 * texel)
+    assert dark.sum() > 200 and bright.sum() > 5000
+    assert not image[dark].any(), f"{np.count_nonzero(image[dark])} of {dark.sum()} pixels in shadow are lit"
+    assert np.allclose(image[bright], -SUN[1], atol=1e-5), f"{np.sum(image[bright] < -SUN[1] - 1e-5)} wrongly dark"
+    facing = seen.direction @ -np.array(SUN)
+    side = ~floor & (facing > 0.01) & (within_block(seen.position) > 3 * texel)
+    assert side.sum() > 300
+    assert np.allclose(image[side], facing[side], atol=1e-5), f"{np.sum(image[side] < facing[side] - 1e-5)} with acne"
+
+
+def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
+    """Every texel but those at outlines and edges: where the sun's ray through its middle leaves the box, moved away by
+    so many of that side's slopes, by either of GL's measures, and steps of 24 bits; 1 where the ray passes by."""
+    scene = block_over_floor()
+    depths = draw(gl, "deferred", scene, shadows=True).shadow_map
+    matrix = sun_matrix(scene)
+    column, row = np.meshgrid(np.arange(SHADOW_SIZE) + 0.5, np.arange(SHADOW_SIZE) + 0.5)
+    start = np.stack([column / SHADOW_SIZE, row / SHADOW_SIZE, np.zeros_like(row)], axis=2) - matrix[:3, 3]
+    start = start @ np.linalg.inv(matrix[:3, :3]).T
+    low, high = ((side - start) / np.array(SUN) for side in BLOCK)
+    enters, leaves = np.minimum(low, high).max(axis=2), np.maximum(low, high)
+    # Depth goes with the way along the ray.
+    per_way = matrix[2, :3] @ np.array(SUN)
+    way = leaves.min(axis=2)
+    texel = 1 / np.linalg.norm(matrix[:2, :3], axis=1).min() / SHADOW_SIZE
+    passes_by = enters > way + 10 * texel
+    assert passes_by.sum() > 10_000 and (depths[passes_by] == 1).all(), "something is in the way of a free ray"
+    slopes, steps = SHADOW_OFFSET
+    for axis in range(3):
+        here = (leaves.argmin(axis=2) == axis) & (way > enters + 10 * texel)
+        here &= np.sort(leaves, axis=2)[..., 1] > way + 10 * texel
+        across = np.linalg.inv(matrix[:3, :3]).T @ np.eye(3)[axis]
+        slope = abs(across[:2] / across[2]) / SHADOW_SIZE
+        found = depths[here] - way[here] * per_way
+        least, most = slopes * slope.max() - 1e-6, slopes * np.linalg.norm(slope) + 2 * steps * 2.0**-24 + 1e-6
+        assert here.sum() > 5000
+        assert found.min() >= least and found.max() <= most, (
+            f"side {axis}: {found.min():.3g} to {found.max():.3g} behind, not {least:.3g} to {most:.3g}"
+        )
+
+
+def test_a_coarse_ball_does_not_shadow_what_its_normals_say_is_lit(gl):
+    """Smooth normals on flat faces: some faces that look away from the sun are lit all the same. All
+    pixels with an N.L of 0.05 or more are."""
+    view = View((-3.0, 3.0, 5.0), (0.0, 0.0, 0.0), 30.0, 0.5, 50.0)
+    ball = Part(sphere(1.0, 18, 12), placed((0, 0, 0)), np.array([0]))
+    white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
+    scene = Scene((ball,), (white,), (Light("sun", (1.0,) * 3, direction=SUN),), (0.0, 0.0, 0.0), view, view)
+    frame = draw(gl, "deferred", scene, shadows=True)
+    seen = surfaces(scene, frame.gbuffer)
+    facing = seen.direction @ -np.array(SUN)
+    wrong = (frame.image[seen.covered][:, 0] < facing - 1e-4) & (facing > 0.05)
+    assert np.sum(facing > 0.05) > 3000
+    assert not wrong.any(), f"{wrong.sum()} pixels too dark, where N.L is up to {facing[wrong].max():.2f}"
+
+
+# Positions
+
+
+def test_positions_from_either_depth_agree(gl):
+    """From z/w by the inverse projection, and from linear depth along the eye's ray. A step of 2^-24 in z/w is
+    d^2 (f - n) / (f n) 2^-24 in depth; positions agree to eight of those and 2^-20 of the depth."""
+    for name in SCENES:
+        scene = scene_of(name)
+        near, far = scene.view.near, scene.view.far
+        linear = drawn(gl, "deferred", name, False).gbuffer[0]
+        native = draw(gl, "deferred", scene, layout=LAYOUTS["hybrid"]).gbuffer[0]
+        covered = linear[..., 3] > 0
+        depth = -linear[covered][:, 2].astype(np.float64)
+        step = depth**2 * (far - near) / (far * near) * 2.0**-24
+        error = np.linalg.norm(native[covered][:, :3].astype(np.float64) - linear[covered][:, :3], axis=1)
+        allowed = (8 * step + depth * 2.0**-20) * np.linalg.norm(linear[covered][:, :3], axis=1) / depth
+        assert np.all(error <= allowed), f"{name}: {np.max(error / allowed):.2f} of what is allowed"
+
+
+def test_positions_are_those_of_the_software_rasteriser(gl):
+    """On the playground: within a hundredth of a pixel's own extent along the surface and 1e-5 of the depth, where GL
+    moves vertices by up to 1/512 of a pixel; but for one pixel in 500, at edges, where another surface is seen."""
+    scene = scene_of("playground")
+    reference = rasterise(joined(in_view_space()), Camera(*SIZE, scene.view.fov, scene.view.near, scene.view.far))
+    seen = drawn(gl, "deferred", "playground", False).gbuffer
+    covered = (seen[0][..., 3] > 0) & reference.covered
+    assert np.mean((seen[0][..., 3] > 0) != reference.covered) < 0.002
+    position = reference.positions.astype(np.float64)
+    depth = -position[..., 2]
+    error = np.linalg.norm(seen[0][..., :3] - position, axis=2)
+    # One pixel covers `extent` across the line of sight, and that over the cosine along the surface.
+    extent = depth * 2 * np.tan(np.radians(scene.view.fov / 2)) / SIZE[1]
+    cosine = abs(np.sum(reference.normals * position, axis=2)) / np.linalg.norm(position, axis=2)
+    allowed = 0.01 * extent / np.maximum(cosine, 0.02) + 1e-5 * depth
+    wrong = covered & (error > allowed)
+    assert wrong.sum() <= covered.sum() / 500, f"{wrong.sum()} of {covered.sum()} pixels"
+    turned = covered & (np.sum(seen[1][..., :3] * reference.normals, axis=2) < np.cos(np.radians(1.0)))
+    assert turned.sum() <= covered.sum() / 500, f"{turned.sum()} of {covered.sum()} normals"

@@ -1,0 +1,296 @@
+"""Users' meshes as scenes: normals under every transform, the formats, cameras, and what bad files get."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from drawing import FP32, apart, draw, scene_of
+from PIL import Image
+from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, as_document, chained, ply
+
+from normalbench.bench.normals.normal_names import mesh_set
+from normalbench.bench.normals.normal_sets import playground
+from normalbench.bench.tables.quality.measure import Case, measure
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.gbuffer.scenes.files.read import file_scene, file_view, read_mesh_file, seen
+from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents, wound
+from normalbench.gbuffer.scenes.playground import CAMERA, in_view_space
+from normalbench.gbuffer.scenes.scene import Material
+from normalbench.gbuffer.scenes.setting import Setting
+
+# glTF
+
+
+@pytest.mark.parametrize("how", ["glb", "beside", "data"])
+def test_a_mirrored_uneven_node_in_a_chain_gives_the_normals_computed_by_hand(tmp_path, how):
+    """The normal (1, 2, 2) goes by (-1/2, 1, 2) to (-1/2, 2, 4), which is (-1, 4, 8) / 9 when unit; a quarter turn
+    about z takes (x, y, z) to (-y, x, z). The tangent (2, 1, -2) goes as positions do, by (-2, 1, 1/2), and then turns;
+    a mirror turns its sign around, so that the bitangent lies where the mirrored one does."""
+    file = read_mesh_file(chained().write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
+    mesh = file.baked
+    assert abs(mesh.normals - np.array([-4, -1, 8]) / 9).max() < 1e-15, mesh.normals
+    # Four units in the last place of 4: the quarter turn's quaternion is rounded.
+    assert abs(mesh.positions[:2] - [(0, 0, 4), (1, -4, 4)]).max() < 4 * np.spacing(4.0)
+    (piece,) = file.pieces
+    placed = tangents(piece.baked())
+    assert abs(placed[:, :3] - np.array([-1, -4, -1]) / 18**0.5).max() < 1e-15, placed
+    assert (placed[:, 3] == -1).all()
+    n, t = np.array([1, 2, 2]) / 3, np.array([2, 1, -2]) / 3
+    bitangent = piece.model[:3, :3] @ np.cross(n, t)
+    made = placed[0, 3] * np.cross(mesh.normals[0], placed[0, :3])
+    # At right angles to the normal by construction; the mirrored one lies on the same side.
+    assert made @ bitangent > 0.3 * np.linalg.norm(bitangent)
+
+
+def test_the_normals_that_the_renderer_keeps_are_those_computed_by_hand(tmp_path, gl):
+    """A square with the normal (1, 2, 2) / 3 in a mirrored, unevenly scaled node, seen by a camera on the z axis."""
+    document = Document()
+    square = [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)]
+    mesh = document.mesh(square, [(1, 2, 2)] * 4, [(0, 1, 2), (0, 2, 3)])
+    document.node(mesh=mesh, scale=[-2, 1, 0.5])
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 1, "zfar": 9}}]
+    document.node(camera=0, translation=[0, 0, 5])
+    file = read_mesh_file(document.write(tmp_path / "a.glb"))
+    kept = draw(gl, "deferred", file_scene(file, Setting(lights=1))).gbuffer[1][..., :3]
+    by_hand = np.array([-1, 4, 8]) / 9
+    assert abs(kept - by_hand).max() < 2e-7, f"{abs(kept - by_hand).max():.2e} off"
+    assert abs(seen(file, (64, 48)).normals - by_hand).max() < 1e-7
+
+
+def test_a_matrix_is_read_column_by_column_and_chains(tmp_path):
+    document = Document()
+    child = document.node(mesh=document.mesh(POSITIONS, NORMALS), translation=[1, 0, 0])
+    document.node(children=[child], matrix=[0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 3, 0, 5, 6, 7, 1])
+    mesh = read_mesh_file(document.write(tmp_path / "a.glb")).baked
+    # (1, 1, 2) moves to (2, 1, 2), turns to (-1, 2, 2), is stretched to (-1, 2, 6), and moves.
+    assert np.allclose(mesh.positions[0], (4, 8, 13), atol=1e-15)
+    by_hand = np.array([-2, 1, 2 / 3])
+    assert np.allclose(mesh.normals, by_hand / np.linalg.norm(by_hand), atol=1e-15)
+
+
+def test_rigid_places_are_instances_and_others_are_baked(tmp_path):
+    document = Document()
+    mesh = document.mesh(POSITIONS, NORMALS)
+    for scale in ([1, 1, 1], [2, 2, 2], [-1, 1, 1], [1, 2, 1]):
+        document.node(mesh=mesh, scale=scale)
+    file = read_mesh_file(document.write(tmp_path / "a.glb"))
+    parts = file_scene(file, Setting()).parts
+    assert sorted(len(part.models) for part in parts) == [1, 1, 2]
+    baked = joined(
+        [replace(part.mesh, authored=None).placed(m[:3, :3].T, m[:3, 3]) for part in parts for m in part.models]
+    )
+    assert sorted(map(tuple, baked.positions)) == sorted(map(tuple, file.baked.positions))
+
+
+def test_strips_fans_sparse_and_quantised_accessors_are_read(tmp_path):
+    square = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], np.float32)
+    for mode, corners, expected in (
+        (5, [0, 1, 2, 3], [(0, 1, 2), (1, 3, 2)]),
+        (6, [0, 1, 3, 2], [(1, 3, 0), (3, 2, 0)]),
+    ):
+        document = Document()
+        document.node(mesh=document.mesh(square, triangles=corners, mode=mode))
+        made = read_mesh_file(document.write(tmp_path / "a.glb")).baked
+        assert made.triangles.tolist() == [list(t) for t in expected]
+        assert np.array_equal(made.normals, np.tile([0.0, 0, 1], (4, 1))), "all wound one way"
+    document = Document()
+    mesh = document.mesh(square, triangles=[0, 1, 2])
+    attributes = document.json["meshes"][mesh]["primitives"][0]["attributes"]
+    attributes["NORMAL"] = document.accessor(np.array([(127, 0, 0)] * 4, np.int8), normalized=True)
+    views = [document.accessor(np.array([2], np.uint8)), document.accessor(np.array([(0, 5, 0)], np.float32))]
+    index, value = ({"bufferView": document.json["accessors"][v]["bufferView"]} for v in views)
+    sparse = {"count": 1, "indices": index | {"componentType": 5121}, "values": value}
+    document.json["accessors"][attributes["POSITION"]]["sparse"] = sparse
+    document.node(mesh=mesh)
+    made = read_mesh_file(document.write(tmp_path / "a.glb")).baked
+    assert np.array_equal(made.normals, np.tile([1.0, 0, 0], (4, 1)))
+    assert made.positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 5, 0], [1, 1, 0]]
+
+
+def test_materials_are_mapped_where_that_is_simple(tmp_path):
+    document = Document()
+    plain = {"baseColorFactor": [0.5, 0.25, 1, 0.5], "metallicFactor": 0, "roughnessFactor": 0.5}
+    metal = {"baseColorFactor": [1, 0.5, 0, 1], "roughnessFactor": 0.25}
+    document.json["materials"] = [
+        {"pbrMetallicRoughness": plain, "doubleSided": True, "alphaMode": "BLEND", "emissiveFactor": [0, 0, 2]},
+        {"pbrMetallicRoughness": metal},
+    ]
+    for material in range(2):
+        document.node(mesh=document.mesh(TRIANGLE, material=material))
+    document.node(mesh=document.mesh(TRIANGLE))
+    file = read_mesh_file(document.write(tmp_path / "a.glb"))
+    first, second, none = file.materials
+    assert first == Material(
+        albedo=(0.5, 0.25, 1), specular=(0.04,) * 3, power=pytest.approx(2 / 0.25**2 - 2), emissive=(0, 0, 1), alpha=0.5
+    )
+    assert (second.albedo, second.specular) == ((0, 0, 0), (1, 0.5, 0)) and none == Material()
+    assert file.two_sided == (True, False, False)
+    scene = file_scene(file, Setting())
+    assert [(part.materials.tolist(), part.two_sided) for part in scene.parts] == [
+        ([0], True),
+        ([1], False),
+        ([2], False),
+    ]
+
+
+# OBJ and PLY
+
+
+def test_obj_quads_negative_indices_and_materials(tmp_path):
+    (tmp_path / "a.obj").write_text(OBJ)
+    (tmp_path / "colours.mtl").write_text("newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nnewmtl blue\nKd 0 0 1\nd 0.5\n")
+    file = read_mesh_file(tmp_path / "a.obj")
+    quad, behind = (piece.mesh for piece in file.pieces)
+    area = [np.cross(p[1] - p[0], p[2] - p[0])[2] / 2 for p in quad.positions[quad.triangles]]
+    assert area == [2, 2] and np.array_equal(quad.normals, [(0, 0, 1)] * 4)
+    assert sorted(map(tuple, behind.positions)) == [(0, 0, 0), (2, 0, 0), (2, 2, 0)]
+    assert file.materials == (
+        Material(albedo=(1, 0, 0), specular=(0.5, 0.5, 0.5), power=2048.0),
+        Material(albedo=(0, 0, 1), alpha=0.5),
+    )
+    assert file.notes == ()
+
+
+def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
+    """On a sphere: within 2 degrees of its own, also where a seam's vertices are doubled."""
+    ball = sphere(1.0, 40, 20)
+    lines = [f"v {x} {y} {z}" for x, y, z in ball.positions] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in wound(ball)]
+    (tmp_path / "ball.obj").write_text("\n".join(lines))
+    mesh = read_mesh_file(tmp_path / "ball.obj").baked
+    own = mesh.positions / np.linalg.norm(mesh.positions, axis=1, keepdims=True)
+    assert np.degrees(np.arccos(np.sum(mesh.normals * own, axis=1).clip(-1, 1))).max() < 2
+    document = Document()
+    document.node(mesh=document.mesh(ball.positions, triangles=wound(ball)))
+    document.write(tmp_path / "ball.glb")
+    assert np.sum(read_mesh_file(tmp_path / "ball.glb").baked.normals * ball.normals, axis=1).min() > 0.999
+    arguments = ("--encoding", "xy", "--storage", "rg8", "--backend", "jax", "--size", "64x48", "--format", "json")
+    status, out, err = run("quality", "--normals", str(tmp_path / "ball.obj"), *arguments)
+    assert status == 0 and "smooth ones were made" in err and "no camera in it" in err, err
+    (row,) = json.loads(out)
+    assert row["normals"] == "ball.obj" and row["count"] + row["background"] == 64 * 48 and row["count"] > 1000
+
+
+@pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])
+@pytest.mark.parametrize(
+    "faces, expected", [([[0, 1, 2]], 1), ([[0, 1, 2], [2, 0, 1]], 2), ([[0, 1, 2, 0], [0, 1, 2]], 2)]
+)
+def test_ply_of_every_byte_order(tmp_path, order, faces, expected):
+    (tmp_path / "a.ply").write_bytes(ply(order, faces))
+    mesh = read_mesh_file(tmp_path / "a.ply").baked
+    assert np.array_equal(mesh.positions, POSITIONS) and np.allclose(mesh.normals, NORMALS / 3, atol=1e-15)
+    assert len(mesh.triangles) == expected and mesh.triangles[0].tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize("ending", ["glb", "gltf", "obj", "ply"])
+def test_files_of_another_program_are_read_as_it_reads_them(tmp_path, ending):
+    """trimesh as an oracle: a ball and its normals."""
+    ball = trimesh.creation.icosphere(2)
+    normals = ball.vertex_normals
+    if ending in ("glb", "gltf"):
+        found = trimesh.Scene([ball]).export(file_type=ending, include_normals=True)
+        files = {f"a.{ending}": found} if ending == "glb" else {**found, "a.gltf": found["model.gltf"]}
+    else:
+        options = {"include_normals": True} if ending == "obj" else {"vertex_normal": True}
+        text = ball.export(file_type=ending, **options)
+        files = {f"a.{ending}": text.encode() if isinstance(text, str) else text}
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    file = read_mesh_file(tmp_path / f"a.{ending}")
+    order, own = (np.lexsort(np.round(p, 5).T) for p in (ball.vertices, file.baked.positions))
+    assert file.notes == () and len(file.baked.triangles) == len(ball.faces)
+    assert np.allclose(file.baked.positions[own], ball.vertices[order], atol=1e-6)
+    assert np.allclose(file.baked.normals[own], normals[order], atol=1e-6)
+
+
+# Cameras and pictures
+
+
+@pytest.mark.parametrize("size", [(80, 60), (60, 60)])
+def test_a_scene_without_a_camera_is_framed(tmp_path, size):
+    """Everything is in the picture, nothing is cut by a plane, and it fills a good part of it."""
+    document = Document()
+    slab = box(7.0, 2.0, 1.0).placed(np.eye(3), (100.0, -20.0, 3.0))
+    document.node(mesh=document.mesh(slab.positions, slab.normals, slab.triangles))
+    file = read_mesh_file(document.write(tmp_path / "a.glb"))
+    view = file_view(file)
+    placed = np.c_[file.baked.positions, np.ones(24)] @ (view.projection(size[0] / size[1]) @ view.matrix()).T
+    clip = placed[:, :3] / placed[:, 3:]
+    assert abs(clip).max() < 1 and abs(clip[:, :2]).max() > 0.7
+    seen_now = seen(file, size)
+    edge = [seen_now.covered[0], seen_now.covered[-1], seen_now.covered[:, 0], seen_now.covered[:, -1]]
+    assert seen_now.covered.mean() > 0.1 and not np.concatenate(edge).any()
+
+
+def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
+    """A camera that looks along +x, its up along +z, by 90 degrees; what is seen in the upper half lies at larger z."""
+    document = Document()
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": np.pi / 2, "znear": 0.1}}]
+    # Columns: right = -y, up = +z, back = -x; at (-5, 0, 0).
+    document.node(camera=0, matrix=[0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, -5, 0, 0, 1])
+    ball = sphere(1.0, 24, 12)
+    document.node(mesh=document.mesh(ball.positions, ball.normals, ball.triangles), translation=[0, 0, 2])
+    file = read_mesh_file(document.write(tmp_path / "a.glb"))
+    made = seen(file, (80, 80))
+    rows, columns = np.nonzero(made.covered)
+    # The ball's middle is seen at 2 / 5 of the half height above the middle.
+    assert pytest.approx(rows.mean(), abs=1.5) == 39.5 * (1 - 0.4) and columns.mean() == pytest.approx(39.5, abs=0.5)
+    rims = made.normals[[rows.min() + 1, rows.max() - 1], 40, 1]
+    assert rims[0] > 0.3 and rims[1] < -0.3, f"the upper rim faces up in the picture, the lower one down: {rims}"
+    assert made.normals[int(rows.mean()), 40, 2] > 0.8
+
+
+def test_the_playground_as_a_file_is_measured_as_the_playground(tmp_path):
+    """By its own camera. Vertices are rounded to float32, which moves edges by a few pixels and figures by 0.01 dB."""
+    document = as_document(in_view_space())
+    lens = {"yfov": np.radians(CAMERA.fov), "znear": CAMERA.near, "zfar": CAMERA.far}
+    document.json["cameras"] = [{"type": "perspective", "perspective": lens}]
+    document.node(camera=0)
+    made, _ = mesh_set(document.write(tmp_path / "playground.glb"), "640x480")
+    assert made.background == pytest.approx(playground().background, abs=20)
+    for name in ("xy", "octahedral"):
+        case = Case(Codec(ENCODINGS[name], STORAGES["rgba8"]), made, "jax")
+        figures = [measure(replace(case, normal_set=s))["psnr_db"] for s in (made, playground())]
+        assert figures[0] == pytest.approx(figures[1], abs=0.01), name
+
+
+def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):
+    """The room's meshes in their places, by its own camera, lights and materials, without shadows: more than 60 dB,
+    which is vertices rounded to float32 before they are moved."""
+    room = scene_of("room")
+    document = Document()
+    document.json["materials"] = [{} for _ in room.materials]
+    for part in room.parts:
+        mesh = part.mesh
+        for material in dict.fromkeys(part.materials.tolist()):
+            arrays = {"TEXCOORD_0": mesh.uv, "TANGENT": tangents(mesh)}
+            made = document.mesh(mesh.positions, mesh.normals, mesh.triangles, material=material, **arrays)
+            for model in part.models[part.materials == material]:
+                document.node(mesh=made, matrix=model.T.ravel().tolist())
+    scene = file_scene(read_mesh_file(document.write(tmp_path / "room.glb")), Setting())
+    scene = replace(scene, materials=(*room.materials, Material()), lights=room.lights, ambient=room.ambient)
+    scene = replace(scene, view=room.view, previous=room.previous)
+    for pipeline in ("deferred", "hybrid"):
+        images = [draw(gl, pipeline, one, FP32).image for one in (scene, room)]
+        assert images[1].mean() > 0.05
+        assert apart(*images) > 60, f"{pipeline}: {apart(*images):.1f} dB"
+
+
+@pytest.mark.usefixtures("gl")
+def test_render_takes_files_and_names_and_lights_them(tmp_path, run):
+    chained_file = tmp_path / "mine.glb"
+    document = as_document([sphere(1.0, 24, 12)])
+    document.write(chained_file)
+    arguments = ("--encoding", "octahedral", "--size", "96x72", "--lights", "8", "--repeats", "1", "--format", "json")
+    status, out, err = run("render", "--scene", f"gloss,{chained_file}", *arguments, "--images", str(tmp_path / "p"))
+    rows = json.loads(out)
+    assert status == 0 and [row["scene"] for row in rows] == ["gloss", "mine.glb"], err
+    assert 40 < rows[1]["psnr_db"] < 90 and rows[1]["invalid"] == 0
+    (name,) = (tmp_path / "p").glob("mine.glb-*final.png")
+    pixels = np.asarray(Image.open(name)).astype(int)
+    lit = pixels.max(axis=2) > 40
+    assert 0.2 < lit.mean() < 0.8, f"{lit.mean():.2f} of the picture is lit"
+    assert lit[36, 48] and not lit[0].any()

@@ -1,0 +1,311 @@
+"""The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
+
+import base64
+import io
+import json
+import re
+import time
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.normals.normal_sets import hemisphere
+from normalbench.bench.results.runs import read_run
+from normalbench.bench.suite import report_command, short
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.depth import measure as depth
+from normalbench.bench.tables.lights import measure as lights
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.render import measure as rendering
+from normalbench.bench.tables.sweep import measure as sweep
+from normalbench.bench.tables.tangent_frames import measure as frames
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codec import Codec
+from normalbench.encodings.storage import STORAGES
+from normalbench.reports.charts import charts
+from normalbench.reports.charts.drawings import THEME
+from normalbench.reports.page import embedded
+from normalbench.reports.page.definitions import definition
+from normalbench.reports.page.found import PictureSet
+
+HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800"
+FORBIDDEN = ("<script>alert", "<img src=x", "\u202e")
+
+
+def quality_row(encoding: str, **more) -> dict:
+    about = {"encoding": encoding, "storage": "rgba8", "rounding": "nearest", "normals": "playground"}
+    figures = {"psnr_db": 50.0, "psnr_seed_db": 49.0, "angle_mean_deg": 0.3, "angle_p99_deg": 0.6}
+    figures |= {"angle_max_deg": 0.9, "effective_bits": None, "angle_counts": "0.25:3 0.28125:1"}
+    return dict.fromkeys(quality.COLUMNS) | about | {"backend": "jax", "bits": 16} | figures | more
+
+
+def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
+    """A results folder by hand."""
+    folder.mkdir(parents=True, exist_ok=True)
+    about = {"request": {"tables": "all", "count": 4096, "seed": 0}, "finished": True, "machine": {"GL": "none"}}
+    (folder / "run.json").write_text(json.dumps(about | facts))
+    lines = [json.dumps({"table": table, "key": {}, "rows": rows}) for table, rows in tables.items()]
+    (folder / "rows.jsonl").write_text("".join(line + "\n" for line in lines))
+    return folder
+
+
+class Read(HTMLParser):
+    """A page's tags with their attributes, and its text."""
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.tags: list[tuple[str, dict]] = []
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.text += data
+
+    def all(self, name: str) -> list[dict]:
+        return [attributes for tag, attributes in self.tags if tag == name]
+
+
+def reported(run, folder: Path) -> tuple[str, Read]:
+    status, out, err = run("report", str(folder))
+    assert (status, err) == (0, ""), err
+    assert out == f"{folder / 'report.html'}\n"
+    text = (folder / "report.html").read_text()
+    return text, Read(text)
+
+
+def test_a_hostile_run_injects_nothing(run, tmp_path):
+    """Names come from users' files: in rows, columns, tables, facts and the names of pictures."""
+    rows = [quality_row(HOSTILE, skipped=HOSTILE), quality_row("octahedral", psnr_db=49.0) | {HOSTILE: HOSTILE}]
+    tables = {
+        "quality": rows,
+        "render": [{"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}],
+        "passes": [{"pipeline": HOSTILE, "ms_frame": 1.0, "ms_lights": 0.5, "clock": HOSTILE}],
+        "cost": [{"family": "../../..", "encoding": HOSTILE, "stage": "fragment", "instructions": 3}],
+        HOSTILE: [{HOSTILE: HOSTILE}],
+    }
+    folder = a_run(tmp_path / "run", tables, machine={HOSTILE: HOSTILE}, command=[HOSTILE], time=HOSTILE)
+    text, read = reported(run, folder)
+    scripts = read.all("script")
+    assert len(scripts) == 1 and not scripts[0], "only the page's own"
+    assert not any(name.startswith("on") for _, attributes in read.tags for name in attributes)
+    assert all(a.get("src", "").startswith("data:") for a in read.all("img"))
+    assert not any(part in text for part in FORBIDDEN)
+    assert "<script>alert(1)</script>" in read.text, "it is shown as it is"
+    for chart in (folder / "charts").glob("*.svg"):
+        assert "<script" not in chart.read_text()
+
+
+def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
+    Image.new("RGB", (8, 8), "red").save(tmp_path / "secret-rgba8-error.png")
+    folder = a_run(tmp_path / "run", {"quality": [quality_row("secret", normals=".."), quality_row("../secret")]})
+    (folder / "images").mkdir()
+    (folder / "images" / "playground-secret-rgba8-error.png").symlink_to(tmp_path / "secret-rgba8-error.png")
+    _, read = reported(run, folder)
+    assert "Not in this run: it has no pictures" in read.text
+
+
+def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
+    many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(4000)]
+    folder = a_run(tmp_path / "run", {"quality": [quality_row(HOSTILE), *many]})
+    status, out, _ = run("report", str(folder), "--markdown")
+    assert status == 0 and len(out) < 65536 and out.rstrip().endswith("draws them all.")
+    outside = re.sub(r"`[^`\n]*`", "", out)
+    assert not re.search(r"http|@|\]\(|<(?!/?(details|summary)>)", outside), "what is odd is code"
+    assert out.startswith("## normalbench: run\n")
+
+
+def test_markdown_of_a_real_run(run, results, tmp_path):
+    folder, _ = results
+    status, _, err = run("report", str(folder), "--markdown", "-o", str(tmp_path / "comment.md"))
+    text = (tmp_path / "comment.md").read_text()
+    assert (status, err) == (0, "") and len(text) < 65536
+    assert "**In 16 bits on playground, octahedral_precise in rgba8 wins: 50.52 dB, 0.57 dB ahead of octahedral" in text
+    assert "| octahedral " in text and "http" not in text and "](" not in text
+
+
+def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
+    row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
+    rows = [
+        dict.fromkeys(depth.COLUMNS) | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)
+    ]
+    request = {"tables": "depth", "count": 4096, "seed": 0}
+    _, read = reported(run, a_run(tmp_path / "run", {"depth": rows}, request=request))
+    assert "This run has no rows about normals" in read.text
+    assert "Not in this run: it was not asked for" in read.text
+    assert "What depth loses" in read.text and "the worst position error, near 0.1, far 10" in read.text
+    assert {path.name for path in (tmp_path / "run/charts").iterdir()} == {"depth.png", "depth.svg"}
+
+
+def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
+    folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
+    _, read = reported(run, folder)
+    assert "This run is not finished: 1 steps have their rows" in read.text
+    assert "Other sources measured this run than draw it" in read.text
+    assert "it was asked for, and has no rows" in read.text
+
+
+def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
+    tables = {
+        "quality": [
+            {"encoding": "octahedral", "psnr": 50.0},
+            {"encoding": "xy", "other": [1, 2]},
+            quality_row("mine", bits=1e999),
+        ],
+        "render": [{"psnr_db": "high"}],
+        "lights": [{"experiment": "equal", "sum": 1.0, "lights": 8}],
+        "passes": [{"ms_frame": 3.0, "ms_lights": 1.0}],
+        "depth": [{"distance": 1.0, "error_max": 0.1, "near": 0.1, "far": 1.0, "fov": 60.0}],
+        "colours": [{"red": 1}],
+        "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "encoding": ["xy"]}],
+    }
+    _, read = reported(run, a_run(tmp_path / "run", tables))
+    assert "The rows of quality are not those of this version" in read.text
+    assert "does not know these tables, which are in the run's folder: colours" in read.text
+    assert "The chart 'depth' cannot be drawn from these rows" in read.text
+    assert "octahedral" in read.text and "its rows keep no histograms" in read.text
+
+
+def test_an_empty_run_is_a_page(run, tmp_path):
+    _, read = reported(run, a_run(tmp_path / "run", {}))
+    assert "This run has no rows about normals" in read.text
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (["{tmp}"], "is no results folder"),
+        (["{run}", "-o", "{tmp}"], "is a folder; name a file"),
+        (["{run}", "-o", "/proc/nowhere/page.html"], "cannot write"),
+        (["{run}", "--markdown", "-o", "/proc/nowhere/page.md"], "cannot write"),
+    ],
+)
+def test_bad_input_is_one_line(run, tmp_path, arguments, said):
+    folder = a_run(tmp_path / "run", {})
+    status, out, err = run("report", *(a.format(tmp=tmp_path, run=folder) for a in arguments))
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+    assert {path.name for path in folder.iterdir()} == {"run.json", "rows.jsonl"}
+
+
+def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
+    folder, done = results
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    assert f"All of it on one page: {folder / 'report.html'}" in done.stdout
+    begin = time.process_time()
+    status, _, err = run("report", str(folder), "-o", str(tmp_path / "page.html"))
+    assert status == 0, err
+    assert time.process_time() - begin < 60, "seconds of all cores"
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+    assert (tmp_path / "page.html").read_bytes() == before[folder / "report.html"]
+    names = {path.name for path in (tmp_path / "charts").iterdir()}
+    assert {"angles-0.png", "angles-0.svg", "sphere-16-bits.png", "sphere-16-bits.svg"} <= names
+
+
+def test_the_page_is_small_fetches_nothing_and_answers_first(results):
+    text = (results[0] / "report.html").read_text()
+    read = Read(text)
+    assert len(text) < 15e6
+    assert "default-src 'none'" in next(a["content"] for a in read.all("meta") if a.get("http-equiv"))
+    fetched = [a[n] for _, a in read.tags for n in ("src", "href", "xlink:href", "srcset", "action") if n in a]
+    assert fetched and all(f.startswith(("data:", "#")) for f in fetched)
+    assert not re.search(r"@import|url\((?!#)", text)
+    answer = read.text.index("In 16 bits on playground, octahedral_precise in rgba8 wins: 50.52 dB, 0.57 dB ahead of")
+    assert answer < read.text.index("What normals lose")
+
+
+def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp_path):
+    folder, rows = tmp_path / "run", []
+    for name, count, guards in (("per_pixel_view", 30, 2), ("spherical", 24, 1)):
+        about = {"measure": "isa", "encoding": name, "operation": "encode", "stage": "fragment", "family": "navi31"}
+        rows.append(dict.fromkeys(cost.COLUMNS) | about | {"instructions": count, "transcendental": 1})
+        path, text = cost.listing(rows[-1], "BB0:\n" + "        v_cmp_lt_f32_e32 vcc, 0, v1\n" * guards)
+        (folder / "disassembly" / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "disassembly" / path).write_text(text)
+    _, read = reported(run, a_run(folder, {"cost": rows}))
+    assert "the other way round: per_pixel_view and spherical" in read.text
+    for name, said in (
+        ("per_pixel_view", "30 instructions for 17 slots, of them 2"),
+        ("spherical", "24 instructions for 26 slots, of them 1"),
+    ):
+        assert f"{name}: {said} to compare, choose or clamp, 1 transcendental" in read.text
+    (folder / "disassembly" / path).unlink()
+    _, read = reported(run, folder)
+    assert "the other way round" not in read.text and "spherical" in read.text
+
+
+def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
+    folder, _ = results
+    found = report_command.gathered(folder, read_run(folder))
+    made = embedded.gallery(found)
+    assert not made.damaged and len(made.pictures) > 28
+    assert made.groups[0][0] == "the normals of playground" and made.groups[1][0] == "octahedral rgba8"
+    for picture in made.pictures[:9]:
+        name = f"playground-{picture.codec.replace(' ', '-')}-{picture.kind}.png"
+        name = name if picture.kind != "normals" else "playground-normals.png"
+        with Image.open(folder / "images" / name) as kept:
+            data = io.BytesIO(base64.b64decode(picture.uri.partition(",")[2]))
+            assert np.array_equal(np.asarray(Image.open(data).convert("RGB")), np.asarray(kept.convert("RGB"))), name
+
+
+def test_pictures_that_do_not_fit_are_named_and_the_articles_come_first(results, tmp_path):
+    found = report_command.gathered(results[0], read_run(results[0]))
+    made = embedded.gallery(found, 3 * 2**20)
+    shown = [name for name, _ in made.groups]
+    assert sum(len(p.uri) for p in made.pictures) <= 3 * 2**20
+    assert {"octahedral rgba8", "spheremap rgba8"} <= set(shown) and "xy rg16f" in made.left_out
+    assert len(shown) - 1 + len(made.left_out) == len(found.pictures)
+    (tmp_path / "bad.png").write_bytes(b"\x89PNG\r\n\x1a\nno")
+    broken = [PictureSet(found.pictures[0].key, "playground", {"error": tmp_path / "bad.png"})]
+    assert embedded.gallery(replace(found, pictures=broken)).damaged == [found.pictures[0].key.label]
+
+
+def test_every_column_is_defined():
+    tables = (quality, rendering, cost, lights, depth, frames, sweep)
+    columns = {column for table in tables for column in table.COLUMNS} - {"angle_counts", "ms_frame_each", "cycles"}
+    columns -= {"ns_per_megapixel", "millions_per_second", "spread", "turns", "software"}  # of no run
+    assert [column for column in sorted(columns) if not definition(column)] == []
+    assert not definition("colours")
+    shown = short.beside([quality_row("octahedral")])[0]
+    assert all(definition(column) for column in shown)
+
+
+def test_inline_charts_take_the_pages_colours_and_share_no_id(results):
+    read = Read((results[0] / "report.html").read_text())
+    ids = [attributes["id"] for _, attributes in read.tags if "id" in attributes]
+    assert len(ids) == len(set(ids)) > 30
+    text = (results[0] / "report.html").read_text()
+    drawn = re.findall(r"<svg class=\"drawing\".*?</svg>", text, re.S)
+    assert len(drawn) == 2, "histograms on two sets"
+    for svg in drawn:
+        raw = set(re.findall(r"(?<!, )#[0-9a-f]{6}\b", svg))
+        assert not raw, f"colours of one theme: {raw}"
+        assert "<title" in svg and "<desc" in svg and "<text" in svg
+    css = (Path(report_command.__file__).parents[1] / "reports/page.css").read_text()
+    assert all(f"--{name}:" in css for name in THEME.values())
+
+
+def test_a_histograms_outline_holds_its_counts():
+    found = charts.bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
+    assert found[2] == (0.125, 0.140625, 10) and found[4] == (0.25, 0.28125, 4)
+    edges, heights = charts.steps(found)
+    octaves = np.diff(np.log2(edges))
+    assert np.dot(octaves, heights) == pytest.approx(41) and heights[0] * octaves[0] == pytest.approx(7)
+    assert (np.diff(edges) > 0).all() and 0.0 in heights, "what is between is empty"
+    assert charts.bins("nonsense") == [] == charts.bins(None)
+
+
+def test_maps_are_in_the_page_with_means_by_area(results):
+    read = Read((results[0] / "report.html").read_text())
+    alts = [a["alt"] for a in read.all("img") if a.get("data-which") == "mean"]
+    assert len(alts) == len(list((results[0] / "sphere").iterdir()))
+    case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), hemisphere(2**18), "jax")
+    measured = quality.measure(case)["angle_mean_deg"]
+    (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
+    (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)
+    assert float(mean) == pytest.approx(measured, rel=0.01) and "away" not in text, "it cannot hold what faces away"
