@@ -17,7 +17,7 @@ from ..scenes.mesh import Mesh, wound
 from ..scenes.scene import Light
 from .volumes import ball, cone
 
-# What light.frag's ACCUMULATES counts.
+# What lights.frag's ACCUMULATES counts.
 ACCUMULATES = ("light", "colour", "by_id")
 
 
@@ -39,10 +39,10 @@ class LightVolumes:
         self._next = frame.framebuffer(frame.next_light, frame.depth) if self._reads else self._target
         self._cleared = [frame.framebuffer([texture]) for texture in frame.light[clears:]]
         kind = ACCUMULATES.index(accumulates)
-        self._mark = frame.program("volume.vert", "nothing.frag")
-        self._shade = frame.program("volume.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=0)
-        self._back = frame.program("volume.vert", "copy_light.frag") if self._reads else None
-        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "light.frag", ACCUMULATES=kind, LIT_BY_SUN=1))
+        self._mark = frame.program("lights.vert", "nothing.frag")
+        self._shade = frame.program("lights.vert", "lights.frag", ACCUMULATES=kind, LIT_BY_SUN=0)
+        self._back = frame.program("lights.vert", "copy_light.frag") if self._reads else None
+        self._sun = frame.fullscreen(frame.program("fullscreen.vert", "lights.frag", ACCUMULATES=kind, LIT_BY_SUN=1))
         self._sun_back = frame.fullscreen(frame.program("fullscreen.vert", "copy_light.frag")) if self._reads else None
         self._ball, self._cone = self._upload(ball()), self._upload(cone())
         self.queries: list[moderngl.Query] | None = None

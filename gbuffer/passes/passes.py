@@ -47,7 +47,7 @@ def shadow_map() -> Stage:
         if not frame.shadows:
             return lambda: None
         target = frame.device.owned(frame.stack, frame.context.framebuffer(depth_attachment=frame.shadow_map))
-        casters = frame.geometry(frame.program("shadow.vert", "nothing.frag"))
+        casters = frame.geometry(frame.program("shadow_map.vert", "nothing.frag"))
 
         def run() -> None:
             target.use()
@@ -79,8 +79,10 @@ def geometry(stipple: bool = False, emissive: str | None = None) -> Stage:
         targets = [*frame.gbuffer, *frame.light[:1]] if emissive else frame.gbuffer
         target = frame.framebuffer(targets, frame.depth, writes_depth=True)
         shared = {"WRITES_EMISSIVE": int(bool(emissive)), "SPECIAL_APART": str(emissive == "general").lower()}
-        opaque = frame.geometry(frame.program("geometry.vert", "gbuffer.frag", STIPPLE=0, **shared))
-        glass = frame.geometry(frame.program("geometry.vert", "gbuffer.frag", STIPPLE=1, **shared)) if stipple else None
+        opaque = frame.geometry(frame.program("geometry.vert", "geometry.frag", STIPPLE=0, **shared))
+        glass = (
+            frame.geometry(frame.program("geometry.vert", "geometry.frag", STIPPLE=1, **shared)) if stipple else None
+        )
 
         def run() -> None:
             target.use()

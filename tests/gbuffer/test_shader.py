@@ -8,6 +8,7 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
+from normalbench.gbuffer.gl import shader
 from normalbench.gbuffer.gl.shader import ShaderError, Source, glsl_value
 
 
@@ -69,3 +70,14 @@ def test_a_missing_include_is_one_line(tmp_path):
     (tmp_path / "main.frag").write_text("#version 430\n#include NOBODY\n")
     with pytest.raises(ShaderError, match=r"main\.frag:2: nothing is named NOBODY"):
         Source(tmp_path / "main.frag")
+
+
+def test_every_shader_has_a_name_of_its_own(tmp_path, monkeypatch):
+    """An include is found by its name alone; two files of one name are named in one line."""
+    assert shader.shaders()["gbuffer.glsl"].parent.name == "glsl"
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "same.glsl").write_text("float same;\n")
+    monkeypatch.setattr(shader, "ROOM", tmp_path)
+    with pytest.raises(ShaderError, match=r"two shaders have one name: .*a/same\.glsl and .*b/same\.glsl"):
+        shader.shaders.__wrapped__()

@@ -2,7 +2,7 @@
 // Depth encoder, decoder and both ways to a position without any storage: the exact values that the two languages are
 // compared by.
 #include "depth_code.glsl"
-#include "../../encodings/position.glsl"
+#include "position.glsl"
 
 uniform vec2 range;  // near, far
 uniform vec2 rays;

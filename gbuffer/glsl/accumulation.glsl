@@ -2,7 +2,7 @@
 // specular light; one holds the diffuse light, and in its fourth number the luminance of the specular (seed 002).
 #include "sample.glsl"
 #include "light_code.glsl"
-#include "../../encodings/chromaticity.glsl"
+#include "chromaticity.glsl"
 
 #ifdef WRITES_LIGHT
 layout(location = 0) out vec4 light_texels[LIGHT_TARGETS];

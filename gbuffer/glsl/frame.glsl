@@ -1,5 +1,5 @@
 // What every pass of a frame knows: the camera and the size of the target at hand.
-#include "../../encodings/position.glsl"
+#include "position.glsl"
 
 layout(std140, binding = 0) uniform Frame {
     mat4 projection;          // view to clip space

@@ -1,6 +1,6 @@
 // The depth encoding at hand: DEPTH_ENCODE and DEPTH_DECODE are its functions, DEPTH_SIGNED is 1 where it keeps a sign, and
 // DEPTH_OWN_UNITS is 1 where open floats hold the depth in the scene's own units, which is a far plane at 1.
-#include "../../encodings/vec.glsl"
+#include "vec.glsl"
 #include DEPTH_ENCODING
 
 // The number of a view depth between the planes, range.x and range.y, and back. `is_open` says whether numbers beyond 1

@@ -1,5 +1,5 @@
 // Lights and what of them arrives at a point.
-#include "../../encodings/vec.glsl"
+#include "vec.glsl"
 
 struct Light {
     vec4 position_radius;   // view space

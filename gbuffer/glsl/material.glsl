@@ -1,6 +1,6 @@
 // How materials answer light. Every kind is albedo x D + specular x S: D and S are sums over lights, which a light
 // buffer may hold, and only `light_terms` knows how a kind makes them. Kinds and constants come from materials.py.
-#include "../../encodings/vec.glsl"
+#include "vec.glsl"
 #include "surface.glsl"
 
 struct Terms {
