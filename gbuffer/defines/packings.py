@@ -13,9 +13,9 @@ from ...encodings.codec import Codec
 from ...encodings.storage import STORAGES, Storage
 from ..codecs.codec_passes import storage_defines
 from ..codecs.depth_passes import depth_defines
-from ..frame.frame import layout_defines
 from ..layouts.layout import COMPONENTS, Layout, Target
 from .kernels import Operation
+from .layouts import layout_defines
 from .materials import CONSTANTS
 
 # Of the depths that are packed; what they are changes no count.

@@ -1,4 +1,4 @@
-// What every pass of a frame knows: the camera and the size of the target at hand.
+// What every pass of a frame knows: the camera and sizes.
 #include "position.glsl"
 
 layout(std140, binding = 0) uniform Frame {
@@ -9,5 +9,6 @@ layout(std140, binding = 0) uniform Frame {
     mat4 previous_clip;       // view space now to clip space a frame ago
     vec4 ambient;
     vec4 eye_ray;             // tan(fov/2) aspect, tan(fov/2), near, far
-    vec4 size;                // of the target, in pixels; of the shadow map
+    vec4 size;                // of the G-buffer, in pixels; of the shadow map
+    vec4 target_size;         // of the target at hand, in pixels
 };

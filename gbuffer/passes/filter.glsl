@@ -3,8 +3,6 @@
 // nearest texel where none matches. `accumulation.glsl` is included before.
 #include "gbuffer.glsl"
 
-uniform vec2 full_size;
-
 float match(Surface s, Surface tap) {
     bool same = abs(tap.position.z - s.position.z) < FILTER_DEPTH * -s.position.z;
 #if HAS_INSTANCE
@@ -14,7 +12,7 @@ float match(Surface s, Surface tap) {
 }
 
 Accumulated filtered_light(Surface s) {
-    vec2 place = gl_FragCoord.xy / full_size * size.xy - 0.5, corner = floor(place), share = place - corner;
+    vec2 place = gl_FragCoord.xy / target_size.xy * size.xy - 0.5, corner = floor(place), share = place - corner;
     Accumulated sum = Accumulated(vec4(0.0), vec4(0.0)), even = sum, nearest = sum;
     float total = 0.0, matches = 0.0, closest = -1.0;
     for (int i = 0; i < 4; ++i) {

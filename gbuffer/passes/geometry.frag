@@ -4,7 +4,7 @@
 #include "fragment.glsl"
 #include "gbuffer.glsl"
 
-#if WRITES_EMISSIVE
+#if LIGHT_HOLDS != TERMS
 #include "light_code.glsl"
 layout(location = TARGETS) out vec4 emissive;
 #endif
@@ -20,8 +20,8 @@ void main() {
     s.direction = s.kind == HAIR ? unit(normal) : s.direction;
 #endif
     write_gbuffer(s);
-#if WRITES_EMISSIVE
-    vec3 begins = s.kind == GENERAL || !SPECIAL_APART ? s.emissive : vec3(0.0);
+#if LIGHT_HOLDS != TERMS
+    vec3 begins = s.kind == GENERAL || LIGHT_HOLDS != BY_KIND ? s.emissive : vec3(0.0);
     emissive = LIGHT_ENCODE(light_or_none(vec4(begins, 0.0)));
 #endif
 }

@@ -16,5 +16,5 @@ void main() {
     Accumulated a = fetch_light(ivec2(gl_FragCoord.xy));
 #endif
     vec3 lit = compose(s, a.first.rgb, specular_light(a, s.kind, s.power));
-    colour = vec4(ADDS != 0 ? lit + s.emissive : lit + unlit(s), s.alpha);
+    colour = vec4(LIGHT_HOLDS == BY_KIND ? lit + s.emissive : lit + unlit(s), s.alpha);
 }

@@ -13,7 +13,7 @@ from normalbench.encodings.depth_codec import DepthCodec
 from normalbench.encodings.position import Camera
 from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.layouts.layout import PACKINGS, Layout, LayoutError, Target, read_layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS

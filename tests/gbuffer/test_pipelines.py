@@ -10,7 +10,7 @@ import pytest
 from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
 
 from normalbench.encodings.catalogue import LIGHT_ENCODINGS
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES

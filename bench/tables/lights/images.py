@@ -18,7 +18,8 @@ from ....encodings.light_encoding import LightEncoding
 from ....encodings.vec import Vec4, light_or_none
 from ....gbuffer.codecs.light_passes import Resolved, read_samples, resolved
 from ....gbuffer.frame.frame import Plan
-from ....gbuffer.gl.device import Device, FormatError, read_pixels
+from ....gbuffer.frame.resources import FINAL, LIGHT
+from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
@@ -76,7 +77,7 @@ class Resolves:
         plan, scene = shot.plan(samples), brighter(shot.scene, EXPOSURE)
         with rendering(device, PIPELINES["forward"], scene, plan) as made:
             made.draw()
-            colours = made.frame.final
+            colours = made.frame.textures(FINAL)[0]
             self._light = read_samples(device, colours, samples)
             self._device: dict[LightEncoding, Resolved] = {}
             self._model: dict[LightEncoding, Resolved] = {}
@@ -148,7 +149,7 @@ class Lit:
         with self._rendered(REFERENCE, max(pipeline.light_targets)) as made:
             self.reference = displayed(made.image())
             # The most light that any target keeps in a pixel.
-            self._brightest = np.max([read_pixels(t)[::-1, :, :3].max(axis=-1) for t in made.frame.light], axis=0)
+            self._brightest = np.max([light[..., :3].max(axis=-1) for light in made.read(LIGHT)], axis=0)
 
     @contextmanager
     def _rendered(self, encoding: LightEncoding, targets: int) -> Iterator[Rendering]:

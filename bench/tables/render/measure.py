@@ -100,7 +100,7 @@ class Drawn:
 
 def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
     made.draw()
-    if not pipeline.has_gbuffer or made.frame.buffer_samples > 1:
+    if not pipeline.has_gbuffer or made.frame.plan.surface_samples > 1:
         return Drawn(made.image(), None, None)
     position, direction, *_ = made.gbuffer()
     kinds = np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
