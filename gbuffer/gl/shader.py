@@ -40,7 +40,8 @@ class Source:
 
     Args:
         path: the shader: a name of `shaders`, or a path.
-        defines: macros set at its head.
+        defines: macros set at its head; those that nothing mentions are left out, so that what is the same program has
+            the same text.
         names: files that stand behind `#include NAME`.
     """
 
@@ -49,7 +50,9 @@ class Source:
         self._seen: set[Path] = set()
         self.place = main = Path(shaders().get(str(path), path)).resolve()
         version, *rest = self._expand(main)
-        head = [(f"#define {name} {glsl_value(value)}", main, 1) for name, value in (defines or {}).items()]
+        macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
+        mentioned = set(re.findall(r"\w+", " ".join([*(line for line, _, _ in rest), *macros.values()])))
+        head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
         self._lines: list[Line] = [version, *head, *rest]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 

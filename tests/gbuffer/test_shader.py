@@ -13,12 +13,12 @@ from normalbench.gbuffer.gl.shader import ShaderError, Source, glsl_value
 
 
 def test_an_include_is_pasted_once(tmp_path):
-    (tmp_path / "a.glsl").write_text("float a;\n")
+    (tmp_path / "a.glsl").write_text("float a;  // X\n")
     (tmp_path / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
     (tmp_path / "main.frag").write_text('#version 430\n#include "a.glsl"\n#include "b.glsl"\n#include NAMED\n')
-    text = Source(tmp_path / "main.frag", {"X": 1.5}, {"NAMED": tmp_path / "b.glsl"}).text
+    text = Source(tmp_path / "main.frag", {"X": "Y", "Y": 1.5, "Z": 2}, {"NAMED": tmp_path / "b.glsl"}).text
     assert text.count("float a;") == text.count("float b;") == 1
-    assert text.startswith("#version 430\n#define X 1.5\n")
+    assert text.startswith("#version 430\n#define X Y\n#define Y 1.5\n"), "what nothing mentions is left out"
 
 
 @pytest.mark.parametrize("broken", ["return nonsense;", "return no_such_function(n.xy);", "return n;", "retrun n.xy;"])
