@@ -60,6 +60,12 @@ def test_rooms_import_only_whom_they_may(path):
     assert not any(m.startswith("normalbench") for m in imported(path)), "between the rooms imports are relative"
 
 
+def test_only_the_folder_of_opengl_imports_moderngl():
+    """And the codecs' harnesses, which name its types and ways to blend."""
+    using = {path.relative_to(ROOT).parent for path in SOURCES if "moderngl" in imported(path)}
+    assert using <= {Path("gbuffer/gl"), Path("gbuffer/codecs")}, f"moderngl is imported in {sorted(using)}"
+
+
 def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
