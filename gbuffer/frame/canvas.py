@@ -36,7 +36,7 @@ class Canvas:
         earlier = frame.pipeline.upto(one)
         self.told = {name: value for stage in (*earlier, one) for name, value in stage.tells.items()}
         offered = {resource for stage in earlier for resource in stage.offers}
-        self._samplers = _samplers((*one.reads, *offered))
+        self._samplers = _samplers((*one.reads, *offered), one.writes)
         self._size, self._view = frame.plan.size, None
 
     def begin(self) -> None:
@@ -119,10 +119,10 @@ class Canvas:
         return resource
 
 
-def _samplers(resources: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
+def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
     """The samplers that resources are read by, each with its resource and copy."""
-    found = {resource.name: (resource, 0) for resource in resources}
-    return found | {f"{r.name}_before": (r, 1) for r in resources if r.copies > 1}
+    found = {resource.name: (resource, 0) for resource in reads}
+    return found | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
 
 
 @dataclass(frozen=True)

@@ -77,12 +77,10 @@ class Pipeline:
     usual_layout: str = "hybrid"
 
     def __post_init__(self):
-        earlier: list[Pass] = []
-        for one in self.stages:
-            reason = next(_misfits(one, earlier), None)
+        for index, one in enumerate(self.stages):
+            reason = next(_misfits(one, self.stages[:index], self.stages), None)
             if reason:
                 raise PipelineError(f"pipeline {self.name}: pass {one.name} {reason}")
-            earlier.append(one)
 
     @cached_property
     def resources(self) -> Mapping[str, Resource]:
@@ -152,29 +150,37 @@ def _place(pipeline: str, one: Pass, stages: list[Pass]) -> int:
     return place
 
 
-def _misfits(one: Pass, earlier: Sequence[Pass]) -> Iterator[str]:
+def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:
     """Why a pass does not fit behind others, reason after reason."""
     if one.name in [other.name for other in earlier]:
         yield "has the name of another pass"
     if not one.writes:
         yield "writes nothing"
     for resource in (*one.reads, *one.writes):
-        yield from _resource_misfits(resource, one, earlier)
-    told = {name: value for other in earlier for name, value in other.tells.items()}
+        yield from _resource_misfits(resource, earlier)
+    for resource in one.reads:
+        if resource.name not in _written(stages if resource.kept else earlier):
+            yield f"reads {resource.name}, which no {'' if resource.kept else 'earlier '}pass writes"
+    yield from _macro_misfits(one, {name: value for other in earlier for name, value in other.tells.items()})
+
+
+def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
+    return {resource.name: resource for stage in stages for resource in stage.writes}
+
+
+def _resource_misfits(resource: Resource, earlier: Sequence[Pass]) -> Iterator[str]:
+    """Why a resource cannot be."""
+    if resource.misfit:
+        yield f"has the resource {resource.name}, which {resource.misfit}"
+    if _written(earlier).get(resource.name, resource) != resource:
+        yield f"has a resource {resource.name} that differs from an earlier pass's"
+
+
+def _macro_misfits(one: Pass, told: Mapping[str, int]) -> Iterator[str]:
+    """Why a pass cannot work with what it is told."""
     for macro, value in one.tells.items():
         if told.get(macro, value) != value:
             yield f"tells {macro} {value}, and an earlier pass {told[macro]}"
     for macro, values in one.expects.items():
         if told.get(macro) not in values:
             yield f"expects {macro} {' or '.join(map(str, values))}, and is told {told.get(macro, 'nothing')}"
-
-
-def _resource_misfits(resource: Resource, one: Pass, earlier: Sequence[Pass]) -> Iterator[str]:
-    """Why a resource of a pass cannot be, or not yet."""
-    if resource.misfit:
-        yield f"has the resource {resource.name}, which {resource.misfit}"
-    written = {other.name: other for stage in earlier for other in stage.writes}
-    if written.get(resource.name, resource) != resource:
-        yield f"has a resource {resource.name} that differs from an earlier pass's"
-    if resource in one.reads and not resource.kept and resource.name not in written:
-        yield f"reads {resource.name}, which no earlier pass writes"

@@ -23,7 +23,8 @@ DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
 NATIVE_ROUNDINGS = ("nearest", "truncate")
 # More than any one frame uses: the one that was asked for longest ago is released.
 KEPT_PROGRAMS = 64
-# Of what is drawn over what is there: by its alpha.
+# Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
+ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
 

@@ -1,10 +1,10 @@
 """For each light the opaque surfaces within its reach, added to what is there."""
 
-from ..codecs.light_passes import ADD
 from ..frame.canvas import AGAIN, Canvas
 from ..frame.contract import Pass, Run
 from ..frame.resources import DEPTH, FINAL, SHADOW_MAP
 from ..gl import raw
+from ..gl.device import ADD
 from .forward_surfaces import ForwardSurfaces
 
 # Lights are told apart in eight bits of stencil: lamps by 1 to 254 in turn, the sun by 255.

@@ -2,12 +2,11 @@
 
 from functools import partial
 
-from ..codecs.light_passes import ADD
 from ..frame.canvas import AGAIN, NEAREST, Canvas
 from ..frame.contract import Pass, Run
 from ..frame.resources import BY_KIND, DEPTH, FINAL, FINAL_DEPTH, LIGHT, SURFACE, TERMS
 from ..gl import raw
-from ..gl.device import OVER
+from ..gl.device import ADD, OVER
 
 
 def material(draws: str, filters: bool = False) -> Pass:
