@@ -72,8 +72,10 @@ class Rendering:
         self._more: dict[Pass, Run] = {}
         self._is_warm = False
 
-    def draw(self) -> None:
-        """One frame, all passes in order."""
+    def draw(self, scene: Scene | None = None) -> None:
+        """One frame, all passes in order; of the scene at another moment, if one is given."""
+        if scene:
+            self.frame.show(scene)
         self.frame.advance()
         for run in self.passes.values():
             run()

@@ -111,7 +111,8 @@ class Canvas:
     def prepare(self, program: Program, **textures: Any) -> None:
         """Bind what shaders read before a draw: the frame, the scene, tables, and what the pass reads by its name."""
         read = {name: self.frame.textures(*at) for name, at in self._samplers.items() if name in program}
-        self.frame.bind(program, self._size, self._view, {**read, **textures})
+        there = {name: several for name, several in read.items() if several}
+        self.frame.bind(program, self._size, self._view, {**there, **textures})
 
     def _declared(self, resource: Resource, known: tuple[Resource, ...]) -> Resource:
         if resource not in known:

@@ -68,6 +68,14 @@ class Frame:
 
     # Resources
 
+    def show(self, scene: Scene) -> None:
+        """Draw the scene at another moment from here on. Raises ValueError as `SceneBuffers.show`."""
+        self.scene_buffers.show(scene)
+        self.scene = scene
+        for block in self._blocks.values():
+            block.release()
+        self._blocks.clear()
+
     def advance(self) -> None:
         """Begin the next frame: what is kept moves on by one copy."""
         for resource in self.pipeline.resources.values():

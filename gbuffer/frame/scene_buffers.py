@@ -45,7 +45,7 @@ class Draw:
 
 
 class SceneBuffers:
-    """What a scene's frames are drawn from, released with `stack`.
+    """What a scene's frames are drawn from, released with `stack`; it may move from frame to frame.
 
     Attributes:
         draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
@@ -59,18 +59,32 @@ class SceneBuffers:
 
     def __init__(self, device: Device, stack: ExitStack, scene: Scene):
         self._device, self._stack, self._scene = device, stack, scene
-        self.view = scene.view.matrix()
         self.two_sided = [part.two_sided for part in scene.parts]
         self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
+        self.bumps = device.owned(stack, _bump_texture(device))
+        # Tables of the moment.
+        self._moment = ExitStack()
+        stack.callback(lambda: self._moment.close())
+        self.show(scene)
+
+    def show(self, scene: Scene) -> None:
+        """Draw the scene at another moment from here on.
+
+        Raises:
+            ValueError: it has other meshes, or lights of other kinds.
+        """
+        if what_is_built(scene) != what_is_built(self._scene):
+            raise ValueError("only a scene of the same meshes and kinds of light is another moment of a scene")
+        self._moment.close()
+        self._scene, self.view = scene, scene.view.matrix()
         self._material = np.concatenate([part.materials for part in scene.parts])
         self._transparent = np.array([m.alpha < 1 for m in scene.materials])[self._material]
         self.draws: dict[str | int, list[Draw]] = {}
         # The shaders find the sun in the first place.
         self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
         self.first_lamp = int(scene.sun is not None)
-        self._tables = {ORDER: self._buffer(self._order()), MATERIALS: self._buffer(self._materials())}
+        self._tables = {ORDER: self._table(self._order()), MATERIALS: self._table(self._materials())}
         self._seen: dict[Sight, dict[int, Buffer]] = {}
-        self.bumps = device.owned(stack, _bump_texture(device))
 
     def bind(self, view: Sight | None = None) -> None:
         """Make the tables those that shaders see: instances and lights in the space of a view, else the scene's own."""
@@ -78,17 +92,19 @@ class SceneBuffers:
         if sight not in self._seen:
             matrix = sight.matrix()
             tables = {INSTANCES: self._instances(matrix), LIGHTS: self._lights(matrix)}
-            self._seen[sight] = {binding: self._buffer(data) for binding, data in tables.items()}
+            self._seen[sight] = {binding: self._table(data) for binding, data in tables.items()}
         for binding, buffer in (self._tables | self._seen[sight]).items():
             buffer.bind_to_storage_buffer(binding)
 
-    def _buffer(self, data: np.ndarray) -> Buffer:
+    def _table(self, data: np.ndarray) -> Buffer:
         # An empty list is a buffer all the same.
-        return self._device.owned(self._stack, self._device.context.buffer(data.tobytes() or bytes(16)))
+        return self._device.owned(self._moment, self._device.context.buffer(data.tobytes() or bytes(16)))
 
     def _upload_mesh(self, mesh: Mesh) -> tuple[Buffer, Buffer]:
         vertices = np.concatenate([mesh.positions, mesh.normals, tangents(mesh), mesh.uv], axis=1)
-        return self._buffer(vertices.astype(np.float32)), self._buffer(wound(mesh).astype(np.int32))
+        given = vertices.astype(np.float32), wound(mesh).astype(np.int32)
+        corners, triangles = (self._device.context.buffer(data.tobytes() or bytes(16)) for data in given)
+        return self._device.owned(self._stack, corners), self._device.owned(self._stack, triangles)
 
     def _instances(self, view: np.ndarray) -> np.ndarray:
         models = np.concatenate([part.models for part in self._scene.parts])
@@ -150,6 +166,12 @@ def _light(light: Light, view: np.ndarray) -> list[float]:
     outer, inner = np.cos(np.radians([light.outer, light.inner]))
     kind = LIGHT_KINDS.index(light.kind)
     return [*position, light.radius, *light.colour, kind, *direction, outer, inner, 0, 0, 0]
+
+
+def what_is_built(scene: Scene) -> tuple[object, ...]:
+    """What passes are built for, and may not change from frame to frame."""
+    meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
+    return *meshes, *sorted(light.kind for light in scene.lights)
 
 
 def _listed(instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:

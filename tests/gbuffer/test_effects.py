@@ -27,6 +27,8 @@ from normalbench.gbuffer.passes.screen import screen
 from normalbench.gbuffer.passes.shadow_map import shadow_map
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import bytes_per_pixel, rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
 
 ROOT = Path(__file__).parents[2]
 SIZE = (48, 36)
@@ -256,6 +258,25 @@ def test_what_is_kept_is_there_in_the_next_frame(gl, tmp_path, copies):
             counted, read = made.read(history)[0], made.read(late)[0]
             assert np.all(counted == frame), f"frame {frame}: {counted.min()} to {counted.max()}"
             assert np.all(read == frame), f"frame {frame}, the pass before: {read.min()} to {read.max()}"
+
+
+@pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
+def test_a_scene_may_move_between_frames(gl, pipeline):
+    """Moments drawn one after the other are those that are drawn alone, bit for bit; another scene is refused."""
+    moments = [SCENES["room"].make(Setting(lights=4, time=time)) for time in (0.0, 0.3, 0.6)]
+    plan, alone = replace(PLAN, shadows=True), []
+    for moment in moments:
+        with rendering(gl, PIPELINES[pipeline], moment, plan) as made:
+            made.draw()
+            alone.append(made.image())
+    with rendering(gl, PIPELINES[pipeline], moments[0], plan) as made:
+        for number, moment in enumerate(moments):
+            made.draw(moment)
+            differ = np.mean(made.image() != alone[number])
+            assert differ == 0, f"{differ:.1%} of moment {number} differs"
+        with pytest.raises(ValueError, match="only a scene of the same meshes"):
+            made.draw(scene_of("objects"))
+    assert np.mean(alone[0] != alone[1]) > 0.3, "the scene stands still"
 
 
 def test_a_pass_may_look_from_anywhere(gl, tmp_path):
