@@ -18,8 +18,8 @@ from .frame.resource import Resource
 from .frame.resources import FINAL
 from .gl.device import Device, read_pixels
 from .layouts.layout import LayoutError
-from .passes.resolve import RESOLVE, RESOLVED
-from .passes.unpack import UNPACK, UNPACKED
+from .readback.resolve import RESOLVE, RESOLVED
+from .readback.unpack import UNPACK, UNPACKED
 from .scenes.scene import Scene
 
 WALL, QUERY = "wall clock after each pass", "GL timer query"

@@ -66,6 +66,13 @@ def test_only_the_folder_of_opengl_imports_moderngl():
     assert using <= {Path("gbuffer/gl"), Path("gbuffer/codecs")}, f"moderngl is imported in {sorted(using)}"
 
 
+def test_a_folder_of_the_renderer_is_read_at_a_glance():
+    """A pass beside its shaders counts as one thing; no folder holds more than thirteen."""
+    for folder in (path for path in (ROOT / "gbuffer").rglob("*") if path.is_dir() and path.name != "__pycache__"):
+        things = {path.stem for path in folder.iterdir()} - {"__init__", "__pycache__"}
+        assert len(things) <= 13, f"{folder.relative_to(ROOT)} holds {len(things)}: {', '.join(sorted(things))}"
+
+
 def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}

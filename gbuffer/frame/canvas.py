@@ -52,22 +52,19 @@ class Canvas:
         """Write the next copy from here on; what was in use is the copy before."""
         self.frame.held(self._declared(resource, self._pass.writes)).move_on()
 
-    def target(
-        self, *colours: Resource, depth: Resource | None = None, copy: int = 0, most: int | None = None
-    ) -> Target:
+    def target(self, *colours: Resource, depth: Resource | None = None, most: int | None = None) -> Target:
         """What to draw into.
 
         Args:
             colours: resources that the pass writes, in the order of the shader's outputs.
             depth: depth and stencil to draw against; written if the pass writes it.
-            copy: which copy of the colours, from the one in use.
             most: how many textures at most.
         """
         for resource in colours:
             self._declared(resource, self._pass.writes)
         if depth:
             self._declared(depth, (*self._pass.reads, *self._pass.writes))
-        return Target(self, colours, depth, copy, most, depth in self._pass.writes)
+        return Target(self, colours, depth, most, depth in self._pass.writes)
 
     def at(self, size: tuple[int, int], view: Sight | None) -> None:
         """Prepare the programs that follow for a target of this size, seen from `view` or by the scene's own camera."""
@@ -133,7 +130,6 @@ class Target:
     canvas: Canvas
     colours: tuple[Resource, ...]
     depth: Resource | None
-    copy: int
     most: int | None
     writes_depth: bool
 
@@ -145,7 +141,7 @@ class Target:
             at: which slice of volumes; all of them, by `gl_Layer`, if None.
         """
         frame = self.canvas.frame
-        colours = [texture for resource in self.colours for texture in frame.textures(resource, self.copy)]
+        colours = [texture for resource in self.colours for texture in frame.textures(resource)]
         made = frame.framebuffer(colours[: self.most], self.depth, self.writes_depth, at)
         made.use()
         self.canvas.at(made.size, view)

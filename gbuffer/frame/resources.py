@@ -17,7 +17,9 @@ DEPTH = Resource("native_depth", DEPTH_STENCIL, follows=SURFACES, samples=AS_MAN
 LINEAR_DEPTH = Resource("linear_depth", "linear depth", follows=SURFACES, samples=AS_MANY)
 # What `gbuffer.glsl` reads.
 SURFACE = (GBUFFER, LINEAR_DEPTH)
-LIGHT = Resource("light_texels", "the light buffer's", follows=SURFACES, samples=AS_MANY, copies=2)
+LIGHT = Resource("light_texels", "the light buffer's", follows=SURFACES, samples=AS_MANY)
+# What light is added in where its code cannot be blended; not there where it can.
+NEXT_LIGHT = Resource("next_light", "the light buffer's, where it is read", follows=SURFACES, samples=AS_MANY)
 FINAL = Resource("final", "rgba32f", samples=AS_MANY, copies=2)
 # Depth and stencil of the image where the G-buffer has a size of its own.
 FINAL_DEPTH = Resource("final_depth", DEPTH_STENCIL, samples=AS_MANY, shares=DEPTH)

@@ -11,7 +11,8 @@ from ..codecs.light_passes import BLEND_OF
 from ..defines.materials import CONSTANTS
 from ..frame.canvas import AGAIN, COVERED, Canvas
 from ..frame.contract import Pass
-from ..frame.resources import BY_KIND, DEPTH, LIGHT, SHADOW_MAP, SURFACE, TERMS
+from ..frame.resource import Resource
+from ..frame.resources import BY_KIND, DEPTH, LIGHT, NEXT_LIGHT, SHADOW_MAP, SURFACE, TERMS
 from ..gl import raw
 from ..gl.handles import Query, VertexArray
 from ..layouts.layout import SHADING
@@ -27,7 +28,7 @@ def lights(light_holds: int) -> Pass:
     return Pass(
         "lights",
         reads=(*SURFACE, SHADOW_MAP, DEPTH, *begun),
-        writes=(LIGHT,),
+        writes=(LIGHT, NEXT_LIGHT),
         build=LightVolumes,
         expects={"LIGHT_HOLDS": (light_holds,)},
         needs=(SHADING if begun else frozenset()) | kinds,
@@ -48,7 +49,7 @@ class LightVolumes:
         self._canvas, code = canvas, canvas.plan.light_buffer
         self._reads, self._blend = code.blend == "read", BLEND_OF[code.blend]
         self._target = canvas.target(LIGHT, depth=DEPTH)
-        self._next = canvas.target(LIGHT, depth=DEPTH, copy=1) if self._reads else self._target
+        self._next = canvas.target(NEXT_LIGHT, depth=DEPTH) if self._reads else self._target
         self._mark = canvas.program("lights.vert", "nothing.frag")
         self._shade = canvas.program("lights.vert", "lights.frag", LIT_BY_SUN=0)
         self._back = canvas.program("lights.vert", "copy_light.frag") if self._reads else None
@@ -78,19 +79,19 @@ class LightVolumes:
     def _sunlight(self) -> None:
         self._canvas.device.state(COVERED, self._blend)
         self._next.use()
-        self._draw(self._sun, before=0, vertices=3)
+        self._draw(self._sun, LIGHT, vertices=3)
         if self._sun_back:
             self._bring_back(self._sun_back, vertices=3)
 
-    def _draw(self, drawn: VertexArray, before: int, vertices: int = -1) -> None:
-        """Draw what may read the light from one of its two copies."""
-        reads = {"light_before": self._canvas.textures(LIGHT, before)} if self._reads else {}
+    def _draw(self, drawn: VertexArray, before: Resource, vertices: int = -1) -> None:
+        """Draw what may read the light that there was before."""
+        reads = {"light_before": self._canvas.textures(before)} if self._reads else {}
         self._canvas.prepare(drawn.program, **reads)
         drawn.render(vertices=vertices)
 
     def _bring_back(self, drawn: VertexArray, vertices: int = -1) -> None:
         self._target.use()
-        self._draw(drawn, before=1, vertices=vertices)
+        self._draw(drawn, NEXT_LIGHT, vertices=vertices)
 
     def _local(self, index: int, light: Light) -> None:
         # Shader and shape go by the same number.
@@ -101,12 +102,12 @@ class LightVolumes:
         raw.mark_volume()
         for program in filter(None, (self._mark, self._shade, self._back)):
             program["light"] = index
-        self._draw(mark, before=0)
+        self._draw(mark, LIGHT)
         # Back faces only: they cover the volume once, and the eye may be inside.
         self._canvas.device.state(None, self._blend, "front")
         raw.shade_marked(again=self._reads)
         with self._counted():
-            self._draw(shade, before=0)
+            self._draw(shade, LIGHT)
         for drawn in back:
             raw.shade_marked()
             self._bring_back(drawn)
