@@ -161,6 +161,8 @@ def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iter
     for resource in one.reads:
         if resource.name not in _written(stages if resource.kept else earlier):
             yield f"reads {resource.name}, which no {'' if resource.kept else 'earlier '}pass writes"
+        if taker := next((other for other in _written(earlier).values() if other.shares == resource), None):
+            yield f"reads {resource.name}, whose place {taker.name} has taken"
     yield from _macro_misfits(one, {name: value for other in earlier for name, value in other.tells.items()})
 
 

@@ -59,7 +59,8 @@ class Resource:
         depth: the slices of a volume; 0 for a texture of two dimensions.
         kept: whether the next frame reads it. Each frame then moves on by one copy, and may read before it writes.
         smooth: whether `texture()` blends neighbouring texels.
-        shares: the resource that it is wherever the two have one size and as many samples.
+        shares: the resource that it is wherever the two have one size and as many samples; it takes that one's place,
+            which no later pass may read.
     """
 
     name: str

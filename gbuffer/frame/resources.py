@@ -24,6 +24,9 @@ FINAL = Resource("final", "rgba32f", samples=AS_MANY, copies=2)
 # Depth and stencil of the image where the G-buffer has a size of its own.
 FINAL_DEPTH = Resource("final_depth", DEPTH_STENCIL, samples=AS_MANY, shares=DEPTH)
 
+# Components of a layout that finished colour is made of.
+SHADING = frozenset({"albedo.r", "albedo.g", "albedo.b", "specular.r", "specular.g", "specular.b", "power"})
+
 # What LIGHT_HOLDS counts: light for a second geometry pass, colour that is finished, or colour of general materials and
 # light of special ones.
 TERMS, COLOURS, BY_KIND = range(3)

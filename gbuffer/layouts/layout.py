@@ -35,8 +35,6 @@ MAX_PACKED_BITS = 24
 # A Deferred ID tells four kinds apart, an instance is 1 to 255.
 LEAST_BITS = {"kind": 2, "instance": 8}
 DEPTH_STENCIL_BYTES = 5
-# What finished colour is made of.
-SHADING = frozenset({"albedo.r", "albedo.g", "albedo.b", "specular.r", "specular.g", "specular.b", "power"})
 
 
 class LayoutError(Exception):

@@ -12,10 +12,9 @@ from ..defines.materials import CONSTANTS
 from ..frame.canvas import AGAIN, COVERED, Canvas
 from ..frame.contract import Pass
 from ..frame.resource import Resource
-from ..frame.resources import BY_KIND, DEPTH, LIGHT, NEXT_LIGHT, SHADOW_MAP, SURFACE, TERMS
+from ..frame.resources import BY_KIND, DEPTH, LIGHT, NEXT_LIGHT, SHADING, SHADOW_MAP, SURFACE, TERMS
 from ..gl import raw
 from ..gl.handles import Query, VertexArray
-from ..layouts.layout import SHADING
 from ..scenes.mesh import Mesh, wound
 from ..scenes.scene import Light
 from .light_bounds import ball, cone

@@ -2,8 +2,7 @@
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run
-from ..frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, LIGHT, SURFACE
-from ..layouts.layout import SHADING
+from ..frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, LIGHT, SHADING, SURFACE
 
 
 def screen() -> Pass:

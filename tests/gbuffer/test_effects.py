@@ -17,7 +17,7 @@ from normalbench.encodings.catalogue import LIGHT_ENCODINGS
 from normalbench.gbuffer.frame.contract import Pass, Pipeline, PipelineError
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.frame.resource import Resource
-from normalbench.gbuffer.frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, GBUFFER, TERMS
+from normalbench.gbuffer.frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, FINAL_DEPTH, GBUFFER, TERMS
 from normalbench.gbuffer.passes.forward import forward
 from normalbench.gbuffer.passes.geometry import geometry
 from normalbench.gbuffer.passes.lights import lights
@@ -97,6 +97,10 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         (
             (shadow_map(), geometry(TERMS), linear_depth(), lights(TERMS), material("opaque", filters=True)),
             "pass material expects FILTERS 1, and is told 0",
+        ),
+        (
+            (geometry(TERMS), Pass("own", (), (FINAL_DEPTH,), nothing), linear_depth()),
+            "pass linear_depth reads native_depth, whose place final_depth has taken",
         ),
         (
             (geometry(TERMS), Pass("more", (), (FINAL,), nothing, tells={"FILTERS": 1})),
