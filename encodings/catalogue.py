@@ -1,9 +1,14 @@
-"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here."""
+"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here.
+
+The catalogues are read-only. A tuned encoding and a user's encoding are values like these, and in no catalogue.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib import import_module
+from types import MappingProxyType
 from typing import TypeVar
 
 from .depth_encoding import DepthEncoding
@@ -60,8 +65,8 @@ FRAME_NAMES = ("smallest_three", "octahedral_angle", "qtangent")
 E = TypeVar("E", Encoding, LightEncoding, DepthEncoding, FrameEncoding)
 
 
-def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> dict[str, E]:
-    return {name: _loaded(folder, name, kind) for name in names}
+def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> Mapping[str, E]:
+    return MappingProxyType({name: _loaded(folder, name, kind) for name in names})
 
 
 def _loaded(folder: str, name: str, kind: type[E]) -> E:
@@ -82,8 +87,11 @@ def _precise(name: str, encoding: Encoding) -> Encoding:
     return replace(encoding, name=name, title=title, citation=citation, is_precise=True, functions=encoding.prefix)
 
 
-ENCODINGS: dict[str, Encoding] = _load("normals", PAIRS, Encoding)
-ENCODINGS |= {name: _precise(name, ENCODINGS[pair]) for name, pair in PRECISE.items()}
-LIGHT_ENCODINGS: dict[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
-DEPTH_ENCODINGS: dict[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
-FRAME_ENCODINGS: dict[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)
+def _with_precise(pairs: Mapping[str, Encoding]) -> Mapping[str, Encoding]:
+    return MappingProxyType({**pairs, **{name: _precise(name, pairs[pair]) for name, pair in PRECISE.items()}})
+
+
+ENCODINGS: Mapping[str, Encoding] = _with_precise(_load("normals", PAIRS, Encoding))
+LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
+DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
+FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)

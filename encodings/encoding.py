@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from .fingerprint import fingerprint
 from .vec import Vec2, Vec3
 
 Code = Vec2 | Vec3
@@ -101,6 +102,12 @@ class Encoding:
     def prefix(self) -> str:
         """What the names of its GLSL functions begin with."""
         return self.functions or self.name
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
+        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
+        return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
 
     def levels_of(self, component: int) -> int:
         """How many values a number of its code has; 0 for one like any other, 2 for a sign bit."""

@@ -10,7 +10,6 @@ import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import isa, spirv
-from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
@@ -104,11 +103,3 @@ def opened():
     OPENED = []
     yield OPENED
     OPENED = None
-
-
-@pytest.fixture(autouse=True)
-def catalogue():
-    """What a user's file adds to the catalogue is gone after the test."""
-    yield
-    for name in set(ENCODINGS) - set(NAMES):
-        del ENCODINGS[name]

@@ -24,7 +24,8 @@ from normalbench.encodings.catalogue import (
     PAIRS,
     PRECISE,
 )
-from normalbench.encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
+from normalbench.encodings.storage import DEPTH_STORAGES, FORMATS, FRAME_STORAGES, STORAGES
+from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -93,6 +94,32 @@ def test_the_catalogue_and_the_files_are_the_same():
     assert set(ENCODINGS) == set(NAMES) == {*PAIRS, *PRECISE} and set(PRECISE.values()) <= set(PAIRS)
     files = {suffix: {p.stem for p in (ROOT / "encodings/depth").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
     assert files[".py"] == files[".glsl"] == set(DEPTH_NAMES) == set(DEPTH_ENCODINGS)
+
+
+CATALOGUES = {
+    "ENCODINGS": ENCODINGS,
+    "DEPTH_ENCODINGS": DEPTH_ENCODINGS,
+    "FRAME_ENCODINGS": FRAME_ENCODINGS,
+    "LIGHT_ENCODINGS": LIGHT_ENCODINGS,
+    "STORAGES": STORAGES,
+    "DEPTH_STORAGES": DEPTH_STORAGES,
+    "FRAME_STORAGES": FRAME_STORAGES,
+    "FORMATS": FORMATS,
+    "LAYOUTS": LAYOUTS,
+    "PIPELINES": PIPELINES,
+    "SCENES": SCENES,
+    "NORMAL_SETS": normal_sets.NORMAL_SETS,
+    "FRAME_SETS": frame_sets.FRAME_SETS,
+    "PACKINGS": PACKINGS,
+}
+
+
+@pytest.mark.parametrize("name", CATALOGUES)
+def test_a_catalogue_is_read_only(name):
+    """What a user adds is a value in a list of cases, never an entry here."""
+    catalogue = CATALOGUES[name]
+    with pytest.raises(TypeError):
+        catalogue["mine"] = next(iter(catalogue.values()))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
-from ...encodings.catalogue import ENCODINGS
-from ...encodings.encoding import Encoding
 from ..metrics.images import require_flip
 from ..metrics.meter import Worst
 from ..options.option import MEASURED, Reading, checked_options, fields_of
@@ -17,7 +15,7 @@ from ..tables.quality import measure as quality
 from ..tables.quality.command import Request
 from ..tables.quality.measure import require_device
 from ..tables.render.command import RenderRequest
-from ..tables.render.measure import Bench, Case, ranked
+from ..tables.render.measure import Bench, ranked
 from .limits import Limit
 
 
@@ -73,14 +71,7 @@ def _render(options: Mapping[str, Any]) -> list[Found]:
     bench = Bench(gl, 0, request.flip)
     cases = request.cases(gl)
     rows = ranked([bench.measure(case)[0] for case in cases])
-    find = partial(_worst_drawn, bench, dict(ENCODINGS))
-    return [Found(row, partial(find, case)) for row, case in zip(rows, cases, strict=True)]
-
-
-def _worst_drawn(bench: Bench, encodings: Mapping[str, Encoding], case: Case) -> Worst | None:
-    # Layouts know encodings by name, and a user's file may have given a name to another since.
-    ENCODINGS.update(encodings)
-    return bench.worst(case)
+    return [Found(row, partial(bench.worst, case)) for row, case in zip(rows, cases, strict=True)]
 
 
 TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Found]]] = {"quality": _quality, "render": _render}

@@ -107,7 +107,7 @@ class WordPacking:
         encoding = next(e for e in suits if bool(e.sign_bits) == self.signed)
         # A depth needs a normal beside it to be a layout; that lies in a second target, which no kernel writes.
         beside = Target("rgba16f", " ".join(f"normal.{axis}" for axis in "xyz"[: encoding.components]))
-        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding.name, "")
+        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding, "")
 
     def pack(self) -> Operation:
         return Operation("kernel_pack.glsl", max(self.numbers, 2), 3, self.channels, *self._read(), is_portable=False)

@@ -12,7 +12,6 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...encodings.catalogue import ENCODINGS
 from ...encodings.light_encoding import LightEncoding
 from ...encodings.storage import FORMATS, R32F, ROUNDINGS, Storage
 from ..codecs.codec_passes import encoding_defines, levels_of, storage_kind
@@ -281,7 +280,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
         "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
         "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
         "TARGET_ROUNDS": rounds,
-        "NORMAL_LEVELS": levels_of(ENCODINGS[layout.encoding]),
+        "NORMAL_LEVELS": levels_of(layout.encoding),
         "NORMAL_SCALE": layout.normal_scales,
         "NORMAL_BIASED": int(layout.codec.storage.is_biased),
         "PACK_WIDEN": widen,

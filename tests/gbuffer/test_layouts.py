@@ -40,7 +40,7 @@ def kept(name: str) -> list[np.ndarray]:
 
 
 def layout(*targets: Target, encoding: str = "octahedral", **more) -> Layout:
-    return Layout("mine", "mine", targets, encoding, "a test", **more)
+    return Layout("mine", "mine", targets, ENCODINGS[encoding], "a test", **more)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
@@ -79,15 +79,17 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
         ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
         ([("rgb565", "normal.x normal.y")], {}, "unknown format 'rgb565'; known: rgba8"),
         ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "keeps no depth"),
-        ([("rg16f", "normal.x normal.y")], {"encoding": "cubemap"}, "unknown encoding 'cubemap'"),
         ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
         ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
         ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
-        ([("rg16f", "normal.x normal.y")], {"depth": "deep"}, "unknown depth 'deep'; known: linear"),
-        ([("rg16f", "normal.x normal.y"), ("r32f", "depth")], {"depth": "linear_sign"}, "does not suit octahedral"),
         (
             [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
-            {"encoding": "xy_sign", "depth": "logarithmic"},
+            {"depth": DEPTH_ENCODINGS["linear_sign"]},
+            "does not suit octahedral",
+        ),
+        (
+            [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
+            {"encoding": "xy_sign", "depth": DEPTH_ENCODINGS["logarithmic"]},
             "does not suit xy_sign, whose depth is linear_sign",
         ),
     ],
@@ -110,6 +112,11 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
         ("[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "encoding must be given"),
         ("encoding = 'octahedral'\ncolour = 3\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "'colour'"),
         ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "octahedral needs"),
+        ("encoding = 'cubemap'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "unknown encoding 'cubemap'; known"),
+        (
+            "encoding = 'xy'\ndepth = 'deep'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'",
+            "unknown depth 'deep'; known: linear",
+        ),
     ],
 )
 def test_a_file_that_is_no_layout_is_one_line(tmp_path, text, said):
@@ -126,7 +133,7 @@ def test_a_layout_is_read_from_a_file(tmp_path):
     path.write_text(f"encoding = 'octahedral'\nspace = 'world'\npacking = 'truncate'\ndepth = 'logarithmic'\n{targets}")
     read = read_layout(path)
     assert (read.name, read.space, read.packing, read.normal_bits) == ("mine", "world", "truncate", 24)
-    assert read.depth == "logarithmic" and "logarithmic depth" in read.summary
+    assert read.depth is DEPTH_ENCODINGS["logarithmic"] and "logarithmic depth" in read.summary
     assert read.normal_storage == "rgba8 12:12"
 
 
@@ -195,7 +202,7 @@ def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
     """The room through a layout that names its depth's code: packed in 16 and 24 bits, and in a float of its own."""
     normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
     home = Target("r32f" if holds == "depth" else "rgba8", holds)
-    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=name)
+    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=DEPTH_ENCODINGS[name])
     storage = {"depth:16 power": "packed16", "depth:24": "packed24", "depth": "r32f"}[holds]
     exact = -kept("fp32")[0][..., 2][covered()].astype(np.float64)
     with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as made:
@@ -233,7 +240,7 @@ def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.nd
     preset = LAYOUTS[name]
     axes = np.linalg.inv(ROOM.view.matrix())[:3, :3] if preset.space == "world" else np.eye(3)
     n, view = (from_array((a @ axes.T).astype(np.float32)) for a in (n, position))
-    encoding, codec = ENCODINGS[preset.encoding], preset.codec
+    encoding, codec = preset.encoding, preset.codec
     code = encoding.encode(n, view)
     bits_of = {word.component: word.bits for word in preset.words}
     bits = [bits_of[f"normal.{axis}"] for axis in "xyz"[: encoding.components]]

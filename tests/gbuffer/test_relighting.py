@@ -11,7 +11,7 @@ import relighting
 from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
 from relighting import relight, surfaces
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
 from normalbench.gbuffer.defines.materials import CONSTANTS
 from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
 from normalbench.gbuffer.frame.scene_buffers import sun_matrix
@@ -212,7 +212,7 @@ def test_one_white_light_gets_its_power_back_from_a_light_pass_without_powers(gl
     materials; highlights of power 4 to 1024 from one of 32."""
     lamp = Light("point", (3.0, 3.0, 3.0), (2.0, 1.5, 5.0), 14.0)
     scene = replace(scene_of("gloss"), lights=(lamp,))
-    bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), "xyz", "")
+    bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), ENCODINGS["xyz"], "")
     expected = draw(gl, "forward", scene).image
     for targets in (1, 2):
         found = apart(draw(gl, "prepass", scene, layout=bare, targets=targets).image, expected)

@@ -54,30 +54,31 @@ class Case:
     """An encoding's operation, or a packing's.
 
     Attributes:
-        encoding, storage: one of them, and None for the other.
+        encoding, storage: an encoding or the name of a packing, and None for the other.
         operation: "encode", "decode", "pack" or "unpack".
         make: makes it; raises ShaderError.
     """
 
-    encoding: str | None
+    encoding: Encoding | None
     storage: str | None
     operation: str
     make: Callable[[], Operation]
 
     @property
     def name(self) -> str:
-        return f"{self.encoding or self.storage} {self.operation}"
+        return f"{self.encoding.name if self.encoding else self.storage} {self.operation}"
 
     def row(self, measure: str, **more: Any) -> Row:
         """A row of the table that is about it."""
-        about = {"encoding": self.encoding, "storage": self.storage, "operation": self.operation}
+        name = self.encoding.name if self.encoding else None
+        about = {"encoding": name, "storage": self.storage, "operation": self.operation}
         return dict.fromkeys(COLUMNS) | {"measure": measure} | about | more
 
 
 def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[Case]:
     """Every operation of each encoding, and what the packings add to it."""
     makers = {"encode": kernels.encode, "decode": kernels.decode}
-    found = [Case(e.name, None, name, partial(makers[name], e)) for e in encodings for name in operations]
+    found = [Case(e, None, name, partial(makers[name], e)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
         found += [Case(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]

@@ -69,7 +69,7 @@ class RenderRequest(RenderOptions):
         for layout in chosen:
             for codec in codecs:
                 if not codec.fits:
-                    complaints.append(f"{codec.name}: more components than {codec.storage.title} has channels")
+                    complaints.append(f"{codec.name}: {codec.misfit}")
                     continue
                 _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
         return what_is_left(made, complaints)

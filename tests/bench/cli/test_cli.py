@@ -16,11 +16,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from normalbench.bench.codecs import user_encodings
 from normalbench.bench.metrics import published as seeds
 from normalbench.bench.suite.suite import COMMON
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.encodings.codec import Codec
+from normalbench.encodings.encoding import Encoding
 from normalbench.encodings.storage import STORAGES
 from normalbench.reports import tables
 
@@ -277,6 +279,11 @@ def test_no_command_is_help_and_no_error(run):
     assert status == 0 and "quality" in out and err == ""
 
 
+def measured_instead(monkeypatch, encoding: Encoding) -> None:
+    """From here on the encoding's name stands for it on the command line."""
+    monkeypatch.setattr(user_encodings, "ENCODINGS", {**ENCODINGS, encoding.name: encoding})
+
+
 def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
     """A Python half that raises or has another size; a GLSL half that does not compile loses its own rows only."""
 
@@ -288,7 +295,7 @@ def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
         ({"encode": raises}, ["xy.py", "ValueError", "what is this?"]),
         ({"components": 3}, ["xy.py", "encode gives 2 numbers"]),
     ):
-        monkeypatch.setitem(ENCODINGS, "xy", replace(original, **changed))
+        measured_instead(monkeypatch, replace(original, **changed))
         status, _, err = run("quality", "--encoding", "xy", "--normals", "axes")
         assert status == 2 and err.count("\n") == 1 and all(part in err for part in said), err
 
@@ -297,7 +304,7 @@ def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
 def test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone(run, monkeypatch, tmp_path):
     broken = tmp_path / "xy.glsl"
     broken.write_text(ENCODINGS["xy"].glsl.read_text().replace("n.xy", "n.xq"))
-    monkeypatch.setitem(ENCODINGS, "xy", replace(ENCODINGS["xy"], glsl=broken))
+    measured_instead(monkeypatch, replace(ENCODINGS["xy"], glsl=broken))
     arguments = ["quality", "--encoding", "xy,octahedral", "--normals", "axes", "--format", "json"]
     status, out, err = run(*arguments)
     rows = {(row["encoding"], row["backend"]): row for row in json.loads(out)}
@@ -315,7 +322,7 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
         n = original.decode(e, view)
         return n._replace(x=jnp.where(e.x > 0.9, jnp.nan, n.x))
 
-    monkeypatch.setitem(ENCODINGS, "xy", replace(original, decode=decode))
+    measured_instead(monkeypatch, replace(original, decode=decode))
     status, out, err = run("quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax", "--format", "json")
     assert status == 0 and json.loads(out)[0]["invalid"] == 64, "one axis of six, 64 directions around it"
     assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are no number\n"

@@ -10,6 +10,7 @@ from PIL import Image
 
 from normalbench.bench.metrics import images as image_metrics
 from normalbench.bench.tables.render import measure as rendering
+from normalbench.bench.tables.render.command import RenderRequest
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
@@ -54,6 +55,44 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     assert forward["layout"] is None and forward["exact"] and forward["psnr_db"] is None
     assert octahedral["ms_frame"] > 0 and octahedral["ms_lights"] > 0 and octahedral["ms_forward"] is None
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
+
+
+def test_what_does_not_fit_says_why(run):
+    """Precise rounding needs fixed point; three components need three channels."""
+    codecs = ["--encoding", "octahedral_precise,xyz,octahedral", "--storage", "rg16f", "--pipeline", "deferred"]
+    status, out, err = run("render", *SMALL, *codecs, "--format", "json")
+    precise, xyz = err.splitlines()
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
+    assert "octahedral_precise/rg16f: RG16F is of floats, and precise rounding is for fixed point" in precise
+    assert "xyz/rg16f: 3 components, but RG16F has 2 channels" in xyz
+
+
+def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
+    """Two tables in files of one name, in one command: the published one, and one that leaves a third of the codes."""
+    published = ENCODINGS["best_fit"].tables()["best_fit_scale"]
+    paths = [tmp_path / folder / "table.npy" for folder in ("one", "other")]
+    for path, table in zip(paths, (published, np.full_like(published, 1 / 3)), strict=True):
+        path.parent.mkdir()
+        np.save(path, table)
+    names = ["best_fit", *(f"best_fit:table={path}" for path in paths)]
+    arguments = [*SMALL, "--scene", "room", "--pipeline", "deferred", "--encoding", ",".join(names)]
+    status, out, _ = run("render", *arguments, "--format", "json")
+    best_fit, one, other = json.loads(out)
+    assert status == 0 and one["encoding"] == other["encoding"] == "best_fit:table=table.npy"
+    assert one["normal_psnr_db"] == best_fit["normal_psnr_db"] > other["normal_psnr_db"] + 3, (one, other)
+
+
+def test_two_layouts_with_two_encoders_of_one_name_are_measured_each(gl):
+    """Each row is that of the encoder its layout holds, whichever came before."""
+    encodings = [ENCODINGS["xyz"], ENCODINGS["octahedral"]]
+    encodings += [replace(encoding, name="mine", functions=encoding.prefix) for encoding in encodings]
+    (case,) = RenderRequest(size="64x48", lights=4, scene="room", pipeline="deferred", encoding="xy").cases(gl)
+    layouts = [LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rgba8"])) for encoding in encodings]
+    bench = rendering.Bench(gl, 0, False)
+    rows = [bench.measure(replace(case, plan=replace(case.plan, layout=layout)))[0] for layout in layouts]
+    assert [row["encoding"] for row in rows] == ["xyz", "octahedral", "mine", "mine"]
+    xyz, octahedral, *mine = (row["normal_psnr_db"] for row in rows)
+    assert mine == [xyz, octahedral] and xyz != octahedral
 
 
 def test_flip_is_measured_where_it_is_asked_for(run):
@@ -231,7 +270,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--scene", "sponza"], "unknown scene 'sponza'; known: all, playground"),
         (["--shadow", "yes"], "unknown shadow 'yes'; known: all, on, off"),
         (["--encoding", "cubemap"], "unknown encoding 'cubemap'"),
-        (["--encoding", "xyz", "--storage", "rg8"], "more components"),
+        (["--encoding", "xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
         (["--images", "/proc/none"], "cannot write to /proc/none"),
         (["-o", "/proc/none/rows.csv"], "cannot write"),
     ],
