@@ -15,7 +15,9 @@ from .depth_encoding import DepthEncoding
 from .encoding import Encoding
 from .errors import CatalogueError
 from .frame_encoding import FrameEncoding
+from .light_codec import LightCodec
 from .light_encoding import LightEncoding
+from .storage import LIGHT_STORAGES
 
 PAIRS = (
     "xyz",
@@ -45,17 +47,7 @@ PAIRS = (
 # Encodings that are there with precise rounding as well: of the codes around, the one that decodes nearest.
 PRECISE = {f"{name}_precise": name for name in ("octahedral", "equal_area_octahedral")}
 NAMES = (*PAIRS, *PRECISE)
-LIGHT_NAMES = (
-    "rgba32f",
-    "rgba16f",
-    "r11g11b10f",
-    "linear",
-    "srgb",
-    "log",
-    "rgbm",
-    "nao32",
-    "rgb9e5",
-)
+LIGHT_NAMES = ("plain", "linear", "srgb", "log", "rgbm", "nao32", "rgb9e5")
 
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
@@ -95,3 +87,12 @@ ENCODINGS: Mapping[str, Encoding] = _with_precise(_load("normals", PAIRS, Encodi
 LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
 DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
 FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)
+
+# What `--light-buffer` names: each light encoding in each storage that it is made for.
+LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(
+    {
+        codec.name: codec
+        for encoding in LIGHT_ENCODINGS.values()
+        for codec in (LightCodec(encoding, LIGHT_STORAGES[storage]) for storage in encoding.storages)
+    }
+)

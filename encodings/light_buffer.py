@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .light_encoding import LightEncoding
-from .storage import store_texel
+from .light_codec import LightCodec
 from .vec import Vec4, jnp, light_or_none
 
 
@@ -28,28 +27,20 @@ class Blending:
 IDEAL = Blending()
 
 
-def stored(encoding: LightEncoding, texel: Vec4, rounding: str = "nearest") -> Vec4:
-    """A texel (any shape) as the encoding's format gives it back; 0 in a channel that the format lacks."""
-    storage = encoding.storage
-    return Vec4(
-        *(store_texel(c, storage, i, rounding) if i < storage.channels else 0.0 * c for i, c in enumerate(texel))
-    )
-
-
-def blended(encoding: LightEncoding, texel: Vec4, light: Vec4, blending: Blending = IDEAL) -> Vec4:
+def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = IDEAL) -> Vec4:
     """What a texel (any shape) holds after one more light."""
-    storage = encoding.storage
-    if encoding.blend == "read":
-        total = light_or_none(encoding.decode(texel) + light)
-        return stored(encoding, encoding.encode(total), blending.rounding)
-    source = encoding.encode(light_or_none(light))
+    storage = codec.storage
+    if codec.blend == "read":
+        total = light_or_none(codec.decode(texel) + light)
+        return codec.store(codec.encode(total), blending.rounding)
+    source = codec.encode(light_or_none(light))
     if blending.rounds_source and storage.kind == "unorm" and not storage.curved:
-        source = stored(encoding, source)
-    if encoding.blend == "add":
-        return stored(encoding, texel + source, blending.rounding)
+        source = codec.store(source)
+    if codec.blend == "add":
+        return codec.store(texel + source, blending.rounding)
     if blending.by_shifts:
         return Vec4(*(_shifted(a, b, storage.scale(i)) for i, (a, b) in enumerate(zip(texel, source, strict=True))))
-    return stored(encoding, texel * source, blending.rounding)
+    return codec.store(texel * source, blending.rounding)
 
 
 def _shifted(a, b, scale: int):
@@ -60,7 +51,7 @@ def _shifted(a, b, scale: int):
     return code.astype(jnp.float32) * jnp.float32(1.0 / scale)
 
 
-def accumulate(encoding: LightEncoding, lights: Vec4, count, blending: Blending = IDEAL) -> Vec4:
+def accumulate(codec: LightCodec, lights: Vec4, count, blending: Blending = IDEAL) -> Vec4:
     """Texels after lights have been added one by one, in their order.
 
     Args:
@@ -69,11 +60,11 @@ def accumulate(encoding: LightEncoding, lights: Vec4, count, blending: Blending 
         blending: how.
 
     Returns:
-        planes of shape (...); `encoding.decode` makes light of them.
+        planes of shape (...); `codec.decode` makes light of them.
     """
     from jax import lax
 
-    start = Vec4(*(jnp.full(c.shape[1:], encoding.no_light, jnp.float32) for c in lights))
+    start = Vec4(*(jnp.full(c.shape[1:], codec.no_light, jnp.float32) for c in lights))
     return lax.fori_loop(
-        0, count, lambda i, texel: blended(encoding, texel, Vec4(*(c[i] for c in lights)), blending), start
+        0, count, lambda i, texel: blended(codec, texel, Vec4(*(c[i] for c in lights)), blending), start
     )

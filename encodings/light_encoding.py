@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .storage import Storage
 from .vec import Vec4
 
 # How light is added up: by the blending hardware, adding or multiplying texels; or by reading what is there, adding in
@@ -19,31 +18,31 @@ class LightEncoding:
     """A pair of maps between light and what a texel holds, in JAX here and in GLSL in the file beside it.
 
     The GLSL file defines `vec4 <name>_encode(vec4 light)` and `vec4 <name>_decode(vec4 e)`. Light is linear: three
-    colours and, where `has_alpha`, a fourth number that is added up on its own. A light code is made for one format,
-    and names it.
+    colours and, where `has_alpha`, a fourth number that is added up on its own.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: what a reader calls it.
         encode: light (Vec4, not negative, finite) to a texel, as the format is given it.
         decode: a texel, as the format gives it back, to light.
-        storage: the format.
+        storages: the formats that it is made for, names of LIGHT_STORAGES.
         blend: one of BLENDS.
-        has_alpha: whether it holds a fourth number.
-        limit: the most white light that it holds.
+        has_alpha: whether it holds a fourth number, in a format that has four.
+        limit: the most white light that it holds; infinite where only the format limits it.
         citation: where it comes from.
         glsl: the GLSL twin.
         ulps: how far the two languages may differ, encode and decode, in 2^-23 of the brightest channel.
         ulps_reason: why it is that many.
         constants: numbers that both languages need, by their GLSL name.
         ranged: makes the encoding over another range, named `<name>:<range>`; None where it has none.
+        is_plain: whether a texel is the light itself; a light buffer of it goes by the format's name.
     """
 
     name: str
     title: str
     encode: Callable[[Vec4], Vec4]
     decode: Callable[[Vec4], Vec4]
-    storage: Storage
+    storages: tuple[str, ...]
     blend: str
     has_alpha: bool
     limit: float
@@ -53,13 +52,9 @@ class LightEncoding:
     ulps_reason: str
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     ranged: Callable[[float], LightEncoding] | None = None
+    is_plain: bool = False
 
     @property
     def no_light(self) -> float:
         """What every channel of a texel without light holds: what blending leaves another as it is by."""
         return 1.0 if self.blend == "multiply" else 0.0
-
-    @property
-    def bytes_per_pixel(self) -> int:
-        """Of one target; a code that is read while it is written has two copies."""
-        return sum(self.storage.bits) // 8 * (2 if self.blend == "read" else 1)

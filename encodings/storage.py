@@ -31,6 +31,7 @@ ROUNDINGS = ("nearest", "truncate", "truncate_half")
 # Of floats by their size: bits of the mantissa, and the biased exponent of 1.
 MANTISSA = {32: 23, 16: 10, 11: 6, 10: 5}
 FLOAT_ONE = {32: 127, 16: 15, 11: 15, 10: 15}
+LARGEST = {32: float(np.finfo(np.float32).max), 16: 65504.0, 11: 65024.0, 10: 64512.0}
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
@@ -66,6 +67,11 @@ class Storage:
     def is_biased(self) -> bool:
         """Whether a number c is stored as c/2 + 1/2: the format has no sign."""
         return self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
+
+    @property
+    def largest(self) -> float:
+        """The largest finite number of a texel that every channel holds."""
+        return min(LARGEST[bits] for bits in self.bits) if self.kind == "float" else 1.0
 
     @property
     def target(self) -> Storage:
@@ -182,6 +188,11 @@ def storage_of(name: str) -> Storage | None:
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
 # Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.
 SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)
+
+# What holds light.
+LIGHT_STORAGES: Mapping[str, Storage] = MappingProxyType(
+    {**{name: STORAGES[name] for name in ("rgba32f", "rgba16f", "r11g11b10f", "rgba8")}, "srgb8_a8": SRGB8_A8}
+)
 
 # Every format that a render target may have; normals are measured in those above.
 FORMATS: Mapping[str, Storage] = MappingProxyType(

@@ -19,12 +19,13 @@ from normalbench.encodings.catalogue import (
     DEPTH_NAMES,
     ENCODINGS,
     FRAME_ENCODINGS,
+    LIGHT_BUFFERS,
     LIGHT_ENCODINGS,
     NAMES,
     PAIRS,
     PRECISE,
 )
-from normalbench.encodings.storage import DEPTH_STORAGES, FORMATS, FRAME_STORAGES, STORAGES
+from normalbench.encodings.storage import DEPTH_STORAGES, FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -100,7 +101,9 @@ CATALOGUES = {
     "ENCODINGS": ENCODINGS,
     "DEPTH_ENCODINGS": DEPTH_ENCODINGS,
     "FRAME_ENCODINGS": FRAME_ENCODINGS,
+    "LIGHT_BUFFERS": LIGHT_BUFFERS,
     "LIGHT_ENCODINGS": LIGHT_ENCODINGS,
+    "LIGHT_STORAGES": LIGHT_STORAGES,
     "STORAGES": STORAGES,
     "DEPTH_STORAGES": DEPTH_STORAGES,
     "FRAME_STORAGES": FRAME_STORAGES,
@@ -179,7 +182,7 @@ def test_no_number_is_typed_in_both_languages():
 def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
-    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_ENCODINGS}
+    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
@@ -197,5 +200,5 @@ def test_no_runner_asks_for_a_variants_name():
     for path in SOURCES:
         if path.parts[-2] not in ("normals", "light", "depth", "frame"):
             depths = (*DEPTH_NAMES, *DEPTH_STORAGES, *FRAME_ENCODINGS, *FRAME_STORAGES)
-            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_ENCODINGS, *SCENES):
+            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_BUFFERS, *LIGHT_ENCODINGS, *SCENES):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"

@@ -16,7 +16,7 @@ from normalbench.bench.cli import app as cli
 from normalbench.bench.metrics import published as seeds
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 from normalbench.bench.tables.lights.sums import Adder, equal_lights
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -129,7 +129,7 @@ def test_the_light_table_is_what_is_measured():
     lines = re.findall(r"^\| `(\w+)`[ \w()]*\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", table, re.M)
     assert len(lines) == 7
     for name, *figures in lines:
-        rows = equal_lights(Adder(LIGHT_ENCODINGS[name], None), [1.0], [8, 64, 256])
+        rows = equal_lights(Adder(LIGHT_BUFFERS[name], None), [1.0], [8, 64, 256])
         # Of channels that differ the table shows colours that lose most: not sRGB's alpha.
         found = {row["lights"]: row["model"] for row in rows if row["channel"] != "a"}
         for count, figure in zip((8, 64, 256), figures, strict=True):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_ENCODINGS
+from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
 from ...encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.pipelines import PIPELINES
@@ -94,8 +94,8 @@ def _scenes() -> list[Row]:
 def _light_buffers() -> list[Row]:
     return [
         _row("light buffer", light.name, light.title, bytes_per_pixel=light.bytes_per_pixel)
-        | {"holds": f"up to {light.limit:.6g}, by {HOW[light.blend]}", "from": light.citation}
-        for light in LIGHT_ENCODINGS.values()
+        | {"holds": f"up to {light.limit:.6g}, by {HOW[light.blend]}", "from": light.encoding.citation}
+        for light in LIGHT_BUFFERS.values()
     ]
 
 

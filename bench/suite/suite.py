@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
-from ...encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
+from ...encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from ...encodings.codec import Codec
-from ...encodings.light_encoding import LightEncoding
+from ...encodings.light_codec import LightCodec
 from ...encodings.storage import STORAGES
 from ...gbuffer.defines.kernels import STAGES
 from ...gbuffer.defines.packings import PACKINGS
@@ -111,7 +111,7 @@ def _passes(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
     width, height = map(int, (SOFTWARE_SIZE if gl.is_software else SIZE).split("x"))
     for pipeline in PIPELINES.values():
         targets = max(pipeline.light_targets, default=1)
-        layout, light = LAYOUTS[pipeline.usual_layout], LIGHT_ENCODINGS["rgba16f"]
+        layout, light = LAYOUTS[pipeline.usual_layout], LIGHT_BUFFERS["rgba16f"]
         plan = Plan((width, height), 1, layout, light, targets, True, 1.0)
         point = sweep.Point(pipeline, plan, Setting(OBJECTS, LIGHTS, request.seed), REPEATS, 1)
         yield Step("passes", point.key(gl), lambda point=point: [sweep.measure(gl, point)])
@@ -133,7 +133,7 @@ def _lights(request: SuiteRequest, gl: Device | None) -> Iterator[Step]:
         yield Step("lights", key, partial(_lit, asked, gl))
 
 
-def _summed(names: list[str], encoding: LightEncoding, added: lights.Sums, gl: Device | None) -> list[Row]:
+def _summed(names: list[str], encoding: LightCodec, added: lights.Sums, gl: Device | None) -> list[Row]:
     return list(lights.sum_rows(names, encoding, added, gl))
 
 

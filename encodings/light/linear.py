@@ -5,7 +5,6 @@ from functools import partial
 from pathlib import Path
 
 from ..light_encoding import LightEncoding
-from ..storage import STORAGES
 from ..vec import Vec4
 
 RANGE = 2.0
@@ -41,7 +40,7 @@ ENCODING = LightEncoding(
     title="RGBA8, linear, scaled to [0, 2]",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="add",
     has_alpha=True,
     limit=RANGE,

@@ -8,7 +8,6 @@ import math
 from pathlib import Path
 
 from ..light_encoding import LightEncoding
-from ..storage import STORAGES
 from ..vec import Vec4, exp2, log2, maximum
 
 LEAST = 1.0 / 255.0
@@ -31,7 +30,7 @@ ENCODING = LightEncoding(
     title="RGBA8, exp2(-L), blended by multiplication",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="multiply",
     has_alpha=True,
     limit=-math.log2(LEAST),

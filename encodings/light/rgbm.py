@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 from ..light_encoding import LightEncoding
-from ..storage import STORAGES
 from ..vec import Vec4, ceil, maximum, minimum
 
 RANGE = 6.0
@@ -52,7 +51,7 @@ ENCODING = LightEncoding(
     title="RGBM in RGBA8, to 6",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="read",
     has_alpha=False,
     limit=RANGE,

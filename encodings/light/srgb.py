@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 from ..light_encoding import LightEncoding
-from ..storage import SRGB8_A8
 from ..vec import Vec4
 
 RANGE = 2.0
@@ -44,7 +43,7 @@ ENCODING = LightEncoding(
     title="sRGB RGBA8, scaled to [0, 2]",
     encode=encode,
     decode=decode,
-    storage=SRGB8_A8,
+    storages=("srgb8_a8",),
     blend="add",
     has_alpha=True,
     limit=RANGE,

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from ...encodings import chromaticity, vec
-from ...encodings.light_encoding import LightEncoding
+from ...encodings.light_codec import LightCodec
 from ...encodings.storage import STORAGES, Storage
 from ..gl.device import Device, bind, read_pixels
 from ..gl.shader import ShaderError, read_shader
@@ -21,13 +21,14 @@ ADD = (moderngl.ONE, moderngl.ONE)
 BLEND_OF = {"add": ADD, "multiply": (moderngl.DST_COLOR, moderngl.ZERO), "read": None}
 
 
-def light_defines(encoding: LightEncoding) -> dict[str, object]:
+def light_defines(codec: LightCodec) -> dict[str, object]:
     """The macros that make `light_code.glsl` speak of an encoding.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
     """
     # Over another range it has another name, and the same functions.
+    encoding = codec.encoding
     prefix, text = encoding.glsl.stem, re.sub(r"\s+", " ", read_shader(encoding.glsl))
     for verb, given in (("encode", "vec4 light"), ("decode", "vec4 e")):
         if not re.search(rf"\bvec4 {prefix}_{verb} ?\( ?vec4\b", text):
@@ -36,6 +37,7 @@ def light_defines(encoding: LightEncoding) -> dict[str, object]:
         "LIGHT_ENCODE": f"{prefix}_encode",
         "LIGHT_DECODE": f"{prefix}_decode",
         "LIGHT_READS": int(encoding.blend == "read"),
+        "LIGHT_CHANNELS": codec.storage.channels,
         **vec.CONSTANTS,
         **chromaticity.CONSTANTS,
         **encoding.constants,
@@ -57,9 +59,9 @@ class LightPasses:
         ShaderError: the encoding's GLSL does not compile.
     """
 
-    def __init__(self, device: Device, encoding: LightEncoding):
-        self._device, self._encoding = device, encoding
-        defines, names = light_defines(encoding), {"LIGHT_ENCODING": encoding.glsl}
+    def __init__(self, device: Device, codec: LightCodec):
+        self._device, self._codec = device, codec
+        defines, names = light_defines(codec), {"LIGHT_ENCODING": codec.glsl}
         with ExitStack() as stack:
             self._add = device.owned(stack, device.fragment_pass("add_light.frag", defines, names))
             self._decode = device.owned(stack, device.fragment_pass("decode_light.frag", defines, names))
@@ -87,13 +89,13 @@ class LightPasses:
         return Sum(light, kept)
 
     def _summed(self, table: moderngl.Texture, size: tuple[int, int], count: int, stack: ExitStack):
-        device, none = self._device, self._encoding.no_light
-        copies = 2 if self._encoding.blend == "read" else 1
-        textures = [device.owned(stack, device.target(size, self._encoding.storage)) for _ in range(copies)]
+        device, none = self._device, self._codec.no_light
+        copies = 2 if self._codec.blend == "read" else 1
+        textures = [device.owned(stack, device.target(size, self._codec.storage)) for _ in range(copies)]
         targets = [device.owned(stack, device.framebuffer([texture])) for texture in textures]
         for target in targets:
             target.clear(none, none, none, none)
-        device.blend(BLEND_OF[self._encoding.blend])
+        device.blend(BLEND_OF[self._codec.blend])
         for i in range(count):
             targets[(i + 1) % copies].use()
             bind(self._add.program, {"lights": table, "light_before": textures[i % copies]})
@@ -116,13 +118,13 @@ class Resolved:
     by_light: np.ndarray
 
 
-def resolved(device: Device, encoding: LightEncoding, colours: moderngl.Texture, samples: int) -> Resolved:
+def resolved(device: Device, codec: LightCodec, colours: moderngl.Texture, samples: int) -> Resolved:
     """Linear light, RGBA32F of several samples a pixel, kept in a light encoding and resolved; row 0 on top.
 
     Raises:
         FormatError: the device cannot render to the encoding's format.
     """
-    defines, names = light_defines(encoding) | {"SAMPLES": samples}, {"LIGHT_ENCODING": encoding.glsl}
+    defines, names = light_defines(codec) | {"SAMPLES": samples}, {"LIGHT_ENCODING": codec.glsl}
     with ExitStack() as stack:
 
         def target(storage: Storage, samples: int = 1) -> moderngl.Texture:
@@ -131,7 +133,7 @@ def resolved(device: Device, encoding: LightEncoding, colours: moderngl.Texture,
         def passed(shader: str) -> moderngl.VertexArray:
             return device.owned(stack, device.fragment_pass(shader, defines, names))
 
-        kept, texels = target(encoding.storage, samples), target(encoding.storage)
+        kept, texels = target(codec.storage, samples), target(codec.storage)
         device.render(passed("encode_samples.frag"), [kept], colours=colours)
         device.resolve(kept, texels)
         results = [target(STORAGES["rgba32f"]) for _ in range(3)]
@@ -154,7 +156,7 @@ def read_samples(device: Device, colours: moderngl.Texture, samples: int) -> np.
     return np.stack(found)
 
 
-def exact_light(device: Device, encoding: LightEncoding, lights, given) -> tuple[np.ndarray, np.ndarray]:
+def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.ndarray, np.ndarray]:
     """Texels of lights, and light of given texels, by a compute shader and without storage.
 
     Args:
@@ -163,8 +165,8 @@ def exact_light(device: Device, encoding: LightEncoding, lights, given) -> tuple
     Returns:
         texels and decoded light, float32 arrays of shape (count, 4).
     """
-    names = {"LIGHT_ENCODING": encoding.glsl}
+    names = {"LIGHT_ENCODING": codec.glsl}
     with ExitStack() as stack:
-        compute: Any = device.owned(stack, device.compute_pass("light_parity.comp", light_defines(encoding), names))
+        compute: Any = device.owned(stack, device.compute_pass("light_parity.comp", light_defines(codec), names))
         texels, decoded = device.computed(compute, [lights, given], 2)
     return texels, decoded

@@ -12,7 +12,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...encodings.light_encoding import LightEncoding
+from ...encodings.light_codec import LightCodec
 from ...encodings.storage import FORMATS, R32F, ROUNDINGS, Storage
 from ..codecs.codec_passes import encoding_defines, levels_of, storage_kind
 from ..codecs.depth_passes import depth_defines
@@ -44,7 +44,7 @@ class Plan:
     size: tuple[int, int]
     samples: int
     layout: Layout
-    light_buffer: LightEncoding
+    light_buffer: LightCodec
     light_targets: int
     shadows: bool
     scale: float

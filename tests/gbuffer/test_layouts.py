@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.depth_codec import DepthCodec
 from normalbench.encodings.position import Camera
@@ -28,7 +28,7 @@ HAIR = KINDS.index("hair")
 
 
 def plan(layout: Layout, **changes) -> Plan:
-    return replace(Plan((160, 120), 1, layout, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0), **changes)
+    return replace(Plan((160, 120), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0), **changes)
 
 
 @cache
@@ -161,7 +161,7 @@ def test_a_pipeline_says_what_a_layout_lacks(gl):
     with pytest.raises(LayoutError, match=r"deferred needs albedo.b, .*, which layout normal_depth does not keep"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
-        light = LIGHT_ENCODINGS["r11g11b10f"]
+        light = LIGHT_BUFFERS["r11g11b10f"]
         check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"], light_targets=1, light_buffer=light))
 
 

@@ -10,7 +10,7 @@ import relighting
 from drawing import FP32, SIZE, apart, covered_by_glass, draw, lamps, scene_of, towards
 from relighting import surfaces
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.frame import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
@@ -22,7 +22,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
     """Pixels that each local light's bounds shade, and the surfaces."""
-    plan = Plan(size, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    plan = Plan(size, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
         r.passes["lights"].queries = []

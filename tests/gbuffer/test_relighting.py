@@ -11,7 +11,7 @@ import relighting
 from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
 from relighting import relight, surfaces
 
-from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.gbuffer.defines.materials import CONSTANTS
 from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
 from normalbench.gbuffer.frame.scene_buffers import sun_matrix
@@ -170,7 +170,7 @@ def test_the_normal_map_tilts_against_its_slopes(gl):
     view = View((0.3, 3.0, 0.2), (0.3, 0.0, 0.0), 40.0, 0.5, 20.0)
     bumpy = Material(bump=0.8, bump_repeat=1.0)
     scene = Scene((Part(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
-    plan = Plan(SIZE, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    plan = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
         seen = surfaces(scene, r.gbuffer())

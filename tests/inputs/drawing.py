@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
 from normalbench.gbuffer.gl.device import read_pixels
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -35,7 +35,7 @@ class Drawn:
 def draw(gl, pipeline: str, scene: Scene, layout=FP32, shadows=False, targets=2, scale=1.0) -> Drawn:
     chosen = PIPELINES[pipeline]
     targets = min(targets, max(chosen.light_targets, default=1))
-    plan = Plan(SIZE, 1, layout, LIGHT_ENCODINGS["rgba32f"], targets, shadows, scale)
+    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, shadows, scale)
     with rendering(gl, chosen, scene, plan) as r:
         r.draw()
         deferred = chosen.has_gbuffer

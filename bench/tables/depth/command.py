@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_ENCODINGS
+from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.depth_codec import REBUILDS, DepthCodec
 from ....encodings.position import Camera
 from ....encodings.storage import DEPTH_STORAGES
@@ -211,7 +211,7 @@ def _scene(folder: Path, cases: Iterable[depth.Case]) -> Seen:
     """
     device = require_device()
     check_folder(folder)
-    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     scene = SCENE.make(Setting())
     with rendering(device, PIPELINES["prepass"], scene, plan) as made:
         made.draw()

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ....encodings.light_encoding import LightEncoding
+from ....encodings.light_codec import LightCodec
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
@@ -44,7 +44,7 @@ class LightsRequest(LightsOptions):
         """The experiments asked for. Raises UsageError."""
         return pick("experiment", self.experiment, {name: name for name in lights.EXPERIMENTS})
 
-    def encodings(self) -> list[LightEncoding]:
+    def encodings(self) -> list[LightCodec]:
         """The light buffers asked for, checked. Raises UsageError."""
         chosen = light_buffers_named(self.light_buffer)
         for encoding in chosen:
@@ -170,14 +170,14 @@ class _Measuring:
                         lambda shot=shot, pipeline=pipeline, power=power: self._image_rows(pipeline, shot, power),
                     )
 
-    def _sum_rows(self, encoding: LightEncoding) -> Iterator[Row]:
+    def _sum_rows(self, encoding: LightCodec) -> Iterator[Row]:
         if self._images and "banding" in self._sums:
             self._write("banding", encoding.name, _bands(encoding, self._added.peaks))
         for row in lights.sum_rows(self._sums, encoding, self._added, self._gl):
             yield row if self._gl else row | {"skipped": self._missing}
 
     def _resolve_rows(self, shot: Shot) -> Iterator[Row]:
-        def seen(encoding: LightEncoding, samples: int, found: Resolved, aliased: Resolved, right: np.ndarray) -> None:
+        def seen(encoding: LightCodec, samples: int, found: Resolved, aliased: Resolved, right: np.ndarray) -> None:
             words = ("resolve", shot.name, encoding.name, f"{samples}x")
             self._write(*words, "code", pictures.picture(found.by_code))
             self._write(*words, "light", pictures.picture(found.by_light))
@@ -188,7 +188,7 @@ class _Measuring:
         yield from lights.resolve_rows(self._gl, shot, self._encodings, self._given, seen)
 
     def _image_rows(self, pipeline: Pipeline, shot: Shot, power: float) -> Iterator[Row]:
-        def seen(encoding: LightEncoding, targets: int, image: np.ndarray, reference: np.ndarray) -> None:
+        def seen(encoding: LightCodec, targets: int, image: np.ndarray, reference: np.ndarray) -> None:
             words = ("image", shot.name, pipeline.name, f"power{power:g}", f"{encoding.name}x{targets}")
             self._write(*words, "final", pictures.picture(image))
             self._write(*words, "difference", pictures.difference(image, reference))
@@ -204,7 +204,7 @@ class _Measuring:
                 pictures.write_png(partial, pixels)
 
 
-def _bands(encoding: LightEncoding, peaks: tuple[float, ...]) -> np.ndarray:
+def _bands(encoding: LightCodec, peaks: tuple[float, ...]) -> np.ndarray:
     """A lamp's falloff for each peak, a strip each, as displayed."""
     strips = [displayed(lights.banded(encoding, peak) / max(peak, 1.0)) for peak in peaks]
     return pictures.strips([strip[::2] for strip in strips], 64)

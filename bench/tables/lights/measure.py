@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.light_encoding import LightEncoding
+from ....encodings.light_codec import LightCodec
 from ....encodings.vec import Vec4
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
@@ -93,7 +93,7 @@ CONDITIONS = (
 )
 
 
-def check_light_twin(encoding: LightEncoding) -> None:
+def check_light_twin(encoding: LightCodec) -> None:
     """Traces a light encoding's Python half. Raises UsageError where it fails; one line with its file."""
     light = Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4)
     try:
@@ -105,12 +105,12 @@ def check_light_twin(encoding: LightEncoding) -> None:
         raise UsageError(f"{place}: {type(error).__name__}: {error}") from error
 
 
-def _row(experiment: str, encoding: LightEncoding, device: Device | None, **more: Any) -> Row:
+def _row(experiment: str, encoding: LightCodec, device: Device | None, **more: Any) -> Row:
     described = {"experiment": experiment, "light_buffer": encoding.name}
     return dict.fromkeys(COLUMNS) | described | {"device": device.renderer if device else None} | more
 
 
-def sum_rows(names: list[str], encoding: LightEncoding, sums: Sums, device: Device | None) -> Iterator[Row]:
+def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device | None) -> Iterator[Row]:
     """Rows of some of SUM_EXPERIMENTS; where the device cannot measure, the model's alone and the reason."""
     try:
         with Adder(encoding, device) as adder:
@@ -126,7 +126,7 @@ def sum_rows(names: list[str], encoding: LightEncoding, sums: Sums, device: Devi
 
 
 def resolve_rows(
-    device: Device, shot: Shot, encodings: list[LightEncoding], given: dict[int, list[int]], seen: Callable[..., None]
+    device: Device, shot: Shot, encodings: list[LightCodec], given: dict[int, list[int]], seen: Callable[..., None]
 ) -> Iterator[Row]:
     """Rows of `resolve`.
 
@@ -158,7 +158,7 @@ def image_rows(
     pipeline: Pipeline,
     shot: Shot,
     power: float,
-    encodings: list[LightEncoding],
+    encodings: list[LightCodec],
     targets: list[int],
     seen: Callable[..., None],
 ) -> Iterator[Row]:
@@ -193,7 +193,7 @@ def sorted_rows(rows: list[Row]) -> list[Row]:
     )
 
 
-def banded(encoding: LightEncoding, peak: float) -> np.ndarray:
+def banded(encoding: LightCodec, peak: float) -> np.ndarray:
     """A lamp's falloff as a light buffer keeps it by the model, (width, 3)."""
     with Adder(encoding, None) as adder:
         return adder.model(gradient(peak)[None]).light[:, :3]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-from ....encodings.catalogue import LIGHT_ENCODINGS
+from ....encodings.catalogue import LIGHT_BUFFERS
 from ....gbuffer.frame.frame import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout, LayoutError, read_layout
@@ -108,7 +108,7 @@ def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: li
         own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
         if not pipeline.has_gbuffer:
             # Neither layouts nor light buffers reach it: one row for all of them.
-            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_ENCODINGS["rgba32f"], light_targets=1)
+            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
         elif len(pipeline.light_targets) == 1:
             own = replace(own, light_targets=pipeline.light_targets[0])
         try:

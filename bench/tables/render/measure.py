@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_ENCODINGS
+from ....encodings.catalogue import LIGHT_BUFFERS
 from ....gbuffer.frame.frame import Plan
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
@@ -71,7 +71,7 @@ class Case:
         exact = replace(
             self.plan,
             layout=LAYOUTS["fp32"],
-            light_buffer=LIGHT_ENCODINGS["rgba32f"],
+            light_buffer=LIGHT_BUFFERS["rgba32f"],
             light_targets=targets,
             scale=1.0,
         )

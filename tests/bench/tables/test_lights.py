@@ -24,7 +24,7 @@ from normalbench.bench.tables.lights.sums import (
     steps_apart,
 )
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.frame import Plan
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -32,13 +32,13 @@ from normalbench.gbuffer.render import displayed, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
-EVERY = sorted(LIGHT_ENCODINGS)
+EVERY = sorted(LIGHT_BUFFERS)
 (LINEAR_1,) = light_buffers_named("linear:1")
 LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
 
 
 def by_model(name: str) -> Adder:
-    return Adder(LIGHT_ENCODINGS[name], None)
+    return Adder(LIGHT_BUFFERS[name], None)
 
 
 # Known figures: N equal lights that sum to S, stored with rounding at every blend; to the digits given.
@@ -64,7 +64,7 @@ def test_the_model_gives_the_accumulation_table(name, channels, total, count, va
 @pytest.mark.parametrize("name", EVERY)
 def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
     """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         rounding = adder.rounding
         assert rounding
@@ -83,7 +83,7 @@ def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
 @pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
 def test_random_lights_add_up_to_the_same_texels(gl, name):
     """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         light = coloured_lights(256, 1.0, 0)
         model = adder.model(light, None, ROUNDINGS[adder.rounding.name])
@@ -179,7 +179,7 @@ def test_a_range_may_be_given_and_both_languages_know_it(gl):
 def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
     """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
     expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
-    for name, encoding in LIGHT_ENCODINGS.items():
+    for name, encoding in LIGHT_BUFFERS.items():
         with Adder(encoding, gl) as adder:
             for row in chromaticity(adder) if encoding.has_alpha else ():
                 for prefix in ("", "gl_"):
@@ -191,7 +191,7 @@ def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
 
 
 def plan(name: str, targets: int, samples: int = 1) -> Plan:
-    return Plan((160, 120), samples, FP32, LIGHT_ENCODINGS[name], targets, True, 1.0)
+    return Plan((160, 120), samples, FP32, LIGHT_BUFFERS[name], targets, True, 1.0)
 
 
 def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
@@ -208,7 +208,7 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
     most = max(PIPELINES[pipeline].light_targets)
     reference = displayed(frame(gl, pipeline, plan("rgba32f", most, samples)))
     several = ("r11g11b10f", "srgb", "log", "nao32")  # of each blending
-    for encoding in LIGHT_ENCODINGS.values() if samples == 1 else map(LIGHT_ENCODINGS.get, several):
+    for encoding in LIGHT_BUFFERS.values() if samples == 1 else map(LIGHT_BUFFERS.get, several):
         for targets in targets_of(PIPELINES[pipeline], encoding, [1, 2]):
             image = frame(gl, pipeline, plan(encoding.name, targets, samples))
             assert np.isfinite(image).all(), f"{encoding.name}x{targets}"
@@ -227,7 +227,7 @@ def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, f
     """Seed 003's pictures as figures: below the range, of the image, at specular powers 1, 47 and 256."""
     lit = Lit(gl, PIPELINES["prepass"], with_power(Shot("gloss", few_lights, (320, 240), 0), power))
     held = {
-        (name, targets): lit.measure(LIGHT_ENCODINGS[name], targets)[0]["held_psnr_db"]
+        (name, targets): lit.measure(LIGHT_BUFFERS[name], targets)[0]["held_psnr_db"]
         for name in ("linear", "srgb")
         for targets in (1, 2)
     }
@@ -238,13 +238,13 @@ def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, f
 @pytest.fixture(scope="module")
 def resolves(gl):
     shot = Shot("objects", SCENES["objects"].make(Setting(objects=60)), (160, 120), 0)
-    return {n: Resolves(gl, shot, list(LIGHT_ENCODINGS.values()), n) for n in {1, gl.given_samples(4)}}
+    return {n: Resolves(gl, shot, list(LIGHT_BUFFERS.values()), n) for n in {1, gl.given_samples(4)}}
 
 
 @pytest.mark.parametrize("name", EVERY)
 def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
     """The hardware averages texels: the model of that gives its picture, where the device stores as the model does."""
-    encoding, samples = LIGHT_ENCODINGS[name], gl.given_samples(4)
+    encoding, samples = LIGHT_BUFFERS[name], gl.given_samples(4)
     made, single = resolves[samples], resolves[1]
     found = made.compared(made.device(encoding), single.device(encoding))
     model = made.compared(made.model(encoding), single.model(encoding))
@@ -262,7 +262,7 @@ def test_codes_that_do_not_average_show_it_at_edges(gl, resolves):
     made = resolves[gl.given_samples(4)]
     wrong = {
         name: made.compared(made.device(encoding), resolves[1].device(encoding))["wrong_percent"]
-        for name, encoding in LIGHT_ENCODINGS.items()
+        for name, encoding in LIGHT_BUFFERS.items()
     }
     assert wrong["nao32"] > wrong["rgbm"] > wrong["srgb"] and wrong["rgba16f"] == 0, wrong
     assert wrong["rgb9e5"] > wrong["nao32"], wrong

@@ -11,7 +11,7 @@ from PIL import Image
 from normalbench.bench.metrics import images as image_metrics
 from normalbench.bench.tables.render import measure as rendering
 from normalbench.bench.tables.render.command import RenderRequest
-from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codec import Codec
 from normalbench.encodings.storage import STORAGES
 from normalbench.gbuffer.frame.frame import Plan
@@ -193,7 +193,7 @@ def test_samples_smooth_edges(gl, pipeline):
     """At 4 samples the picture is nearer to one of 4 times the pixels than at 1 sample."""
     chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
     targets = max(chosen.light_targets, default=1)
-    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], targets, False, 1.0)
+    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], targets, False, 1.0)
 
     def image(plan: Plan) -> np.ndarray:
         with render(gl, chosen, scene, plan) as made:
@@ -212,7 +212,7 @@ def test_every_codec_gives_a_finite_image(gl, pipeline):
     """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""
     scene = SCENES["room"].make(Setting(lights=2))
     chosen = PIPELINES[pipeline]
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], max(chosen.light_targets), False, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(chosen.light_targets), False, 1.0)
     worst = {}
     with render(gl, chosen, scene, plan) as made:
         made.draw()
@@ -288,7 +288,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
 
 def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
     """Values through a float target come back as they were, after a frame that blends and tests depth."""
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
     with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
         made.draw()
     values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)

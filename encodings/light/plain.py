@@ -1,9 +1,9 @@
 """Light as it is, in a float format."""
 
+import math
 from pathlib import Path
 
 from ..light_encoding import LightEncoding
-from ..storage import STORAGES
 from ..vec import Vec4
 
 
@@ -18,16 +18,17 @@ def decode(e: Vec4) -> Vec4:
 
 
 ENCODING = LightEncoding(
-    name="rgba32f",
-    title="RGBA32F: the reference",
+    name="plain",
+    title="light as it is",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba32f"],
+    storages=("rgba32f", "rgba16f", "r11g11b10f"),
     blend="add",
     has_alpha=True,
-    limit=3.4028234663852886e38,
+    limit=math.inf,
     citation="the format itself",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(0, 0),
     ulps_reason="nothing is computed",
+    is_plain=True,
 )
