@@ -55,3 +55,11 @@ class DepthEncoding:
     signed: bool = False
     own_units: bool = False
     constants: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        return (
+            f"float {self.name}_encode_depth(float depth, float near, float far)",
+            f"float {self.name}_decode_depth(float number, float near, float far)",
+        )

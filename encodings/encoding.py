@@ -103,6 +103,15 @@ class Encoding:
         """What the names of its GLSL functions begin with."""
         return self.functions or self.name
 
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        code = f"vec{self.components + self.sign_bits}"
+        return (
+            f"{code} {self.prefix}_encode(vec3 n, vec3 view)",
+            f"vec3 {self.prefix}_decode({code} e, vec3 view)",
+        )
+
     @cached_property
     def fingerprint(self) -> str:
         """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""

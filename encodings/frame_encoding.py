@@ -51,3 +51,13 @@ class FrameEncoding:
     ulps_reason: str
     settle: Callable[[Frame, Vec4], Vec4] | None = None
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def signatures(self) -> tuple[str, ...]:
+        """What its GLSL file defines."""
+        settle = (f"vec4 {self.name}_settle(Frame frame, vec4 stored)",) if self.settle else ()
+        return (
+            f"vec4 {self.name}_encode(Frame frame, float least)",
+            f"Frame {self.name}_decode(vec4 e, float least)",
+            *settle,
+        )

@@ -58,3 +58,13 @@ class LightEncoding:
     def no_light(self) -> float:
         """What every channel of a texel without light holds: what blending leaves another as it is by."""
         return 1.0 if self.blend == "multiply" else 0.0
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with. Over another range they are the same functions."""
+        return self.glsl.stem
+
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        return f"vec4 {self.prefix}_encode(vec4 light)", f"vec4 {self.prefix}_decode(vec4 e)"

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -14,7 +12,7 @@ from ...encodings import chromaticity, vec
 from ...encodings.light_codec import LightCodec
 from ...encodings.storage import STORAGES, Storage
 from ..gl.device import Device, bind, read_pixels
-from ..gl.shader import ShaderError, read_shader
+from .harness import Passes, Textures, check_functions, exact
 
 ADD = (moderngl.ONE, moderngl.ONE)
 # How the light buffer's code blends; one that is read is overwritten.
@@ -27,15 +25,11 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
     """
-    # Over another range it has another name, and the same functions.
     encoding = codec.encoding
-    prefix, text = encoding.glsl.stem, re.sub(r"\s+", " ", read_shader(encoding.glsl))
-    for verb, given in (("encode", "vec4 light"), ("decode", "vec4 e")):
-        if not re.search(rf"\bvec4 {prefix}_{verb} ?\( ?vec4\b", text):
-            raise ShaderError(f"{encoding.glsl}: no function vec4 {prefix}_{verb}({given})")
+    check_functions(encoding.glsl, encoding.signatures)
     return {
-        "LIGHT_ENCODE": f"{prefix}_encode",
-        "LIGHT_DECODE": f"{prefix}_decode",
+        "LIGHT_ENCODE": f"{encoding.prefix}_encode",
+        "LIGHT_DECODE": f"{encoding.prefix}_decode",
         "LIGHT_READS": int(encoding.blend == "read"),
         "LIGHT_CHANNELS": codec.storage.channels,
         **vec.CONSTANTS,
@@ -52,26 +46,17 @@ class Sum:
     texels: np.ndarray
 
 
-class LightPasses:
-    """A light encoding on a GL device; a context manager that releases what it holds there.
+class LightPasses(Passes):
+    """A light codec on a GL device; a context manager that releases what it holds there.
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
     """
 
     def __init__(self, device: Device, codec: LightCodec):
-        self._device, self._codec = device, codec
-        defines, names = light_defines(codec), {"LIGHT_ENCODING": codec.glsl}
-        with ExitStack() as stack:
-            self._add = device.owned(stack, device.fragment_pass("add_light.frag", defines, names))
-            self._decode = device.owned(stack, device.fragment_pass("decode_light.frag", defines, names))
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> LightPasses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
+        self._codec = codec
+        shaders, names = ("add_light.frag", "decode_light.frag"), {"LIGHT_ENCODING": codec.glsl}
+        super().__init__(device, shaders, light_defines(codec), names, {"texels": codec.storage})
 
     def accumulate(self, lights: np.ndarray) -> Sum:
         """Lights, float32 of shape (count, width, 4), added one by one in their order; each column is a pixel.
@@ -79,30 +64,25 @@ class LightPasses:
         Raises:
             FormatError: the device cannot render to the encoding's format.
         """
-        device, size = self._device, (lights.shape[1], 1)
-        with ExitStack() as stack:
-            table = device.owned(stack, device.upload(lights))
-            texels = device.owned(stack, self._summed(table, size, len(lights), stack))
-            results = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
-            device.render(self._decode, results, texels=texels)
-            light, kept = (read_pixels(result)[0] for result in results)
-        return Sum(light, kept)
+        light, kept = self._through([STORAGES["rgba32f"]] * 2, lights=lights)
+        return Sum(light[0], kept[0])
 
-    def _summed(self, table: moderngl.Texture, size: tuple[int, int], count: int, stack: ExitStack):
+    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+        width, count = sources["lights"].size
         device, none = self._device, self._codec.no_light
         copies = 2 if self._codec.blend == "read" else 1
-        textures = [device.owned(stack, device.target(size, self._codec.storage)) for _ in range(copies)]
+        textures = [device.owned(stack, device.target((width, 1), self._codec.storage)) for _ in range(copies)]
         targets = [device.owned(stack, device.framebuffer([texture])) for texture in textures]
         for target in targets:
             target.clear(none, none, none, none)
         device.blend(BLEND_OF[self._codec.blend])
         for i in range(count):
             targets[(i + 1) % copies].use()
-            bind(self._add.program, {"lights": table, "light_before": textures[i % copies]})
-            self._add.program["light"] = i
-            self._add.render(moderngl.TRIANGLES, vertices=3)
+            bind(self._encode.program, {**sources, "light_before": textures[i % copies]})
+            self._encode.program["light"] = i
+            self._encode.render(moderngl.TRIANGLES, vertices=3)
         device.idle.use()
-        return textures[count % copies]
+        return {"texels": textures[count % copies]}
 
 
 @dataclass(frozen=True)
@@ -165,8 +145,6 @@ def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.nd
     Returns:
         texels and decoded light, float32 arrays of shape (count, 4).
     """
-    names = {"LIGHT_ENCODING": codec.glsl}
-    with ExitStack() as stack:
-        compute: Any = device.owned(stack, device.compute_pass("light_parity.comp", light_defines(codec), names))
-        texels, decoded = device.computed(compute, [lights, given], 2)
+    defines, names = light_defines(codec), {"LIGHT_ENCODING": codec.glsl}
+    texels, decoded = exact(device, "light_parity.comp", defines, names, [lights, given], 2)
     return texels, decoded
