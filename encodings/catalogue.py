@@ -9,12 +9,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from importlib import import_module
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any
 
 from .depth_encoding import DepthEncoding
 from .encoding import Encoding
 from .errors import CatalogueError
 from .frame_encoding import FrameEncoding
+from .kind import DEPTH, FRAME, LIGHT, NORMAL, AnyEncoding, Kind
 from .light_codec import LightCodec
 from .light_encoding import LightEncoding
 from .storage import LIGHT_STORAGES
@@ -54,21 +55,19 @@ DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_windo
 
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "qtangent")
 
-E = TypeVar("E", Encoding, LightEncoding, DepthEncoding, FrameEncoding)
+
+def _load(kind: Kind, names: tuple[str, ...]) -> Mapping[str, Any]:
+    return MappingProxyType({name: _loaded(kind, name) for name in names})
 
 
-def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> Mapping[str, E]:
-    return MappingProxyType({name: _loaded(folder, name, kind) for name in names})
-
-
-def _loaded(folder: str, name: str, kind: type[E]) -> E:
-    place = f"encodings/{folder}/{name}.py"
+def _loaded(kind: Kind, name: str) -> Any:
+    place = f"encodings/{kind.folder}/{name}.py"
     try:
-        encoding = import_module(f".{folder}.{name}", __package__).ENCODING
+        encoding = import_module(f".{kind.folder}.{name}", __package__).ENCODING
     except Exception as error:  # whatever a user's own file raises
         raise CatalogueError(f"{place}: {type(error).__name__}: {error}") from error
-    if not isinstance(encoding, kind):
-        raise CatalogueError(f"{place}: its ENCODING is no {kind.__name__}")
+    if not isinstance(encoding, kind.encoding):
+        raise CatalogueError(f"{place}: its ENCODING is no {kind.encoding.__name__}")
     if encoding.name != name:
         raise CatalogueError(f"{place}: its ENCODING is named {encoding.name!r}, not {name!r}")
     return encoding
@@ -83,10 +82,13 @@ def _with_precise(pairs: Mapping[str, Encoding]) -> Mapping[str, Encoding]:
     return MappingProxyType({**pairs, **{name: _precise(name, pairs[pair]) for name, pair in PRECISE.items()}})
 
 
-ENCODINGS: Mapping[str, Encoding] = _with_precise(_load("normals", PAIRS, Encoding))
-LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
-DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
-FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)
+ENCODINGS: Mapping[str, Encoding] = _with_precise(_load(NORMAL, PAIRS))
+LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load(LIGHT, LIGHT_NAMES)
+DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load(DEPTH, DEPTH_NAMES)
+FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load(FRAME, FRAME_NAMES)
+BY_KIND: Mapping[Kind, Mapping[str, AnyEncoding]] = MappingProxyType(
+    {NORMAL: ENCODINGS, DEPTH: DEPTH_ENCODINGS, FRAME: FRAME_ENCODINGS, LIGHT: LIGHT_ENCODINGS}
+)
 
 # What `--light-buffer` names: each light encoding in each storage that it is made for.
 LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(

@@ -32,9 +32,29 @@ class DepthCodec:
         return f"{self.encoding.name}/{self.storage.name}"
 
     @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        return (
+            None if self.storage.is_signed or not self.encoding.signed else f"{self.storage.title}: no room for a sign"
+        )
+
+    @property
     def fits(self) -> bool:
-        """Whether the storage has room for the sign that the encoding keeps."""
-        return self.storage.is_signed or not self.encoding.signed
+        """Whether the storage can hold what the encoding makes."""
+        return self.misfit is None
+
+    @property
+    def bits(self) -> int:
+        """The bits it occupies."""
+        return self.storage.bits
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its number in [0, 1], or in [-1, 1] under a sign, can be."""
+        if self.storage.format.kind != "float":
+            return 2**self.bits
+        both = self.storage.format.count(0)
+        return both if self.encoding.signed else (both + 1) // 2
 
     @property
     def is_window(self) -> bool:
@@ -45,7 +65,7 @@ class DepthCodec:
         """The far plane as the encoding is given it: at 1 where the storage holds the depth in the scene's units."""
         return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
 
-    def numbers(self, depth, near, far):
+    def stored(self, depth, near, far):
         """The numbers of depths (float32, any shape) as they come back from the storage.
 
         Args:
@@ -58,6 +78,10 @@ class DepthCodec:
     def depths(self, number, near, far):
         """The depths of numbers, under the sign that was kept."""
         return self.encoding.decode(number, near, self.far(far))
+
+    def round_trip(self, depth, near, far):
+        """Depths encoded, stored and decoded; see `stored`."""
+        return self.depths(self.stored(depth, near, far), near, far)
 
     def furthest(self, depth: np.ndarray, camera: Camera, with_arithmetic: bool = True) -> np.ndarray:
         """How far each depth may move on its way through the storage, at worst.

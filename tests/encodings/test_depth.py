@@ -272,7 +272,7 @@ def numbers_by_jax(codec: DepthCodec, camera: Camera, depths: np.ndarray) -> np.
     near, far, size = jnp.float32(camera.near), jnp.float32(camera.far), 2**13
     # Always so many at once: JAX compiles each operation for each shape.
     parts = np.pad(depths, (0, -len(depths) % size)).reshape(-1, size)
-    return np.concatenate([np.asarray(codec.numbers(jnp.asarray(part), near, far)) for part in parts])[: len(depths)]
+    return np.concatenate([np.asarray(codec.stored(jnp.asarray(part), near, far)) for part in parts])[: len(depths)]
 
 
 @pytest.mark.parametrize("name", DEPTH_STORAGES)

@@ -79,8 +79,8 @@ class DepthRequest(DepthOptions):
             names = ",".join(encoding.storages) if self.storage is None else self.storage
             for storage in pick("depth storage", names, DEPTH_STORAGES):
                 codec = DepthCodec(encoding, storage)
-                if not codec.fits:
-                    complaints.append(f"{codec.name}: {storage.title}: no room for a sign")
+                if codec.misfit:
+                    complaints.append(f"{codec.name}: {codec.misfit}")
                     continue
                 known = depth.ways(codec)
                 chosen = known[:1] if asked is None else [way for way in asked if way in known]

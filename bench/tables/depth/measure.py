@@ -124,7 +124,7 @@ def _by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt
 
     # Not compiled as a whole: for so few points that would take longer than all else.
     def rebuilt(depths: np.ndarray, right: np.ndarray, up: np.ndarray):
-        number = codec.numbers(jnp.asarray(depths), seen.near, seen.far)
+        number = codec.stored(jnp.asarray(depths), seen.near, seen.far)
         position = REBUILDS[case.rebuilt].position(codec, number, Vec2(jnp.asarray(right), jnp.asarray(up)), seen)
         return np.stack([np.asarray(c) for c in position], axis=-1), number, codec.depths(number, seen.near, seen.far)
 
