@@ -11,14 +11,14 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from .depth_encoding import DepthEncoding
-from .encoding import Encoding
+from .codecs.depth_encoding import DepthEncoding
+from .codecs.encoding import Encoding
+from .codecs.frame_encoding import FrameEncoding
+from .codecs.kind import DEPTH, FRAME, LIGHT, NORMAL, AnyEncoding, Kind
+from .codecs.light_codec import LightCodec
+from .codecs.light_encoding import LightEncoding
 from .errors import CatalogueError
-from .frame_encoding import FrameEncoding
-from .kind import DEPTH, FRAME, LIGHT, NORMAL, AnyEncoding, Kind
-from .light_codec import LightCodec
-from .light_encoding import LightEncoding
-from .storage import LIGHT_STORAGES
+from .storages.storage import LIGHT_STORAGES
 
 PAIRS = (
     "xyz",

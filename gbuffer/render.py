@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ..encodings.storage import FORMATS, R32F, SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
+from ..encodings.storages.rounding import SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
+from ..encodings.storages.storage import FORMATS, R32F
 from .frame.frame import Frame, Plan
 from .gl.device import Device, read_pixels
 from .layouts.layout import DEPTH_STENCIL_BYTES, LayoutError

@@ -22,7 +22,8 @@ from normalbench.encodings.catalogue import (
     LIGHT_ENCODINGS,
     NAMES,
 )
-from normalbench.encodings.storage import DEPTH_STORAGES, FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -147,7 +148,7 @@ def test_the_list_command_knows_everything_there_is():
 
 
 def test_rows_have_the_columns_of_the_table():
-    from normalbench.encodings.codec import Codec
+    from normalbench.encodings.codecs.codec import Codec
 
     case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rg8"]), normal_sets.axes(), "jax")
     assert tuple(quality.measure(case)) == quality.COLUMNS

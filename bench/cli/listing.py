@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
-from ...encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
+from ...encodings.storages.depth_storage import DEPTH_STORAGES
+from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.pipelines import PIPELINES
 from ...gbuffer.scenes.catalogue import SCENES

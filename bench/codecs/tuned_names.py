@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.encoding import Encoding
+from ...encodings.codecs.encoding import Encoding
 from ..output.errors import UsageError
 
 MARK, TABLE = ":", "table"

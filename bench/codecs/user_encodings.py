@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.encoding import Encoding
+from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..output.errors import UsageError, pick
 from . import tuned_names

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import jax
 
-from ...encodings.storage import STORAGES
+from ...encodings.storages.storage import STORAGES
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 

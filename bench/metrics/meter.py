@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ...encodings.codec import Codec
+from ...encodings.codecs.codec import Codec
 from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
 from ..machine.cores import on_all_cores

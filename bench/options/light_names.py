@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from ...encodings.catalogue import LIGHT_BUFFERS
-from ...encodings.light_codec import LightCodec
+from ...encodings.codecs.light_codec import LightCodec
 from ..output.errors import UsageError, pick
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.storage import STORAGES
 from ...reports.charts import drawings
 from ...reports.charts.pareto import Panel, Point, decibels
 from ...reports.page import embedded, markdown, page

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ...encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
-from ...encodings.codec import Codec
-from ...encodings.light_codec import LightCodec
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.light_codec import LightCodec
+from ...encodings.storages.storage import STORAGES
 from ...gbuffer.defines.kernels import STAGES
 from ...gbuffer.defines.packings import PACKINGS
 from ...gbuffer.frame.frame import Plan

@@ -22,8 +22,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.storage import STORAGES
 from ...encodings.vec import Vec3
 from ..machine.cores import cores, on_all_cores
 from ..machine.doctor import machine

@@ -7,7 +7,7 @@ taken for that code.
 import math
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4, exp2, log2, maximum
 
 LEAST = 1.0 / 255.0

@@ -5,7 +5,7 @@ Le counts half stops from 2^-63.5 up: its whole part in the third channel, the r
 
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
+from ..codecs.light_encoding import LightEncoding
 from ..vec import TINY, Vec3, Vec4, exp2, floor, log2, maximum, minimum, select
 
 # Rows are what red, green and blue contribute to (X', Y, XYZ'); the second matrix is the inverse, to float32's digits

@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4, ceil, maximum, minimum
 
 RANGE = 6.0

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.codec import Codec
-from ...encodings.encoding import Encoding
-from ...encodings.storage import R32F, ROUNDINGS, STORAGES, Storage
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
 from ..gl.device import Device
 from .harness import Passes, check_functions, exact
 

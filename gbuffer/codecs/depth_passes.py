@@ -11,10 +11,11 @@ import moderngl
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.depth_codec import DepthCodec
-from ...encodings.depth_encoding import DepthEncoding
+from ...encodings.codecs.depth_codec import DepthCodec
+from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.position import Camera
-from ...encodings.storage import FORMATS, DepthStorage, Storage, store_depth
+from ...encodings.storages.depth_storage import DepthStorage, store_depth
+from ...encodings.storages.storage import FORMATS, Storage
 from ...encodings.vec import jnp
 from ..gl.device import Device, read_pixels
 from ..gl.raw import DepthBuffer

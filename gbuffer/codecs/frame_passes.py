@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.frame_codec import FrameCodec
-from ...encodings.frame_encoding import FrameEncoding
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.frame_codec import FrameCodec
+from ...encodings.codecs.frame_encoding import FrameEncoding
+from ...encodings.storages.storage import STORAGES
 from ..gl.device import Device
 from .codec_passes import storage_defines
 from .harness import Passes, check_functions, exact

@@ -11,7 +11,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...encodings.storage import Storage
+from ...encodings.storages.storage import Storage
 from ..gl.device import Device, bind, read_pixels
 from ..gl.shader import ShaderError, read_shader
 

@@ -9,8 +9,8 @@ import moderngl
 import numpy as np
 
 from ...encodings import chromaticity, vec
-from ...encodings.light_codec import LightCodec
-from ...encodings.storage import STORAGES, Storage
+from ...encodings.codecs.light_codec import LightCodec
+from ...encodings.storages.storage import STORAGES, Storage
 from ..gl.device import Device, bind, read_pixels
 from .harness import Passes, Textures, check_functions, exact
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...encodings.encoding import Encoding
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import STORAGES
 from ..codecs.codec_passes import encoding_defines
 from ..gl.shader import SHADERS, Source
 

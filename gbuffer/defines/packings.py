@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import Any, Protocol
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.storage import STORAGES, Storage
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.storage import STORAGES, Storage
 from ..codecs.codec_passes import storage_defines
 from ..codecs.depth_passes import depth_defines
 from ..frame.frame import layout_defines

@@ -12,8 +12,8 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...encodings.light_codec import LightCodec
-from ...encodings.storage import FORMATS, R32F, ROUNDINGS, Storage
+from ...encodings.codecs.light_codec import LightCodec
+from ...encodings.storages.storage import FORMATS, R32F, ROUNDINGS, Storage
 from ..codecs.codec_passes import encoding_defines, levels_of, storage_kind
 from ..codecs.depth_passes import depth_defines
 from ..codecs.light_passes import light_defines

@@ -12,7 +12,8 @@ from typing import Any, Protocol, TypeVar
 import moderngl
 import numpy as np
 
-from ...encodings.storage import STORAGES, Storage, store_texel
+from ...encodings.storages.rounding import store_texel
+from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import jnp
 from .raw import DepthBuffer, samples_of
 from .shader import ShaderError, Source

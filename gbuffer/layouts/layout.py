@@ -19,10 +19,10 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.depth_encoding import DepthEncoding
-from ...encodings.encoding import Encoding
-from ...encodings.storage import FORMATS, ROUNDINGS, Storage
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.depth_encoding import DepthEncoding
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import moderngl
 
-from ...encodings.storage import FORMATS
+from ...encodings.storages.storage import FORMATS
 from ..codecs.light_passes import ADD
 from ..frame.frame import SHADOW_SIZE, Frame
 from ..gl import raw

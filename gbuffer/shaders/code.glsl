@@ -2,7 +2,7 @@
 // go to the normal's target and SIGN_BITS (0 or 1) to the depth's sign. LEVELS says how many values each number has, 0
 // for one like any other; PRECISE is 1 where of the codes around the nearest is stored.
 #include "../../encodings/vec.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 #include ENCODING
 
 vec4 widen(vec2 code) { return vec4(code, 0.0, 0.0); }

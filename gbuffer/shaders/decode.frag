@@ -1,7 +1,7 @@
 #version 430
 // Reads the render target under test back into normals, and the numbers its texels stand for.
 #include "code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D texels;
 uniform sampler2D signed_depths;

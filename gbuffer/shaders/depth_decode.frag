@@ -2,7 +2,7 @@
 // Reads the storage under test back: the number, the depth, and the position by the way that was asked for.
 #include "depth_code.glsl"
 #include "../../encodings/position.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D points;  // place on the screen, depth
 uniform sampler2D texels;

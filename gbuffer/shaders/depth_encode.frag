@@ -2,7 +2,7 @@
 // Encodes a texture of depths into the storage under test: HOME 0 packs into the 8-bit channels of the target from the bit
 // FIRST on, 1 writes a channel of its own, 2 the depth buffer.
 #include "depth_code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D points;  // place on the screen, depth
 uniform vec2 range;        // near, far

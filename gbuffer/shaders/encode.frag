@@ -1,7 +1,7 @@
 #version 430
 // Encodes a texture of normals into the render target under test.
 #include "code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D normals;
 uniform sampler2D views;

@@ -1,7 +1,7 @@
 #version 430
 // Reads the render target under test back into tangent frames.
 #include "frame_code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D texels;
 layout(location = 0) out vec4 normal;  // and the hand

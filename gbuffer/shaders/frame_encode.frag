@@ -1,7 +1,7 @@
 #version 430
 // Encodes textures of tangent frames into the render target under test.
 #include "frame_code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 uniform sampler2D normals;  // normal, hand
 uniform sampler2D tangents;

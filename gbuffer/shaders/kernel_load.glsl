@@ -1,5 +1,5 @@
 // A texel to the numbers of a code, as its storage has them.
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 MADE kernel_operation(GIVEN given, BESIDE beside) {
     vec4 texel = vec4(0.0);

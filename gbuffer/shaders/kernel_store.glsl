@@ -1,5 +1,5 @@
 // The numbers of a code to a texel, as its storage has them.
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 MADE kernel_operation(GIVEN given, BESIDE beside) {
     vec4 code = vec4(0.0);

@@ -4,7 +4,7 @@
 // scales and bits, and whether the shader rounds (one more than storage.glsl's ways). NORMAL_LEVELS says how many values
 // each of the normal's numbers has, 0 for one like any other. DEPTH_RANGE is the near and the far plane.
 #include "depth_code.glsl"
-#include "../../encodings/storage.glsl"
+#include "../../encodings/storages/storage.glsl"
 
 const int word_component[] = WORD_COMPONENT, word_target[] = WORD_TARGET, word_first[] = WORD_FIRST;
 const int word_bits[] = WORD_BITS, target_kind[] = TARGET_KIND, target_rounds[] = TARGET_ROUNDS;

@@ -13,10 +13,10 @@ from mutants import swapped_calls
 from neighbours import around
 
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
+from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.frame.octahedral_angle import SEAM
-from normalbench.encodings.frame_codec import FrameCodec
 from normalbench.encodings.rotation import Frame, frame_of, frame_of_quaternion, quaternion_of
-from normalbench.encodings.storage import FRAME_STORAGES
+from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.encodings.vec import Vec3, Vec4
 from normalbench.gbuffer.codecs.frame_passes import FramePasses, exact_frames
 from normalbench.gbuffer.gl import shader

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from normalbench.encodings.catalogue import BY_KIND, LIGHT_BUFFERS, PRECISE
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.depth_codec import DepthCodec
-from normalbench.encodings.frame_codec import FrameCodec
-from normalbench.encodings.kind import DEPTH, FRAME, KINDS, LIGHT, NORMAL
-from normalbench.encodings.light_codec import LightCodec
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, KINDS, LIGHT, NORMAL
+from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.rotation import frame_of
-from normalbench.encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import FRAME_STORAGES, LIGHT_STORAGES, STORAGES
 from normalbench.encodings.vec import Vec3, Vec4
 
 ROOT = Path(__file__).parents[2]
@@ -87,3 +88,12 @@ def test_a_codec_of_any_kind_is_asked_the_same(kind):
 def planes(made) -> list:
     """The arrays of a number, a vector or a tangent frame."""
     return [leaf for part in made for leaf in planes(part)] if isinstance(made, tuple) else [made]
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({path.parent for path in (ROOT / "encodings").rglob("*.py")}), ids=lambda path: path.name
+)
+def test_a_folder_can_be_taken_in_at_a_glance(folder):
+    """A pair counts as one; the encodings of normals are the exception."""
+    things = {path.stem for path in folder.iterdir() if path.name != "__pycache__"}
+    assert len(things) <= 14 or folder.name == NORMAL.folder, f"{folder.name} holds {len(things)} things"

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.depth_codec import DepthCodec
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.depth_codec import DepthCodec
 from normalbench.encodings.position import Camera
-from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
 from normalbench.gbuffer.frame.frame import Plan
 from normalbench.gbuffer.gl.device import device

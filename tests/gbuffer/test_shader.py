@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
 from normalbench.gbuffer.gl.shader import ShaderError, Source, glsl_value
 

@@ -24,8 +24,8 @@ from normalbench.bench.tables.render import measure as rendering
 from normalbench.bench.tables.sweep import measure as sweep
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import charts
 from normalbench.reports.charts.drawings import THEME
 from normalbench.reports.page import embedded

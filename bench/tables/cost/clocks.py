@@ -10,7 +10,7 @@ from contextlib import ExitStack
 import moderngl
 import numpy as np
 
-from ....encodings.storage import STORAGES
+from ....encodings.storages.storage import STORAGES
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.gl.device import Device
 from ....gbuffer.gl.shader import ShaderError

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ....encodings.encoding import Encoding
-from ....encodings.storage import STORAGES, Storage
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import STORAGES, Storage
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing
 from ....reports.charts import pareto, plots

@@ -11,7 +11,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from ....encodings.encoding import Encoding
+from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
 from ...metrics.meter import FAST_BLOCK, LANES, compiled
 from ...output.errors import MissingError

@@ -8,7 +8,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from ....encodings.encoding import Encoding
+from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.defines import kernels
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing

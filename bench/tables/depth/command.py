@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
-from ....encodings.depth_codec import REBUILDS, DepthCodec
+from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.position import Camera
-from ....encodings.storage import DEPTH_STORAGES
+from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....gbuffer.frame.frame import Plan
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES

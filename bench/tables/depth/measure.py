@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.depth_codec import REBUILDS, DepthCodec
+from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.position import Camera
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth_passes import DepthPasses, Rebuilt

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ....encodings.light_codec import LightCodec
+from ....encodings.codecs.light_codec import LightCodec
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline

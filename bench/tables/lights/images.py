@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS
-from ....encodings.light_codec import LightCodec
+from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4, light_or_none
 from ....gbuffer.codecs.light_passes import Resolved, read_samples, resolved
 from ....gbuffer.frame.frame import Plan

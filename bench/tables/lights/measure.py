@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.light_codec import LightCodec
+from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError

@@ -12,9 +12,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.chromaticity import coloured, luminance
-from ....encodings.light_buffer import IDEAL, Blending, accumulate
-from ....encodings.light_codec import LightCodec
-from ....encodings.storage import Storage, to_srgb
+from ....encodings.codecs.light_buffer import IDEAL, Blending, accumulate
+from ....encodings.codecs.light_codec import LightCodec
+from ....encodings.storages.rounding import to_srgb
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.codecs.light_passes import LightPasses, Sum
 from ....gbuffer.gl.device import Device

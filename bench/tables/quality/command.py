@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....encodings.codec import Codec
+from ....encodings.codecs.codec import Codec
 from ....reports.charts import pictures
 from ...metrics import published as seeds
 from ...normals.normal_names import normal_sets_named

@@ -14,9 +14,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.codec import Codec
-from ....encodings.encoding import Encoding
-from ....encodings.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....encodings.codec import Codec
+from ....encodings.codecs.codec import Codec
 from ....encodings.vec import Vec3
 from ...metrics.meter import angle_between, compiled, readable
 from ...output.writing import whole_file

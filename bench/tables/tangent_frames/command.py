@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....encodings.catalogue import FRAME_ENCODINGS
-from ....encodings.frame_codec import FrameCodec
-from ....encodings.storage import FRAME_STORAGES
+from ....encodings.codecs.frame_codec import FrameCodec
+from ....encodings.storages.storage import FRAME_STORAGES
 from ...options.command_options import FramesOptions
 from ...options.counts import check_seed, checked_count
 from ...output.errors import pick

@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.frame_codec import FrameCodec
+from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.rotation import frame_of
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.frame_passes import FramePasses

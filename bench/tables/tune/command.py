@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ....encodings.catalogue import NAMES
-from ....encodings.codec import Codec
-from ....encodings.encoding import Encoding
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
 from ...codecs.tuned_names import MARK, TABLE
 from ...codecs.user_encodings import encodings_named
 from ...normals.normal_names import normal_sets_named

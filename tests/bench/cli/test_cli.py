@@ -21,9 +21,9 @@ from normalbench.bench.metrics import published as seeds
 from normalbench.bench.suite.suite import COMMON
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.encoding import Encoding
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.encoding import Encoding
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports import tables
 
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]

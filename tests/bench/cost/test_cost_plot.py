@@ -11,8 +11,8 @@ from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import plot as cost_plot
 from normalbench.bench.tables.cost.codec_costs import Costs, LeftOutError, Where
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import pareto
 from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
 

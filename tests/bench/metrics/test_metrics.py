@@ -20,8 +20,8 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.throughput.numpy_baseline import angles, whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 
 AHEAD = np.float32([0, 0, -1])
 

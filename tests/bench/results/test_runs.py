@@ -22,8 +22,8 @@ from normalbench.bench.output.errors import UsageError
 from normalbench.bench.results.runs import ROWS, Step, opened, read_run, same_work, sources, unfinished
 from normalbench.bench.suite.suite import TABLES, SuiteRequest
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports import tables
 
 FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}

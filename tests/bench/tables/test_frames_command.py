@@ -14,8 +14,8 @@ from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
 from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, frames_from, rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
-from normalbench.encodings.frame_codec import FrameCodec
-from normalbench.encodings.storage import FRAME_STORAGES
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.scenes.mesh import sphere
 

@@ -12,8 +12,8 @@ from normalbench.bench.metrics import images as image_metrics
 from normalbench.bench.tables.render import measure as rendering
 from normalbench.bench.tables.render.command import RenderRequest
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.frame.frame import Plan
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES

@@ -8,8 +8,8 @@ from normalbench.bench.normals.normal_sets import hemisphere, playground
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 
 
 def codec(name: str, storage: str = "rgba8") -> Codec:

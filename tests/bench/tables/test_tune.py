@@ -15,9 +15,9 @@ from normalbench.bench.tables.tune.expected_errors import Normals, smooth_object
 from normalbench.bench.tables.tune.halves import halves_of
 from normalbench.bench.tables.tune.tuning import Measure, Tuned, fitted, spreads, wanted_bits
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
+from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals import best_fit
-from normalbench.encodings.storage import STORAGES, storage_of
+from normalbench.encodings.storages.storage import STORAGES, storage_of
 
 FINE = "rgb8_12_12"
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..vec import Vec4, jnp, light_or_none
 from .light_codec import LightCodec
-from .vec import Vec4, jnp, light_or_none
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .vec import Vec4
+from ..vec import Vec4
 
 # How light is added up: by the blending hardware, adding or multiplying texels; or by reading what is there, adding in
 # the shader and writing, where no blending of texels adds light.

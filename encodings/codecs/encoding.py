@@ -8,8 +8,8 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from ..vec import Vec2, Vec3
 from .fingerprint import fingerprint
-from .vec import Vec2, Vec3
 
 Code = Vec2 | Vec3
 

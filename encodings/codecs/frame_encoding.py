@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .rotation import Frame
-from .vec import Vec4
+from ..rotation import Frame
+from ..vec import Vec4
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .position import Projection
+from ..position import Projection
 
 # A unit in the last place of 1 in float32.
 ULP = 2.0**-23

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..rotation import Frame
+from ..storages.rounding import store_number
+from ..storages.storage import Storage
+from ..vec import TINY, Vec4
 from .codec import numbers_misfit
 from .frame_encoding import FrameEncoding
-from .rotation import Frame
-from .storage import Storage, store_number
-from .vec import TINY, Vec4
 
 # Of floats by their size the least number that a hand is kept at: none that a device may flush to 0.
 LEAST_FLOAT = {16: 2.0**-14, 32: TINY}

@@ -10,9 +10,10 @@ from functools import reduce
 
 import numpy as np
 
+from ..storages.rounding import numbers_around, store_number
+from ..storages.storage import Storage
+from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
-from .storage import Storage, numbers_around, store_number
-from .vec import Vec3, dot, jnp, select
 
 # A number that is not one of few values is not laid into fewer bits.
 LEAST_BITS = 4

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..position import Camera, Seen, position_from_linear_depth, position_from_window_depth
+from ..storages.depth_storage import DepthStorage, store_depth
+from ..vec import Vec2, Vec3, depth_or_far, jnp
 from .depth_encoding import ULP, DepthEncoding
-from .position import Camera, Seen, position_from_linear_depth, position_from_window_depth
-from .storage import DepthStorage, store_depth
-from .vec import Vec2, Vec3, depth_or_far, jnp
 
 # What float32 arithmetic adds beside encoder and decoder, in units in the last place: one to the number where it is
 # scaled to an integer and back; three to a position (two products and the rays' own rounding; or a division and two

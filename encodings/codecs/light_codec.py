@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..storages.rounding import store_texel
+from ..storages.storage import Storage
+from ..vec import Vec4
 from .light_encoding import LightEncoding
-from .storage import Storage, store_texel
-from .vec import Vec4
 
 
 @dataclass(frozen=True)

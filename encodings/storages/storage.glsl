@@ -1,7 +1,7 @@
-// Rounding in the shader, beside storage.py, for a device that does not round as the codec asks. The kinds of format
+// Rounding in the shader, beside rounding.py, for a device that does not round as the codec asks. The kinds of format
 // are UNORM 0, SNORM 1, half 2, small floats 3, and 32-bit floats 4, which stay as they are. The ways to round are
 // nearest 0, truncate 1, and truncate_half 2.
-#include "sign.glsl"
+#include "../sign.glsl"
 
 float round_half(float x, bool truncates) {
     const float STEP = exp2(24.0);  // below 2^-14 half floats are multiples of 2^-24
