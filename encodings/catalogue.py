@@ -1,16 +1,24 @@
-"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here."""
+"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here.
+
+The catalogues are read-only. A tuned encoding and a user's encoding are values like these, and in no catalogue.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib import import_module
-from typing import TypeVar
+from types import MappingProxyType
+from typing import Any
 
-from .depth_encoding import DepthEncoding
-from .encoding import Encoding
+from .codecs.depth_encoding import DepthEncoding
+from .codecs.encoding import Encoding
+from .codecs.frame_encoding import FrameEncoding
+from .codecs.kind import DEPTH, FRAME, LIGHT, NORMAL, AnyEncoding, Kind
+from .codecs.light_codec import LightCodec
+from .codecs.light_encoding import LightEncoding
 from .errors import CatalogueError
-from .frame_encoding import FrameEncoding
-from .light_encoding import LightEncoding
+from .storages.storage import LIGHT_STORAGES
 
 PAIRS = (
     "xyz",
@@ -40,38 +48,26 @@ PAIRS = (
 # Encodings that are there with precise rounding as well: of the codes around, the one that decodes nearest.
 PRECISE = {f"{name}_precise": name for name in ("octahedral", "equal_area_octahedral")}
 NAMES = (*PAIRS, *PRECISE)
-LIGHT_NAMES = (
-    "rgba32f",
-    "rgba16f",
-    "r11g11b10f",
-    "linear",
-    "srgb",
-    "log",
-    "rgbm",
-    "nao32",
-    "rgb9e5",
-)
+LIGHT_NAMES = ("plain", "linear", "srgb", "log", "rgbm", "nao32", "rgb9e5")
 
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
 
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "qtangent")
 
-E = TypeVar("E", Encoding, LightEncoding, DepthEncoding, FrameEncoding)
+
+def _load(kind: Kind, names: tuple[str, ...]) -> Mapping[str, Any]:
+    return MappingProxyType({name: _loaded(kind, name) for name in names})
 
 
-def _load(folder: str, names: tuple[str, ...], kind: type[E]) -> dict[str, E]:
-    return {name: _loaded(folder, name, kind) for name in names}
-
-
-def _loaded(folder: str, name: str, kind: type[E]) -> E:
-    place = f"encodings/{folder}/{name}.py"
+def _loaded(kind: Kind, name: str) -> Any:
+    place = f"encodings/{kind.folder}/{name}.py"
     try:
-        encoding = import_module(f".{folder}.{name}", __package__).ENCODING
+        encoding = import_module(f".{kind.folder}.{name}", __package__).ENCODING
     except Exception as error:  # whatever a user's own file raises
         raise CatalogueError(f"{place}: {type(error).__name__}: {error}") from error
-    if not isinstance(encoding, kind):
-        raise CatalogueError(f"{place}: its ENCODING is no {kind.__name__}")
+    if not isinstance(encoding, kind.encoding):
+        raise CatalogueError(f"{place}: its ENCODING is no {kind.encoding.__name__}")
     if encoding.name != name:
         raise CatalogueError(f"{place}: its ENCODING is named {encoding.name!r}, not {name!r}")
     return encoding
@@ -82,8 +78,23 @@ def _precise(name: str, encoding: Encoding) -> Encoding:
     return replace(encoding, name=name, title=title, citation=citation, is_precise=True, functions=encoding.prefix)
 
 
-ENCODINGS: dict[str, Encoding] = _load("normals", PAIRS, Encoding)
-ENCODINGS |= {name: _precise(name, ENCODINGS[pair]) for name, pair in PRECISE.items()}
-LIGHT_ENCODINGS: dict[str, LightEncoding] = _load("light", LIGHT_NAMES, LightEncoding)
-DEPTH_ENCODINGS: dict[str, DepthEncoding] = _load("depth", DEPTH_NAMES, DepthEncoding)
-FRAME_ENCODINGS: dict[str, FrameEncoding] = _load("frame", FRAME_NAMES, FrameEncoding)
+def _with_precise(pairs: Mapping[str, Encoding]) -> Mapping[str, Encoding]:
+    return MappingProxyType({**pairs, **{name: _precise(name, pairs[pair]) for name, pair in PRECISE.items()}})
+
+
+ENCODINGS: Mapping[str, Encoding] = _with_precise(_load(NORMAL, PAIRS))
+LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load(LIGHT, LIGHT_NAMES)
+DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load(DEPTH, DEPTH_NAMES)
+FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load(FRAME, FRAME_NAMES)
+BY_KIND: Mapping[Kind, Mapping[str, AnyEncoding]] = MappingProxyType(
+    {NORMAL: ENCODINGS, DEPTH: DEPTH_ENCODINGS, FRAME: FRAME_ENCODINGS, LIGHT: LIGHT_ENCODINGS}
+)
+
+# What `--light-buffer` names: each light encoding in each storage that it is made for.
+LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(
+    {
+        codec.name: codec
+        for encoding in LIGHT_ENCODINGS.values()
+        for codec in (LightCodec(encoding, LIGHT_STORAGES[storage]) for storage in encoding.storages)
+    }
+)

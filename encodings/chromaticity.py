@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from .vec import TINY, Vec3, dot, select
 
-# Rec. 709, linear (seed 002).
+# Rec. 709, linear (M. Drobot, Architektury Deferred).
 LUMA = (0.2126, 0.7152, 0.0722)
 
 CONSTANTS = {"LUMA": LUMA}

@@ -1,1 +1,1 @@
-"""The renderer: GL device, shaders, scenes, and the passes that put normals through real render targets."""
+"""The renderer: GL device, scenes, pipelines, effects, and the passes that put normals through real render targets."""

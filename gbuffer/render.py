@@ -7,15 +7,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-import moderngl
 import numpy as np
 
-from ..encodings.storage import FORMATS, R32F, SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
-from .frame.frame import Frame, Plan
+from ..encodings.storages.rounding import SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
+from .frame.canvas import built
+from .frame.contract import Pass, Pipeline, Run
+from .frame.frame import Frame
+from .frame.plan import Plan
+from .frame.resource import Resource
+from .frame.resources import FINAL
 from .gl.device import Device, read_pixels
-from .layouts.layout import DEPTH_STENCIL_BYTES, LayoutError
-from .passes.passes import Run, unpacked
-from .pipelines import Pipeline
+from .layouts.layout import LayoutError
+from .readback.resolve import RESOLVE, RESOLVED
+from .readback.unpack import UNPACK, UNPACKED
 from .scenes.scene import Scene
 
 WALL, QUERY = "wall clock after each pass", "GL timer query"
@@ -65,35 +69,34 @@ class Rendering:
     def __init__(self, frame: Frame, passes: dict[str, Run]):
         self.frame, self.passes = frame, passes
         self._device = frame.device
+        self._more: dict[Pass, Run] = {}
         self._is_warm = False
 
-    def draw(self) -> None:
-        """One frame, all passes in order."""
+    def draw(self, scene: Scene | None = None) -> None:
+        """One frame, all passes in order; of the scene at another moment, if one is given."""
+        if scene:
+            self.frame.show(scene)
+        self.frame.advance()
         for run in self.passes.values():
             run()
         self._is_warm = True
 
     def image(self) -> np.ndarray:
         """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""
-        final = self.frame.final if self.frame.plan.samples == 1 else self._resolved()
-        return read_pixels(final)[::-1, :, :3]
-
-    def _resolved(self) -> moderngl.Texture:
-        """The final image, each pixel the mean of its samples."""
-        frame = self.frame
-        texture = frame.texture(frame.plan.size, FORMATS["rgba32f"], 1)
-        target = frame.framebuffer([texture])
-        resolve = frame.fullscreen(frame.program("fullscreen.vert", "resolve.frag", SAMPLES=frame.plan.samples))
-        target.use()
-        frame.context.enable_only(moderngl.NOTHING)
-        frame.prepare(resolve.program, frame.plan.size, samples=frame.final)
-        resolve.render(moderngl.TRIANGLES, vertices=3)
-        return texture
+        return self.read(FINAL if self.frame.plan.samples == 1 else RESOLVED, RESOLVE)[0][..., :3]
 
     def gbuffer(self) -> list[np.ndarray]:
-        """What the G-buffer of the frame last drawn says, as `passes.unpacked` lists it; row 0 on top, 0 where nothing
+        """What the G-buffer of the frame last drawn says, as `unpack.UNPACKED` lists it; row 0 on top, 0 where nothing
         is covered. At one sample a pixel only."""
-        return [read_pixels(texture)[::-1] for texture in unpacked(self.frame)]
+        return [self.read(resource, UNPACK)[0] for resource in UNPACKED]
+
+    def read(self, resource: Resource, by: Pass | None = None) -> list[np.ndarray]:
+        """The textures of a resource in 32-bit floats, after one more pass if it is what writes it; row 0 on top."""
+        if by and resource in by.writes:
+            if by not in self._more:
+                self._more[by] = built(self.frame, by)
+            self._more[by]()
+        return [read_pixels(texture)[::-1] for texture in self.frame.textures(resource)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
         """Each pass, and the whole as "frame", over repeated frames after at least one; and which clock it was."""
@@ -103,6 +106,7 @@ class Rendering:
         self._device.context.finish()
         taken: dict[str, list[float]] = {name: [] for name in (*self.passes, "frame")}
         for _ in range(repeats):
+            self.frame.advance()
             for name, run in self.passes.items():
                 taken[name].append(clock.measure(run))
             taken["frame"].append(clock.measure(self.draw))
@@ -113,6 +117,7 @@ class Rendering:
     def triangles(self) -> dict[str, int]:
         """Triangles that each pass sends to the rasteriser, counted by the device."""
         counted = {}
+        self.frame.advance()
         for name, run in self.passes.items():
             query = self._device.context.query(primitives=True)
             with query:
@@ -131,9 +136,8 @@ def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> I
         ShaderError: an encoding does not compile.
     """
     check(device, pipeline, plan)
-    with Frame(device, scene, plan, pipeline.scaled) as frame:
-        passes: dict[str, Run] = {stage.name: stage.build(frame) for stage in pipeline.stages}
-        yield Rendering(frame, passes)
+    with Frame(device, scene, pipeline, plan) as frame:
+        yield Rendering(frame, {stage.name: built(frame, stage) for stage in pipeline.stages})
 
 
 def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
@@ -158,16 +162,10 @@ def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
 
 
 def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
-    """What a pipeline keeps for each pixel of the image, at all its samples: G-buffer, depth and stencil, light buffer,
-    and the resolved linear depth where the layout keeps no depth of its own; not the image and the shadow map."""
-    if not pipeline.has_gbuffer:
-        return float(DEPTH_STENCIL_BYTES * plan.samples)
-    light = plan.light_buffer.bytes_per_pixel * plan.light_targets
-    resolved = 0 if "depth" in plan.layout.components else sum(R32F.bits) // 8
-    kept = plan.layout.bytes_per_pixel + light + resolved
-    if pipeline.scaled and (plan.scale < 1 or plan.samples > 1):
-        return kept * plan.scale**2 + DEPTH_STENCIL_BYTES * plan.samples
-    return float(kept * plan.samples)
+    """What a pipeline keeps for each pixel of the image, at all its samples: all that its passes write but the image
+    itself and what has a size in pixels of its own; one copy of each, all copies of what the next frame reads."""
+    kept = (resource for resource in pipeline.resources.values() if resource != FINAL)
+    return float(sum(resource.bytes_per_pixel(pipeline.planned(plan)) for resource in kept))
 
 
 def displayed(linear: np.ndarray) -> np.ndarray:

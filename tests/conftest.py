@@ -4,13 +4,18 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
+
+# XLA compiles each program once for all tests, their processes and the next run.
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".pytest_cache" / "jax"))
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 
 import jax
 import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import isa, spirv
-from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
@@ -90,7 +95,8 @@ OPENED: list[str] | None = None
 
 
 def _listen(event: str, arguments: tuple) -> None:
-    if OPENED is not None and event in ("open", "socket.connect", "socket.getaddrinfo", "urllib.Request"):
+    watched = event in ("open", "socket.connect", "socket.getaddrinfo", "urllib.Request")
+    if OPENED is not None and watched and not str(arguments[0]).startswith(os.environ["JAX_COMPILATION_CACHE_DIR"]):
         OPENED.append(str(arguments[0]))
 
 
@@ -104,11 +110,3 @@ def opened():
     OPENED = []
     yield OPENED
     OPENED = None
-
-
-@pytest.fixture(autouse=True)
-def catalogue():
-    """What a user's file adds to the catalogue is gone after the test."""
-    yield
-    for name in set(ENCODINGS) - set(NAMES):
-        del ENCODINGS[name]

@@ -1,7 +1,6 @@
 """The house: rooms and who knows whom, the package list, the catalogue, and twins."""
 
 import ast
-import inspect
 import re
 import subprocess
 import sys
@@ -10,21 +9,23 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench.cli import listing
 from normalbench.bench.normals import normal_sets
+from normalbench.bench.options import listing
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import sets as frame_sets
 from normalbench.encodings.catalogue import (
     DEPTH_ENCODINGS,
     DEPTH_NAMES,
     ENCODINGS,
     FRAME_ENCODINGS,
+    LIGHT_BUFFERS,
     LIGHT_ENCODINGS,
     NAMES,
-    PAIRS,
-    PRECISE,
 )
-from normalbench.encodings.storage import DEPTH_STORAGES, FRAME_STORAGES, STORAGES
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
+from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -60,6 +61,18 @@ def test_rooms_import_only_whom_they_may(path):
     assert not any(m.startswith("normalbench") for m in imported(path)), "between the rooms imports are relative"
 
 
+def test_only_the_folder_of_opengl_imports_moderngl():
+    using = {path.relative_to(ROOT).parent for path in SOURCES if "moderngl" in imported(path)}
+    assert using == {Path("gbuffer/gl")}, f"moderngl is imported in {sorted(using)}"
+
+
+def test_a_folder_of_the_renderer_is_read_at_a_glance():
+    """A pass beside its shaders counts as one thing; no folder holds more than thirteen."""
+    for folder in (path for path in (ROOT / "gbuffer").rglob("*") if path.is_dir() and path.name != "__pycache__"):
+        things = {path.stem for path in folder.iterdir()} - {"__init__", "__pycache__"}
+        assert len(things) <= 13, f"{folder.relative_to(ROOT)} holds {len(things)}: {', '.join(sorted(things))}"
+
+
 def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
@@ -74,6 +87,9 @@ def test_the_package_list_is_the_folders():
     listed = set(project["tool"]["setuptools"]["packages"])
     files = [p for room in ROOMS for p in (ROOT / room).rglob("*") if p.is_file() and "__pycache__" not in p.parts]
     folders = {".".join(["normalbench", *p.parent.relative_to(ROOT).parts]) for p in files}
+    # What `import normalbench` gives lies in a folder of bench.
+    assert project["tool"]["setuptools"]["package-dir"]["normalbench"] == "bench/api"
+    folders = folders - {"normalbench.bench.api"} | {"normalbench"}
     assert listed == folders
     patterns = project["tool"]["setuptools"]["package-data"]["*"]
     assert {"*" + p.suffix for p in files if p.suffix != ".py"} == set(patterns)
@@ -87,57 +103,46 @@ def test_python_starts_with_the_checkout_on_its_path():
     assert done.returncode == 0, done.stderr
 
 
-def test_the_catalogue_and_the_files_are_the_same():
-    files = {suffix: {p.stem for p in (ROOT / "encodings/normals").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
-    assert files[".py"] == files[".glsl"] == set(PAIRS)
-    assert set(ENCODINGS) == set(NAMES) == {*PAIRS, *PRECISE} and set(PRECISE.values()) <= set(PAIRS)
-    files = {suffix: {p.stem for p in (ROOT / "encodings/depth").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
-    assert files[".py"] == files[".glsl"] == set(DEPTH_NAMES) == set(DEPTH_ENCODINGS)
+CATALOGUES = {
+    "ENCODINGS": ENCODINGS,
+    "DEPTH_ENCODINGS": DEPTH_ENCODINGS,
+    "FRAME_ENCODINGS": FRAME_ENCODINGS,
+    "LIGHT_BUFFERS": LIGHT_BUFFERS,
+    "LIGHT_ENCODINGS": LIGHT_ENCODINGS,
+    "LIGHT_STORAGES": LIGHT_STORAGES,
+    "STORAGES": STORAGES,
+    "DEPTH_STORAGES": DEPTH_STORAGES,
+    "FRAME_STORAGES": FRAME_STORAGES,
+    "FORMATS": FORMATS,
+    "LAYOUTS": LAYOUTS,
+    "PIPELINES": PIPELINES,
+    "SCENES": SCENES,
+    "NORMAL_SETS": normal_sets.NORMAL_SETS,
+    "FRAME_SETS": frame_sets.FRAME_SETS,
+    "PACKINGS": PACKINGS,
+}
+
+
+@pytest.mark.parametrize("name", CATALOGUES)
+def test_a_catalogue_is_read_only(name):
+    """What a user adds is a value in a list of cases, never an entry here."""
+    catalogue = CATALOGUES[name]
+    with pytest.raises(TypeError):
+        catalogue["mine"] = next(iter(catalogue.values()))
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_encoding_is_complete(name):
+def test_an_encoding_of_normals_is_complete(name):
     encoding = ENCODINGS[name]
-    assert encoding.name == name
     assert encoding.components in (1, 2, 3) and encoding.sign_bits in (0, 1)
     assert encoding.domain in ("sphere", "hemisphere", "view")
-    assert encoding.title and encoding.citation and encoding.ulps_reason
-    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "shapes and special cases are said"
-    glsl = encoding.glsl.read_text()
-    size = encoding.components + encoding.sign_bits
-    assert re.search(rf"vec{size} {encoding.prefix}_encode\(vec3 n, vec3 view\)", glsl)
-    assert re.search(rf"vec3 {encoding.prefix}_decode\(vec{size} e, vec3 view\)", glsl)
     assert not encoding.levels or len(encoding.levels) == encoding.components
-    assert f"{encoding.prefix}.py" in glsl.splitlines()[0], "the twin is named"
 
 
-@pytest.mark.parametrize("name", DEPTH_NAMES)
-def test_a_depth_encoding_is_complete(name):
-    encoding = DEPTH_ENCODINGS[name]
-    assert encoding.name == name
-    assert encoding.title and encoding.citation and encoding.ulps_reason
-    assert encoding.storages and set(encoding.storages) <= set(DEPTH_STORAGES)
-    assert all(storage.is_signed or not encoding.signed for storage in map(DEPTH_STORAGES.get, encoding.storages))
-    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "special cases are said"
-    glsl = encoding.glsl.read_text()
-    for function in ("encode_depth(float depth", "decode_depth(float number"):
-        assert f"float {name}_{function}, float near, float far)" in glsl
-    assert f"{name}.py" in glsl.splitlines()[0], "the twin is named"
-
-
-KINDS = (ENCODINGS, DEPTH_ENCODINGS, FRAME_ENCODINGS)
-TWINS = [
-    *(e.glsl for kind in KINDS for e in kind.values()),
-    *(ROOT / f"encodings/{n}.glsl" for n in ("position", "rotation")),
-]
-
-
-@pytest.mark.parametrize("path", TWINS, ids=lambda path: path.stem)
-def test_the_twins_carry_the_same_formula(path):
-    """The formula stands above the line in both languages, in the same symbols."""
+@pytest.mark.parametrize("path", [ROOT / f"encodings/{name}.glsl" for name in ("position", "rotation")])
+def test_shared_twins_carry_the_same_formula(path):
     python = set(re.findall(r"^    # (.+)$", path.with_suffix(".py").read_text(), re.M))
-    glsl = set(re.findall(r"^    // (.+)$", path.read_text(), re.M))
-    assert python == glsl
+    assert python == set(re.findall(r"^    // (.+)$", path.read_text(), re.M)) and python
 
 
 def test_no_number_is_typed_in_both_languages():
@@ -152,17 +157,17 @@ def test_no_number_is_typed_in_both_languages():
 def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
-    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_ENCODINGS}
+    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 
 
 def test_rows_have_the_columns_of_the_table():
-    from normalbench.encodings.codec import Codec
+    from normalbench.encodings.codecs.codec import Codec
 
     case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rg8"]), normal_sets.axes(), "jax")
-    assert tuple(quality.measure(case)) == quality.COLUMNS
+    assert tuple(quality.measure(case)) == tuple(TABLES["quality"].empty())
 
 
 def test_no_runner_asks_for_a_variants_name():
@@ -170,5 +175,28 @@ def test_no_runner_asks_for_a_variants_name():
     for path in SOURCES:
         if path.parts[-2] not in ("normals", "light", "depth", "frame"):
             depths = (*DEPTH_NAMES, *DEPTH_STORAGES, *FRAME_ENCODINGS, *FRAME_STORAGES)
-            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_ENCODINGS, *SCENES):
+            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_BUFFERS, *LIGHT_ENCODINGS, *SCENES):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"
+
+
+BENCH = ROOT / "bench"
+
+
+def _rooms_of(path: Path) -> set[str]:
+    """The folders of bench/ that a file imports, other than its own."""
+    own = path.relative_to(BENCH).parts[0]
+    found = {module.split(".")[1] for module in imported(path) if module.startswith("bench.")}
+    return {room for room in found if (BENCH / room).is_dir()} - {own}
+
+
+def test_the_folders_of_bench_import_each_other_one_way():
+    """No folder imports another that imports it, by whatever way around."""
+    files = [path for path in BENCH.rglob("*.py") if path.parent != BENCH]
+    known: dict[str, set[str]] = {}
+    for path in files:
+        known.setdefault(path.relative_to(BENCH).parts[0], set()).update(_rooms_of(path))
+    assert "tables" in known["suite"] and "output" in known["tables"], "imports are found"
+    while free := [room for room, others in known.items() if not others & set(known)]:
+        for room in free:
+            del known[room]
+    assert not known, f"a circle among {sorted(known)}"

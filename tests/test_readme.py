@@ -1,11 +1,13 @@
-"""What the README says is so: its commands run, its table is measured, its example passes."""
+"""What README.md and every page of docs/ say is so: commands run, tables are measured, examples pass."""
 
 import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -13,23 +15,44 @@ import pytest
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.metrics import published as seeds
+from normalbench.bench.metrics import published
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.lights.sums import Adder, equal_lights
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.mesh import sphere
 
 ROOT = Path(__file__).parents[1]
-TEXT = (ROOT / "README.md").read_text()
-(ENCODING,) = re.findall(r"```glsl\n(.*?)```", TEXT, re.S)
-LAYOUT, GATES = re.findall(r"```toml\n(.*?)```", TEXT, re.S)
-COMMANDS = re.findall(r"^    ((?:normalbench|python -m) [^#\n]+?) *(?:#.*)?$", TEXT, re.M)
+README = ROOT / "README.md"
+PAGES = {path: path.read_text() for path in (README, *sorted((ROOT / "docs").glob("*.md")))}
+MOST_LINES = 150
+FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
+# An example is a fenced block under the name of its file.
+NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|python|toml)\n(.*?)^```$", re.S | re.M)
+EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
+FILES = {name: text for _, name, text in EXAMPLES}
+# An indented line is a command, up to its comment.
+INDENTED = re.compile(r"^    (\S[^#\n]*?) *(?:#.*)?$", re.M)
+LINES = list(dict.fromkeys(line for text in PAGES.values() for line in INDENTED.findall(FENCE.sub("", text))))
+COMMANDS = [line for line in LINES if line.startswith(("normalbench ", "python "))]
+PYTEST = [line for line in LINES if line.startswith("pytest ")]
+MAKE = [line for line in LINES if line.startswith("make ")]
+# These install something or change the shell.
+NOT_RUN = [line for line in LINES if line.startswith(("pip install ", ". .venv/"))]
+# Every marker of a table, each held by a test below.
+HELD = {
+    *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
+    *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
+    *("normalbench frames", "normalbench cost"),
+}
 
 
-def cli_main(monkeypatch, *words: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["normalbench", *words])
-    return cli.main()
+def table(marker: str) -> str:
+    """The table under a marker, which one page has."""
+    (text,) = [text for text in PAGES.values() if f"\n<!-- {marker} -->\n" in text]
+    return text[text.index(f"\n<!-- {marker} -->\n") + 1 :].split("\n\n")[0]
 
 
 def users_files(folder: Path) -> None:
@@ -45,19 +68,52 @@ def users_files(folder: Path) -> None:
     as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
 
 
-def test_there_are_commands_to_run():
-    assert len(COMMANDS) >= 8
+def test_the_readme_is_short():
+    assert len(PAGES[README].splitlines()) <= MOST_LINES
+
+
+def test_every_indented_line_is_a_known_command():
+    """A line that no test below runs is one that installs something."""
+    assert len(COMMANDS) >= 40
+    assert set(LINES) == {*COMMANDS, *PYTEST, *MAKE, *NOT_RUN}
+    for path, text in PAGES.items():
+        assert not re.search(r"^```(sh|bash|shell|console)", text, re.M), f"{path.name}: indent commands"
+
+
+def test_every_table_is_held_by_a_test():
+    marked = re.findall(r"^<!-- (headline|normalbench [\w ]+?)(?: -->)?$", "\n".join(PAGES.values()), re.M)
+    assert sorted(marked) == sorted(HELD)
+
+
+def test_every_example_is_a_file_and_files_of_one_name_are_the_same():
+    for path, text in PAGES.items():
+        assert len(re.findall(r"^```(?:glsl|python|toml)$", text, re.M)) == len(NAMED.findall(text)), path.name
+    assert all(FILES[name] == text for _, name, text in EXAMPLES)
+
+
+def test_every_example_is_used():
+    for name in FILES:
+        used = any(name in shlex.split(line.replace(",", " ")) for line in (*COMMANDS, *PYTEST))
+        assert used or name.startswith("test_") or Path(name).with_suffix(".glsl").name in FILES, name
+
+
+@pytest.fixture(scope="module")
+def finished_run(tmp_path_factory):
+    """What `normalbench run --tables depth -o FOLDER` leaves."""
+    folder = tmp_path_factory.mktemp("finished") / "run"
+    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth", "-o", str(folder)]
+    subprocess.run(command, check=True, capture_output=True)
+    return folder
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
+def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, request):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.toml").write_text(LAYOUT)
-    (tmp_path / "gates.toml").write_text(GATES)
-    (tmp_path / "mine.glsl").write_text(ENCODING)
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
     words = shlex.split(command)
     for name in {"before", "after"} & set(words) if words[1] != "run" else ():
-        assert cli_main(monkeypatch, "run", "--tables", "depth", "-o", name) == 0
+        shutil.copytree(request.getfixturevalue("finished_run"), tmp_path / name)
     if re.search(r"\.(glb|exr|png|npy)\b", command):
         users_files(tmp_path)
     if words[0] == "python":
@@ -73,26 +129,94 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys):
 
 def test_the_make_targets_exist():
     makefile = (ROOT / "Makefile").read_text()
-    for target in re.findall(r"^    make (\w+)", TEXT, re.M):
-        assert f"\n{target}:" in makefile
+    assert {"make bench", "make test"} <= set(MAKE)
+    for line in MAKE:
+        assert f"\n{line.removeprefix('make ')}:" in makefile
 
 
-def test_the_table_is_what_is_measured(normalbench):
-    table = TEXT[TEXT.index("<!-- normalbench run -->") :]
-    lines = re.findall(r"^\| `(\w+)` +\| +(\d+) \| +([\d.]*) \| +([\d.]+) \| +([\d.]+) \|$", table, re.M)
-    assert {line[0] for line in lines} == {*seeds.PSNR_DB, "octahedral"}
+def test_what_pip_installs_exists():
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    extras = {extra for line in NOT_RUN for found in re.findall(r"\[([\w,]+)\]", line) for extra in found.split(",")}
+    assert extras and extras <= set(known)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_the_columns_it_explains_are_those_of_the_table(name):
+    """To the letter as the registry has them."""
+    marked = re.compile(rf"^<!-- columns {name} -->\n(.*?)^<!-- end -->", re.S | re.M)
+    (shown,) = [found for text in PAGES.values() for found in marked.findall(text)]
+    assert shown == explained(name)
+
+
+def headline() -> tuple[list[list[str]], list[list[str]]]:
+    """The commands that the headline table comes from, and its rows without units."""
+    commands, rows = re.search(r"^<!-- headline\n(.*?)\n-->\n(.*?)\n\n", PAGES[README], re.S | re.M).groups()
+    cells = [re.findall(r"\| *`?([\w.]+)", line) for line in rows.splitlines()[2:]]
+    return [shlex.split(line)[1:] for line in commands.splitlines()], cells
+
+
+def measured(run, name: str) -> list[dict]:
+    """The rows of the headline's commands of one name."""
+    found = []
+    for command in headline()[0]:
+        if command[0] == name:
+            status, out, err = run(*command, "--format", "json")
+            if status == 3 and not os.environ.get("CI"):
+                pytest.skip(err)
+            assert status == 0, err
+            found += json.loads(out)
+    return found
+
+
+def test_the_headline_errors_are_what_is_measured(run):
+    """To the digits shown, and above the bounds that the text states."""
+    rows = {(row["storage"], row["encoding"]): row for row in measured(run, "quality")}
+    shown = headline()[1]
+    assert {(storage, encoding) for storage, encoding, *_ in shown} == set(rows)
+    assert shown == sorted(shown, key=lambda line: (line[0] != "rg8", float(line[3])))
+    for storage, encoding, bits, mean, worst, *_ in shown:
+        row = rows[storage, encoding]
+        assert int(bits) == row["bits"]
+        assert float(mean) == pytest.approx(row["angle_mean_deg"], abs=6e-4), row
+        assert float(worst) == pytest.approx(row["angle_sup_deg"], abs=6e-3), row
+    least = code_limit(2**16, SPHERE)
+    assert f"{least.mean_deg:.3f}°" in PAGES[README] and f"{least.max_deg:.3f}°" in PAGES[README]
+
+
+def test_the_headline_costs_are_what_is_measured(run):
+    rows = [row for row in measured(run, "cost") if row["encoding"]]
+    (mesa,) = set(re.findall(r"Mesa [\d.]+\d", PAGES[README]))
+    if {row["driver"] for row in rows} != {mesa}:
+        pytest.skip(f"this machine's compiler is not {mesa}")
+    found = {(row["encoding"], row["operation"]): row["instructions"] for row in rows}
+    for _, encoding, *_, encode, decode, _ in headline()[1]:
+        assert (int(encode), int(decode)) == (found[encoding, "encode"], found[encoding, "decode"]), encoding
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_headline_images_are_what_is_measured(run):
+    rows = {(row["storage"], row["encoding"]): row["psnr_db"] for row in measured(run, "render")}
+    for storage, encoding, *_, image in headline()[1]:
+        assert float(image) == pytest.approx(rows[storage, encoding], abs=0.1), (storage, encoding)
+
+
+def test_the_article_table_is_what_is_measured(normalbench):
+    shape = r"^\| `(\w+)` +\| +(\d+) \| +([\d.]*) \| +([\d.]+) \| +([\d.]+) \|$"
+    lines = re.findall(shape, table("normalbench run"), re.M)
+    assert {line[0] for line in lines} == {*published.PSNR_DB, "octahedral"}
     for name, bits, article, by_jax, by_glsl in lines:
-        assert not article or float(article) == pytest.approx(seeds.PSNR_DB[name], abs=0.0051)
+        assert not article or float(article) == pytest.approx(published.PSNR_DB[name], abs=0.0051)
         for backend, figure in (("jax", by_jax), ("glsl", by_glsl)):
-            row = normalbench.quality(encoding=name, storage=seeds.STORAGE, backend=backend)
+            row = normalbench.quality(encoding=name, storage=published.STORAGE, backend=backend)
             assert row["bits"] == int(bits)
-            assert float(figure) == pytest.approx(row["psnr_seed_db"], abs=0.02), f"{name} by {backend}"
+            assert float(figure) == pytest.approx(row["psnr_article_db"], abs=0.02), f"{name} by {backend}"
 
 
 def test_the_limit_table_is_what_is_measured(normalbench):
     """To the digits shown."""
-    table = TEXT[TEXT.index("<!-- normalbench quality -->") :].split("\n\n")[0]
-    lines = re.findall(r"^\| `?(\w+)`? +\| (\w+) +\|" + r" +([\d.]*)[ %]*\|" * 6 + "$", table, re.M)
+    lines = re.findall(
+        r"^\| `?(\w+)`? +\| (\w+) +\|" + r" +([\d.]*)[ %]*\|" * 6 + "$", table("normalbench quality"), re.M
+    )
     assert len(lines) == 8
     for name, domain, mean, rms, largest, bits, share, unused in lines:
         if name == "limit":
@@ -108,8 +232,8 @@ def test_the_limit_table_is_what_is_measured(normalbench):
 
 @pytest.mark.usefixtures("gl")
 def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
-    table = TEXT[TEXT.index("<!-- normalbench render -->") :]
-    lines = re.findall(r"^\| `(\w+)` +\| +([\d.]+) \| +(\d) \| +([\d.]+) \| +(\d) \|$", table, re.M)
+    shape = r"^\| `(\w+)` +\| +([\d.]+) \| +(\d) \| +([\d.]+) \| +(\d) \|$"
+    lines = re.findall(shape, table("normalbench render"), re.M)
     assert len(lines) == 8
     names = ",".join(line[0] for line in lines)
     command = ["normalbench", "render", "--encoding", names, "--repeats", "1", "--format", "json"]
@@ -125,11 +249,11 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
 
 def test_the_light_table_is_what_is_measured():
     """By the model, which needs no device."""
-    table = TEXT[TEXT.index("<!-- normalbench lights -->") : TEXT.index("<!-- normalbench lights image -->")]
-    lines = re.findall(r"^\| `(\w+)`[ \w()]*\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", table, re.M)
+    shape = r"^\| `(\w+)`[ \w()]*\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$"
+    lines = re.findall(shape, table("normalbench lights"), re.M)
     assert len(lines) == 7
     for name, *figures in lines:
-        rows = equal_lights(Adder(LIGHT_ENCODINGS[name], None), [1.0], [8, 64, 256])
+        rows = equal_lights(Adder(LIGHT_BUFFERS[name], None), [1.0], [8, 64, 256])
         # Of channels that differ the table shows colours that lose most: not sRGB's alpha.
         found = {row["lights"]: row["model"] for row in rows if row["channel"] != "a"}
         for count, figure in zip((8, 64, 256), figures, strict=True):
@@ -138,9 +262,8 @@ def test_the_light_table_is_what_is_measured():
 
 def test_the_tune_table_is_what_is_measured(run):
     """Two of its rows, which stand for those that take longer."""
-    table = TEXT[TEXT.index("<!-- normalbench tune -->") : TEXT.index("## What the picture says")]
     named, figure = r"`(\w+)` +\| ", r" +([\d.]+) \|"
-    lines = re.findall(rf"^\| {named * 3}[^|]+\|{figure * 3}$", table, re.M)
+    lines = re.findall(rf"^\| {named * 3}[^|]+\|{figure * 3}$", table("normalbench tune"), re.M)
     assert len(lines) == 5
     for encoding, storage, normals, *figures in (lines[0], lines[3]):
         status, out, _ = run("tune", encoding, "--storage", storage, "--normals", normals, "--format", "json")
@@ -151,8 +274,8 @@ def test_the_tune_table_is_what_is_measured(run):
 
 @pytest.mark.usefixtures("gl")
 def test_the_light_image_table_is_what_is_measured(run):
-    table = TEXT[TEXT.index("<!-- normalbench lights image -->") :]
-    lines = re.findall(r"^\| `(\w+)` +\| +([\d.]+) \| +([\d.]*) \|$", table, re.M)
+    shape = r"^\| `(\w+)` +\| +([\d.]+) \| +([\d.]*) \|$"
+    lines = re.findall(shape, table("normalbench lights image"), re.M)
     assert len(lines) == 4
     (command,) = [command for command in COMMANDS if "--experiment image" in command]
     status, out, _ = run(*shlex.split(command)[1:], "--format", "json")
@@ -166,11 +289,11 @@ def test_the_light_image_table_is_what_is_measured(run):
 @pytest.mark.usefixtures("gl")
 def test_the_depth_table_is_what_is_measured(run):
     """By JAX to the two digits shown; by GLSL where a division may be another one, to an eighth."""
-    table = TEXT[TEXT.index("<!-- normalbench depth -->") : TEXT.index("## Commands")]
-    lines = re.findall(r"^\| `(\w+)` +\| `(\w+)` +\|([^|]+)\|([^|]+)\|([^|]+)\|([^|]+)\|$", table, re.M)
+    shape = r"^\| `(\w+)` +\| `(\w+)` +\|([^|]+)\|([^|]+)\|([^|]+)\|([^|]+)\|$"
+    lines = re.findall(shape, table("normalbench depth"), re.M)
     assert len(lines) == 10
-    (command,) = re.findall(r"^    normalbench (depth --near 0.1 --far 1000 --distance .*)$", TEXT, re.M)
-    status, out, _ = run(*command.split(), "--format", "json")
+    (command,) = [line for line in COMMANDS if line.startswith("normalbench depth --near 0.1 --far 1000 --distance")]
+    status, out, _ = run(*command.split()[1:], "--format", "json")
     rows = [row for row in json.loads(out) if row["distance"]]
     assert status == 0
     for name, storage, *shown in lines:
@@ -182,8 +305,8 @@ def test_the_depth_table_is_what_is_measured(run):
 
 def test_the_frames_table_is_what_is_measured(run):
     """Every row of 32 bits, best first, as the command prints them."""
-    table = TEXT[TEXT.index("<!-- normalbench frames -->") :].split("\n\n")[0]
-    lines = [[cell.strip(" `%") for cell in line.split("|")[1:-1]] for line in table.splitlines()[3:]]
+    shown = table("normalbench frames").splitlines()[3:]
+    lines = [[cell.strip(" `%") for cell in line.split("|")[1:-1]] for line in shown]
     status, out, _ = run("frames", "--backend", "jax", "--format", "json")
     rows = [row for row in json.loads(out) if row["bits"] == 32]
     assert status == 0 and [line[:2] for line in lines] == [[row["encoding"], row["storage"]] for row in rows]
@@ -194,12 +317,12 @@ def test_the_frames_table_is_what_is_measured(run):
 
 
 def test_the_cost_table_is_what_is_measured(run):
-    table = TEXT[TEXT.index("<!-- normalbench cost -->") :].split("\n\n")[0]
-    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", table)
-    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d*)" * 6 + r" \|$", table, re.M)
+    shown = table("normalbench cost")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d*)" * 6 + r" \|$", shown, re.M)
     assert len(lines) == 8
     names = ",".join(line[0] for line in lines)
-    words = ["--isa", "--family", "polaris10,navi31", "--stage", "fragment", "--seeds", "--format", "json"]
+    words = ["--isa", "--family", "polaris10,navi31", "--stage", "fragment", "--article", "--format", "json"]
     status, out, err = run("cost", "--encoding", names, *words)
     if status == 3 and not os.environ.get("CI"):
         pytest.skip(err)
@@ -207,7 +330,7 @@ def test_the_cost_table_is_what_is_measured(run):
     if {row["driver"] for row in rows if row["family"]} != {mesa}:
         pytest.skip(f"this machine's compiler is not {mesa}")
     found = {(row["encoding"], row["operation"], row["family"] or row["compiler"]): row["instructions"] for row in rows}
-    found |= {key[:2]: found[key] for key in found if key[2] == seeds.SLOTS_BY and found[key] is not None}
+    found |= {key[:2]: found[key] for key in found if key[2] == published.SLOTS_BY and found[key] is not None}
     for name, *figures in lines:
         for operation, (article, polaris, navi) in zip(("encode", "decode"), (figures[:3], figures[3:]), strict=True):
             key = (name, operation)
@@ -216,29 +339,49 @@ def test_the_cost_table_is_what_is_measured(run):
 
 
 def test_the_pipelines_it_shows_are_those_there_are():
-    table = TEXT[TEXT.index("<!-- normalbench list pipelines -->") :]
-    shown = dict(re.findall(r"^\| `(\w+)` +\| ([\w, ]+) \|$", table, re.M))
+    shown = dict(re.findall(r"^\| `(\w+)` +\| ([\w, ]+) \|$", table("normalbench list pipelines"), re.M))
     assert shown == {p.name: ", ".join(stage.name for stage in p.stages) for p in PIPELINES.values()}
 
 
 @pytest.mark.usefixtures("gl")
 def test_the_tests_it_shows_pass(pytester):
-    """With the encoding it shows beside them, and the gates it shows named as it says."""
-    (example,) = re.findall(r"```python\n(.*?)```", TEXT, re.S)
-    pytester.makepyfile(example)
-    pytester.path.joinpath("mine.glsl").write_text(ENCODING)
-    pytester.path.joinpath("gates.toml").write_text(GATES)
-    (command,) = re.findall(r"^    (pytest .*--normalbench.*)$", TEXT, re.M)
-    words = ["." if word == "tests" else word for word in shlex.split(command)[1:]]
-    plain = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest")
-    for more in (["--normalbench-write-baseline"], []):
-        result = pytester.runpytest_subprocess(*words, *more, *plain)
-        result.assert_outcomes(passed=example.count("def test_") + GATES.count("[[gate]]"))
+    """With the encoding and the gates it shows, by its commands: the one that writes the baseline first."""
+    for name, text in FILES.items():
+        pytester.path.joinpath(name).write_text(text)
+    tests = sum(text.count("def test_") for name, text in FILES.items() if name.startswith("test_"))
+    gates = FILES["gates.toml"].count("[[gate]]")
+    assert len(PYTEST) == 2
+    for command in sorted(PYTEST, key=len, reverse=True):
+        words = ["." if word == "tests" else word for word in shlex.split(command)[1:]]
+        result = pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider", "-p", "no:hypothesispytest")
+        result.assert_outcomes(passed=tests + gates)
 
 
-def test_the_picture_it_shows_is_there():
-    for picture in re.findall(r"!\[[^]]*\]\(([^)]+)\)", TEXT):
-        assert (ROOT / picture).stat().st_size > 10_000
+def anchors(text: str) -> set[str]:
+    """What the headings of a page are linked by."""
+    headings = re.findall(r"^#+ (.+)$", FENCE.sub("", text), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+def test_what_it_links_to_is_there(path):
+    for link in re.findall(r"\]\(([^)]+)\)", PAGES[path]):
+        name, _, anchor = link.partition("#")
+        target = (path.parent / name).resolve() if name else path
+        assert target.is_file(), link
+        assert not anchor or anchor in anchors(target.read_text()), link
+        assert target.suffix != ".png" or target.stat().st_size > 10_000, link
+
+
+def test_every_page_is_in_the_index():
+    index = PAGES[ROOT / "docs/README.md"]
+    assert all(f"({path.name})" in index for path in PAGES if path.name != "README.md")
+
+
+def test_a_seed_is_a_random_seed():
+    """Articles are named by author, title and year."""
+    for path, text in PAGES.items():
+        assert not re.search(r"\bseed \d", text), path.name
 
 
 def a_copy_of_the_rooms(folder: Path) -> Path:

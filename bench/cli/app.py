@@ -12,27 +12,20 @@ import sys
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 from typer.exceptions import Abort, TyperException
 
 from ...encodings.errors import CatalogueError
 from ...reports.charts.plots import PlotError
-from ..options.command_options import (
-    CostOptions,
-    DepthOptions,
-    FramesOptions,
-    LightsOptions,
-    SuiteOptions,
-    SweepOptions,
-    TuneOptions,
-)
-from ..options.option import QualityOptions, Reading, RenderOptions
 from ..output.errors import MissingError, UsageError
 from ..output.progress import ending
 from ..output.writing import abandon_output, write
-from .signatures import with_options
+from ..suite.run_options import RunOptions
+from ..tables.registry import TABLES
+from .commands import add_tables, command_with
+from .formats import Format, FormatOption
 
 app = typer.Typer(
     add_completion=False,
@@ -43,15 +36,7 @@ app = typer.Typer(
 INTERRUPTED = 130
 
 
-class Format(StrEnum):
-    table = "table"
-    json = "json"
-    csv = "csv"
-    markdown = "markdown"
-
-
-FormatOption = Annotated[Format, typer.Option("--format", help="How to write the rows.")]
-OutputOption = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
+PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
 
 
 @app.command("list")
@@ -63,199 +48,52 @@ def list_command(
         ),
     ] = "all",
     format: FormatOption = Format.table,
-    output: OutputOption = None,
+    output: PlainOutput = None,
 ) -> None:
     """What there is: encodings, storages, codes of depth and frames, sets, layouts, pipelines, scenes, lights."""
-    from .listing import listing
+    from ..options.listing import listing
 
     write(listing(what), format, output)
 
 
 @app.command()
-def doctor(format: FormatOption = Format.table, output: OutputOption = None) -> None:
+def doctor(format: FormatOption = Format.table, output: PlainOutput = None) -> None:
     """What this machine has: versions, cores, the GL device and how it rounds."""
-    from ..machine.doctor import examine
+    from ..results.machine import examine
 
     write(examine(), format, output)
 
 
-@app.command()
-@with_options
-def quality(
-    options: QualityOptions,
-    reading: Reading,
-    images: Annotated[
-        Path | None, typer.Option("--images", help="Write the seeds' pictures of each codec here (image sets).")
-    ] = None,
+add_tables(app, TABLES.values())
+
+
+def _run(options: Any, output: Path | None) -> int:
+    from ..suite.run import run_command
+
+    return run_command(options, output)
+
+
+RunOutput = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Results folder: new, or of a run to go on with. Default: results/<time>."),
+]
+app.command(
+    "run",
+    help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
+    "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
+)(command_with(RunOptions, _run, RunOutput))
+
+
+@app.command("columns")
+def columns_command(
+    table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
     format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> int:
-    """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
-
-    A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).
-    """
-    from ..tables.quality.command import Request, quality_command
-
-    return quality_command(Request(**vars(options), reading=reading), images, format, output)
-
-
-@app.command()
-@with_options
-def render(
-    options: RenderOptions,
-    images: Annotated[
-        Path | None, typer.Option("--images", help="Write final, reference and difference pictures here.")
-    ] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
+    output: PlainOutput = None,
 ) -> None:
-    """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
+    """What a table's columns mean: definitions, units, which way is better."""
+    from ..tables.columns import columns
 
-    Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of --encoding,
-    --storage and --rounding the layouts are measured as they are.
-    """
-    from ..tables.render.command import RenderRequest, render_command
-
-    render_command(RenderRequest(**vars(options)), images, format, output)
-
-
-@app.command()
-@with_options
-def sweep(
-    options: SweepOptions,
-    plot: Annotated[Path | None, typer.Option("--plot", help="Draw it into this PNG, SVG or PDF file.")] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.
-
-    With -o a sweep that was stopped goes on where it was when the same command is run again.
-    """
-    from ..tables.sweep.command import SweepRequest, sweep_command
-
-    sweep_command(SweepRequest(**vars(options)), plot, format, output)
-
-
-@app.command()
-@with_options
-def lights(
-    options: LightsOptions,
-    images: Annotated[
-        Path | None, typer.Option("--images", help="Write falloffs, resolves, final and difference pictures here.")
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw errors over the number of lights into this PNG, SVG or PDF.")
-    ] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.
-
-    The model, in JAX, stands beside what the GL device does. Without a GL device the model is measured alone.
-    """
-    from ..tables.lights.command import LightsRequest, lights_command
-
-    lights_command(LightsRequest(**vars(options)), images, plot, format, output)
-
-
-@app.command()
-@with_options
-def depth(
-    options: DepthOptions,
-    images: Annotated[
-        Path | None, typer.Option("--images", help="Write pictures of each code's error in a scene here.")
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw errors over distance: a PNG, SVG or PDF file.")
-    ] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.
-
-    Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for depths
-    up to a sixteenth of it nearer or farther.
-    """
-    from ..tables.depth.command import DepthRequest, depth_command
-
-    depth_command(DepthRequest(**vars(options)), images, plot, format, output)
-
-
-@app.command()
-@with_options
-def frames(options: FramesOptions, format: FormatOption = Format.table, output: OutputOption = None) -> int:
-    """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost hands.
-
-    A set may be a mesh (glTF, GLB, OBJ, PLY): the frames of its vertices, authored or along its uv.
-    """
-    from ..tables.tangent_frames.command import FramesRequest, frames_command
-
-    return frames_command(FramesRequest(**vars(options)), format, output)
-
-
-@app.command()
-@with_options
-def cost(
-    options: CostOptions,
-    seeds: Annotated[bool, typer.Option("--seeds", help="The article's figures beside them.")] = False,
-    disassembly: Annotated[
-        Path | None, typer.Option("--disassembly", help="Write what each family's compiler made here.")
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw cost against error into this PNG, SVG or PDF file.")
-    ] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """What encoding and decoding cost: instructions on five GPU families, and time; all of it by default.
-
-    Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.
-    """
-    from ..tables.cost.command import CostRequest, cost_command
-
-    cost_command(CostRequest(**vars(options)), seeds, disassembly, plot, format, output)
-
-
-@app.command()
-@with_options
-def tune(
-    encoding: Annotated[str, typer.Argument(help="An encoding; `normalbench list encodings` shows them.")],
-    options: TuneOptions,
-    reading: Reading,
-    table: Annotated[
-        Path | None, typer.Option("--table", help="Write a tuned look-up into this file, a NumPy array.")
-    ] = None,
-    format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out.
-
-    What is found has a name that --encoding and --storage take in every command, such as stereographic:scale=1.31.
-    """
-    from ..tables.tune.command import tune_command
-
-    tune_command(encoding, options, reading, table, format, output)
-
-
-@app.command()
-@with_options
-def run(
-    options: SuiteOptions,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", help="Results folder, new or of a run that was stopped. Default: results/<time>."
-        ),
-    ] = None,
-) -> None:
-    """The default suite into a results folder with its report: normals, images, light, depth, frames, pass times.
-
-    A run that was stopped goes on when the same command is run again.
-    """
-    from ..suite.run_command import run_command
-    from ..suite.suite import SuiteRequest
-
-    run_command(SuiteRequest(**vars(options)), output)
+    write(columns(table), format, output, by="table")
 
 
 @app.command()
@@ -265,7 +103,7 @@ def check(
         Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
     ] = None,
     format: FormatOption = Format.table,
-    output: OutputOption = None,
+    output: PlainOutput = None,
 ) -> int:
     """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
     from ..gates.check_command import check_command
@@ -273,17 +111,27 @@ def check(
     return check_command(gates, run, format, output)
 
 
+class FailOn(StrEnum):
+    never = "never"
+    worse = "worse"
+    change = "change"
+
+
 @app.command()
 def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
+    fail_on: Annotated[FailOn, typer.Option("--fail-on", help="What makes the exit status 1.")] = FailOn.never,
     format: FormatOption = Format.table,
-    output: OutputOption = None,
-) -> None:
-    """What changed between two runs: figures exactly, times only where the difference is more than chance."""
+    output: PlainOutput = None,
+) -> int:
+    """What changed between two runs, the worst first: figures exactly, times only where it is more than chance.
+
+    For people at most 20 lines; JSON and CSV have every figure that differs.
+    """
     from ..results.compare_command import compare_command
 
-    compare_command(before, after, format, output)
+    return compare_command(before, after, fail_on, format, output)
 
 
 @app.command()
@@ -301,7 +149,7 @@ def report(
 
     The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
     """
-    from ..suite.report_command import report_command
+    from ..suite.report import report_command
 
     report_command(run, markdown, output)
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ...encodings.encoding import Encoding
+from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.codecs.codec_passes import encoding_defines
 from ...gbuffer.gl.device import Device, bind
 from ...gbuffer.gl.shader import ShaderError, Source

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...encodings.catalogue import ENCODINGS, NAMES
-from ...encodings.encoding import Encoding
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.encoding import Encoding
 from ..output.errors import UsageError
 
 MARK, TABLE = ":", "table"
@@ -20,8 +20,8 @@ def tuned(word: str) -> Encoding:
         UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is no table.
     """
     name, *settings = word.split(MARK)
-    if name not in NAMES:
-        raise UsageError(f"{word}: unknown encoding {name!r}; known: {', '.join(NAMES)}")
+    if name not in ENCODINGS:
+        raise UsageError(f"{word}: unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
     encoding = ENCODINGS[name]
     values: dict[str, str] = {}
     for setting in settings:

@@ -14,14 +14,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...encodings.catalogue import ENCODINGS, NAMES
-from ...encodings.encoding import Encoding
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ..options.words import given_in
 from ..output.errors import UsageError, pick
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
 ENCODE = re.compile(r"\bvec([23])\s+(\w+)_encode\s*\(\s*vec3\s+\w+\s*,\s*vec3\s+\w+\s*\)")
+ENDING = ".glsl"
 # A first look takes a second or two; a shader that does not end takes for ever.
 TIME_LIMIT = 60.0
 # Farther off than that on average it is hardly the decoder of this encoder.
@@ -42,38 +44,35 @@ def encodings_named(names: str) -> list[Encoding]:
         UsageError: an unknown name, or nothing left.
     """
     words = dict.fromkeys(word.strip() for word in names.split(","))
-    files = [word for word in words if word.endswith(".glsl")]
-    found, complaints = {}, []
-    for word in files:
-        try:
-            encoding = _looked_at(Path(word))
-            if encoding.name in (other.name for other in found.values()):
-                raise UsageError(
-                    f"{word}: another file has an encoding named {encoding.name}; rename its two functions"
-                )
-            found[word] = encoding
-        except UsageError as error:
-            complaints.append(str(error))
-    rest = [word for word in words if word not in complaints and (word not in files or word in found)]
+    files, complaints = _read_all([word for word in words if word.endswith(ENDING)])
+    rest = [word for word in words if word in files or not word.endswith(ENDING)]
     if complaints and not rest:
         raise UsageError(complaints[0])
     for line in complaints:
         print(f"normalbench: left out: {' '.join(line.split())}", file=sys.stderr)
-    for word in rest:
-        if tuned_names.MARK in word and word not in found:
-            found[word] = tuned_names.tuned(word)
-            # Layouts know encodings by name.
-            ENCODINGS[found[word].name] = found[word]
-    # "all" is the catalogue, whatever files there were before.
-    return pick("encoding", ",".join(rest), {**{name: ENCODINGS[name] for name in NAMES}, **found})
+    tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
+    return pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
 
 
-def _looked_at(path: Path) -> Encoding:
+def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str]]:
+    """The encodings of files, and why others are left out: a line for each."""
+    found: dict[str, Encoding] = {}
+    complaints: list[str] = []
+    for word in words:
+        try:
+            found[word] = _looked_at(Path(word), [encoding.name for encoding in found.values()])
+        except UsageError as error:
+            complaints.append(str(error))
+    return found, complaints
+
+
+def _looked_at(path: Path, taken: list[str]) -> Encoding:
+    """A file's encoding after the first look. Raises UsageError where rows could not tell its name from another's."""
     encoding = replace(read_encoding(path), domain=_domain(path, _look(path)))
-    if encoding.name in NAMES:
+    if encoding.name in ENCODINGS:
         raise UsageError(f"{path}: there is an encoding named {encoding.name} already; rename its two functions")
-    # Layouts know encodings by name.
-    ENCODINGS[encoding.name] = encoding
+    if encoding.name in taken:
+        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename its two functions")
     return encoding
 
 
@@ -99,7 +98,8 @@ def read_encoding(path: Path) -> Encoding:
         components=int(match[1]),
         domain="sphere",
         citation=str(path),
-        glsl=path.resolve(),
+        # Not resolved: the twin lies next to the path that was given.
+        glsl=path.absolute(),
         ulps=(0, 0),
         ulps_reason="a user's own",
     )

@@ -10,26 +10,34 @@ from pathlib import Path
 from typing import Any
 
 from ...reports.tables import to_json
-from ..options.option import MEASURED, fields_of
+from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..output.writing import whole_file
-from ..results.comparison import NOT_COMPARED, difference, same
-from .limits import row_name
+from ..results.comparison import difference, same
+from ..tables.registry import table_of_run
+from ..tables.table import Role, Row, Table
 
-Row = dict[str, Any]
 Entry = dict[str, Any]
 # How a row was measured, which is no figure of it.
-HOW = ("device", "rounded_by")
+HOW = ("device", "rounded_by", "clock")
 
 
-def entry(table: str, asked: Mapping[str, Any], row: Row) -> Entry:
-    """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked."""
-    known = fields_of(*MEASURED[table])
+def entry(table: Table, asked: Mapping[str, Any], row: Row) -> Entry:
+    """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked.
+
+    Times, and what only a program reads, are left out.
+    """
+    known = fields_of(table.options)
     key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
-    (plain,) = json.loads(
-        to_json([{name: figure for name, figure in row.items() if not name.startswith(NOT_COMPARED)}])
-    )
-    return {"table": table, "key": key, "row": plain}
+    # Several rows of one request differ in their keys.
+    key |= {column.name: row.get(column.name) for column in table.of_role(Role.KEY)}
+    (plain,) = json.loads(to_json([{name: value for name, value in row.items() if _is_kept(table, name)}]))
+    return {"table": table.name, "key": key, "row": plain}
+
+
+def _is_kept(table: Table, name: str) -> bool:
+    column = table.column(name)
+    return column is None or column.role not in (Role.TIME, Role.RAW) or name == "skipped"
 
 
 def read_baseline(path: Path) -> dict[str, Entry]:
@@ -79,7 +87,7 @@ class Baseline:
         """Keep a row for writing. Raises UsageError where another is asked for by the same."""
         before = self.recorded.setdefault(_text(one), one)
         if list(changes(before["row"], one["row"], {})):
-            raise UsageError(f"two rows of a baseline are called {row_name(one['row'])}; rename one")
+            raise UsageError(f"two rows of a baseline are called {_name(one)}; rename one")
 
     def differences(self, one: Entry, tolerances: Mapping[str, float]) -> list[str]:
         """What a row and its entry say differently, a line for each column.
@@ -92,8 +100,7 @@ class Baseline:
             self._read = read_baseline(self.path) if self.path.exists() else {}
         before = self._read.get(_text(one))
         if before is None:
-            name = row_name(one["row"])
-            raise AssertionError(f"{self.path} has no row {name}; --normalbench-write-baseline writes it")
+            raise AssertionError(f"{self.path} has no row {_name(one)}; --normalbench-write-baseline writes it")
         found = list(changes(before["row"], one["row"], tolerances))
         devices = [row.get("device") for row in (before["row"], one["row"])]
         if found and devices[0] != devices[1]:
@@ -103,6 +110,11 @@ class Baseline:
     def dumped(self) -> str:
         """What was recorded, as text; none for nothing."""
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
+
+
+def _name(one: Entry) -> str:
+    table = table_of_run(one["table"])
+    return table.name_of(one["row"]) if table else str(one["table"])
 
 
 def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from ..output.errors import UsageError
-from ..results.runs import Row, read_run
-from .limits import Limit, row_name, split_limits
-from .measured import TABLES, Found, measured, with_their_options
+from ..results.runs import read_run
+from ..tables.table import Role, Row, Table
+from .limits import Limit, split_limits
+from .measured import Found, measured, table_named, with_their_options
 
 MAX_GATES = 1000
 
@@ -21,13 +22,13 @@ class Gate:
     """Rows of a table, and what they must keep.
 
     Attributes:
-        table: "quality" or "render", which are measured; or any table of a run.
-        options: what chooses the rows, columns' values, and for a measured table the command's options.
+        table: whose rows.
+        options: what is measured, by the table's options; of a run's rows, which, by the values of their columns.
         limits: one for each column.
         place: file and number, for messages.
     """
 
-    table: str
+    table: Table
     options: Mapping[str, Any]
     limits: tuple[Limit, ...]
     place: str
@@ -55,11 +56,14 @@ def _gate(place: str, values: dict[str, Any]) -> Gate:
     try:
         for name, value in values.items():
             if not isinstance(value, str | int | float):
-                raise UsageError(f"{name} is {value!r}; a text or a number would do")
+                raise UsageError(f"{name} is {value!r}; it must be a text or a number")
+        table = table_named(values.pop("table", "quality"))
         options, limits = split_limits(values)
+        for limit in limits:
+            limit.check(table)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from error
-    return Gate(str(options.pop("table", "quality")), options, limits, place)
+    return Gate(table, options, limits, place)
 
 
 Measure = Callable[[Gate], list[Found]]
@@ -72,10 +76,6 @@ def measured_for(gate: Gate) -> list[Found]:
         UsageError: a table, an option or a name that there is not; one line with the gate's place.
         MissingError: this machine lacks what they need.
     """
-    if gate.table not in TABLES:
-        raise UsageError(
-            f"{gate.place}: table {gate.table!r} is not measured here, only {', '.join(TABLES)}; name a --run"
-        )
     try:
         return measured(gate.table, with_their_options(gate.table, gate.options, gate.limits))
     except UsageError as error:
@@ -83,15 +83,20 @@ def measured_for(gate: Gate) -> list[Found]:
 
 
 def _rows_of_run(run: Path) -> Measure:
-    done = read_run(run)
+    tables = read_run(run).tables
 
     def rows(gate: Gate) -> list[Found]:
-        if gate.table not in done.tables:
-            raise UsageError(f"{gate.place}: {run} has no table {gate.table!r}; it has {', '.join(done.tables)}")
-        found = [row for row in done.tables[gate.table] if all(_is(row.get(n), v) for n, v in gate.options.items())]
+        name = gate.table.name
+        if name not in tables:
+            raise UsageError(f"{gate.place}: {run} has no table {name!r}; it has {', '.join(tables)}")
+        for option in gate.options:
+            if not gate.table.column(option):
+                keys = ", ".join(column.name for column in gate.table.of_role(Role.KEY))
+                raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
+        found = [row for row in tables[name] if all(_is(row.get(n), v) for n, v in gate.options.items())]
         if not found:
             raise UsageError(f"{gate.place}: {run} has no row with {dict(gate.options)!r}")
-        return [Found(row, lambda: None) for row in found]
+        return [Found(row, lambda: None) for row in gate.table.work.finish(found)]
 
     return rows
 
@@ -120,13 +125,13 @@ def checked(gates: list[Gate], run: Path | None, tick: Callable[[str], None]) ->
 
 def _held(gate: Gate, found: Found, limit: Limit) -> Row:
     try:
-        broken = limit.broken_by(found.row)
+        broken = limit.broken_by(gate.table, found.row)
     except UsageError as error:
-        raise UsageError(f"{gate.place}: {gate.table}: {error}") from error
+        raise UsageError(f"{gate.place}: {gate.table.name}: {error}") from error
     return {
         "gate": gate.place.rsplit(" ", 1)[-1],
-        "table": gate.table,
-        "row": row_name(found.row),
+        "table": gate.table.name,
+        "row": gate.table.name_of(found.row),
         "column": limit.column,
         "figure": found.row[limit.column],
         "limit": str(limit),

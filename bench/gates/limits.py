@@ -1,4 +1,4 @@
-"""What a figure must keep, and what a row is called. Imports nothing heavy."""
+"""What a figure must keep. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -9,21 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..output.errors import UsageError
+from ..tables.table import Role, Table
 
 # Neither can be read in two ways, which would take a long text a long time.
 LIMIT = re.compile(r"(at least|at most)\s+(.*)", re.IGNORECASE | re.DOTALL)
 NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d+)?|inf", re.IGNORECASE | re.ASCII)
-# What a row is called by.
-IDENTITY = (
-    *("encoding", "storage", "rounding", "normals", "backend", "pipeline", "layout", "scene", "experiment"),
-    *("light_buffer", "light_targets", "channel", "order", "colour", "lights", "sum", "peak", "power", "depth"),
-    *("rebuilt", "near", "far", "distance", "frame_set", "operation", "stage", "family"),
-)
-
-
-def row_name(row: Mapping[str, Any]) -> str:
-    """What a row is called."""
-    return " ".join(str(row[name]) for name in IDENTITY if row.get(name) is not None)
 
 
 @dataclass(frozen=True)
@@ -43,8 +33,19 @@ class Limit:
     def __str__(self) -> str:
         return f"{self.side} {self.value:.9g}"
 
-    def broken_by(self, row: Mapping[str, Any]) -> str | None:
-        """What is to be said of a row that does not keep it; None of one that does.
+    def check(self, table: Table) -> None:
+        """Raises UsageError where the table has no such column, or it holds no figure."""
+        column = table.column(self.column)
+        if column is None:
+            figures = ", ".join(c.name for c in table.of_role(Role.FIGURE, Role.TIME))
+            raise UsageError(f"{table.name}: no column {self.column!r}; figures are {figures}")
+        if column.role not in (Role.FIGURE, Role.TIME):
+            raise UsageError(
+                f"{table.name}: {self.column} is not a figure; `normalbench columns {table.name}` lists them"
+            )
+
+    def broken_by(self, table: Table, row: Mapping[str, Any]) -> str | None:
+        """What is to be said of a row that does not keep it; None where it does.
 
         Raises:
             UsageError: the row has no such column.
@@ -56,7 +57,7 @@ class Limit:
             return None
         shown = f"{figure:.9g}" if isinstance(figure, float) else figure
         reason = f" ({' '.join(row['skipped'].split())})" if row.get("skipped") else ""
-        return f"{row_name(row)}: {self.column} is {shown}{reason}, not {self}"
+        return f"{table.name_of(row)}: {self.column} is {shown}{reason}, not {self}"
 
 
 def limit(column: str, text: Any) -> Limit | None:
@@ -79,5 +80,5 @@ def split_limits(values: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[Limit
     options = {name: value for name, value in values.items() if found[name] is None}
     limits = tuple(one for one in found.values() if one)
     if not limits:
-        raise UsageError('it holds no column to anything; say psnr_db = "at least 47.5"')
+        raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
     return options, limits

@@ -7,17 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
-from ...encodings.catalogue import ENCODINGS
-from ...encodings.encoding import Encoding
-from ..metrics.images import require_flip
 from ..metrics.meter import Worst
-from ..options.option import MEASURED, Reading, checked_options, fields_of
-from ..results.runs import Row
-from ..tables.quality import measure as quality
-from ..tables.quality.command import Request
-from ..tables.quality.measure import require_device
-from ..tables.render.command import RenderRequest
-from ..tables.render.measure import Bench, Case, ranked
+from ..options.option import checked_options, fields_of
+from ..output.errors import UsageError
+from ..results.measuring import Nothing, asked, measured_steps
+from ..tables.registry import TABLES
+from ..tables.table import Row, Table
 from .limits import Limit
 
 
@@ -34,53 +29,39 @@ class Found:
         return self.find()
 
 
-def measured(table: str, values: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> list[Found]:
+def table_named(name: Any) -> Table:
+    """A table by its name. Raises UsageError."""
+    if not isinstance(name, str) or name not in TABLES:
+        raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
+    return TABLES[name]
+
+
+def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> list[Found]:
     """The rows of a table with these options, and with what is usual where they say nothing.
 
     Args:
-        table: one of options.MEASURED.
-        usual: in place of what is usual for a gate: octahedral/rgba8 by JAX, or in an exact G-buffer.
+        usual: in place of what is usual for a gate.
 
     Raises:
         UsageError: an option or a value that there is not.
         MissingError: this machine lacks what they need.
     """
-    return TABLES[table]({**checked_options(table, usual or {}), **checked_options(table, values)})
+    given = {**checked_options(table.options, usual or {}), **checked_options(table.options, values)}
+    ask = asked(table, table.options(**single(table, given)))
+    steps = measured_steps(ask, Nothing())
+    step_of = {id(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
+    rows = table.work.finish([row for rows in steps for row in rows])
+    return [Found(row, partial(table.work.worst, step_of[id(row)])) for row in rows]
 
 
-def with_their_options(table: str, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
+def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What a gate measures: what it says, and one row's worth of the rest. A layout is measured as it is."""
+    usual = {} if given.get("layout") is not None else table.single
+    return {**usual, **given}
+
+
+def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
     """The options, and those without which a limited column is not measured: `flip`, `worst_case`, `codes`."""
-    limited = {limit.column for limit in limits}
-    known = fields_of(*MEASURED[table])
-    asked = {name for name, field in known.items() if field.kind is bool and limited & {name, *field.option.columns}}
-    return dict(values) | dict.fromkeys(asked, True)
-
-
-def _quality(options: Mapping[str, Any]) -> list[Found]:
-    chosen = {"encoding": "octahedral", "backend": "jax", **options}
-    reading = Reading(**{name: chosen.pop(name) for name in fields_of(Reading) if name in chosen})
-    cases = Request(**chosen, reading=reading).cases()
-    return [Found(quality.measure(case), partial(quality.worst, case)) for case in cases]
-
-
-def _render(options: Mapping[str, Any]) -> list[Found]:
-    # A layout without a codec is measured as it is.
-    usual: dict[str, Any] = {} if "layout" in options else {"encoding": "octahedral"}
-    request = RenderRequest(**usual | dict(options))
-    gl = require_device()
-    if request.flip:
-        require_flip()
-    bench = Bench(gl, 0, request.flip)
-    cases = request.cases(gl)
-    rows = ranked([bench.measure(case)[0] for case in cases])
-    find = partial(_worst_drawn, bench, dict(ENCODINGS))
-    return [Found(row, partial(find, case)) for row, case in zip(rows, cases, strict=True)]
-
-
-def _worst_drawn(bench: Bench, encodings: Mapping[str, Encoding], case: Case) -> Worst | None:
-    # Layouts know encodings by name, and a user's file may have given a name to another since.
-    ENCODINGS.update(encodings)
-    return bench.worst(case)
-
-
-TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Found]]] = {"quality": _quality, "render": _render}
+    known = fields_of(table.options)
+    columns = [column for limit in limits if (column := table.column(limit.column))]
+    return dict(values) | {column.option: True for column in columns if column.option in known}

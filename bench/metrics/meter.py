@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ...encodings.codec import Codec
+from ...encodings.codecs.codec import Codec
 from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
 from ..machine.cores import on_all_cores
@@ -41,11 +41,11 @@ def idle() -> None:
 
 
 class Sums(NamedTuple):
-    """Sums over lanes: squared error, the seeds' squared error (in units of 1/255), angle and its square (degrees), and
-    how many decodes were no number."""
+    """Sums over lanes: squared error, the article's squared error (in units of 1/255), angle and its square (degrees),
+    and how many decodes were no number."""
 
     squared: Any
-    seed_squared: Any
+    article_squared: Any
     angle: Any
     angle_squared: Any
     invalid: Any
@@ -65,11 +65,11 @@ def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
 
 
 def _errors(n: Vec3, decoded: Vec3, covered):
-    """Per normal: squared error, the seeds' squared error, angle, and 1 where the decode is no number, which counts as
-    the opposite direction."""
+    """Per normal: squared error, the article's squared error, angle, and 1 where the decode is no number, which counts
+    as the opposite direction."""
     decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
-    # The seeds' difference image was |n - n'| in eight bits per channel.
+    # The article's difference image was |n - n'| in eight bits per channel.
     eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
     angle = jnp.where(covered, angle_between(n, decoded), 0.0)
     invalid = jnp.where(finite | ~covered, 0.0, 1.0).astype(jnp.float32)
@@ -106,13 +106,13 @@ def _traced_scan(chunk: Decoded):
 
     def step(carry, block: Decoded):
         sums, largest = carry
-        squared, seed_squared, angle, invalid = _errors(*block)
+        squared, article_squared, angle, invalid = _errors(*block)
         key = _histogram_key(angle, block.covered)
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
-        squared, seed_squared, angle, invalid, key = jax.lax.optimization_barrier(
-            (squared, seed_squared, angle, invalid, key)
+        squared, article_squared, angle, invalid, key = jax.lax.optimization_barrier(
+            (squared, article_squared, angle, invalid, key)
         )
-        parts = (squared, seed_squared, angle, angle * angle, invalid)
+        parts = (squared, article_squared, angle, angle * angle, invalid)
         added = Sums(*(s + p.astype(jnp.float64).sum(0) for s, p in zip(sums, parts, strict=True)))
         return (added, jnp.maximum(largest, angle.max(0))), key
 
@@ -185,7 +185,7 @@ class Statistics:
         pixels: all of them, background included.
         invalid: decodes that were no number; each counts as the opposite direction.
         mse: mean squared error over the three components of covered normals, not renormalised.
-        seed_mse: the seeds' own: |n - n'| rounded to 8 bits, over every pixel.
+        article_mse: the article's: |n - n'| rounded to 8 bits, over every pixel.
         angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
         angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
             first holds 0 as well.
@@ -196,7 +196,7 @@ class Statistics:
     pixels: int
     invalid: int
     mse: float
-    seed_mse: float
+    article_mse: float
     angle_mean_deg: float
     angle_rms_deg: float
     angle_p99_deg: float
@@ -337,13 +337,13 @@ def measure_together(
 
 def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:
     count = int(histogram[:BINS].sum())
-    squared, seed_squared, angle, angle_squared, invalid = sums
+    squared, article_squared, angle, angle_squared, invalid = sums
     return Statistics(
         count=count,
         pixels=pixels,
         invalid=int(invalid),
         mse=squared / (3 * count),
-        seed_mse=seed_squared / 255**2 / (3 * pixels),
+        article_mse=article_squared / 255**2 / (3 * pixels),
         angle_mean_deg=angle / count,
         angle_rms_deg=math.sqrt(angle_squared / count),
         angle_p99_deg=_percentile(histogram, largest, 0.99),

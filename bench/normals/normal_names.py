@@ -10,6 +10,7 @@ from ...gbuffer.scenes.files import read as files
 from ..options.counts import checked_sides
 from ..options.option import Reading
 from ..options.scene_names import mesh_file, say_notes
+from ..options.words import given_in
 from ..output.errors import UsageError, pick_or_read
 from .captures import capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
@@ -45,7 +46,8 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
             made, notes[path] = mesh_set(path, reading.size)
         return given(made)
 
-    made = [make(count, seed) for make in pick_or_read("normal set", names, NORMAL_SETS, ENDINGS, read)]
+    known = {**NORMAL_SETS, **{name: given(made) for name, made in given_in(names).items()}}
+    made = [make(count, seed) for make in pick_or_read("normal set", names, known, ENDINGS, read)]
     say_notes(notes)
     return made
 

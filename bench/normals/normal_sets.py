@@ -164,7 +164,7 @@ def axes(count: int = 0, seed: int = 0) -> NormalSet:
 
 
 def playground(count: int = 0, seed: int = 0) -> NormalSet:
-    """The seeds' scene as its camera sees it, 640 x 480."""
+    """The article's scene as its camera sees it, 640 x 480."""
     return _playground()
 
 

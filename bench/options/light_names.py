@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
-from ...encodings.catalogue import LIGHT_ENCODINGS
-from ...encodings.light_encoding import LightEncoding
+from ...encodings.catalogue import LIGHT_BUFFERS
+from ...encodings.codecs.light_codec import LightCodec
 from ..output.errors import UsageError, pick
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
 
 
-def light_buffers_named(names: str) -> list[LightEncoding]:
-    """The light encodings that comma-separated names stand for; `linear:1` is one over the range [0, 1].
+def light_buffers_named(names: str) -> list[LightCodec]:
+    """The light codecs that comma-separated names stand for; `linear:1` is one over the range [0, 1].
 
     Raises:
         UsageError: an unknown name, or a range that is none or that the encoding does not have.
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
     ranged = {word: _ranged(word) for word in words if ":" in word}
-    chosen = pick("light buffer", names, {**LIGHT_ENCODINGS, **ranged})
-    return list({encoding.name: encoding for encoding in chosen}.values())
+    chosen = pick("light buffer", names, {**LIGHT_BUFFERS, **ranged})
+    return list({codec.name: codec for codec in chosen}.values())
 
 
-def _ranged(word: str) -> LightEncoding:
+def _ranged(word: str) -> LightCodec:
     name, _, text = word.partition(":")
-    known = {name: encoding for name, encoding in LIGHT_ENCODINGS.items() if encoding.ranged}
-    encoding = known.get(name)
-    if not encoding or not encoding.ranged:
+    known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
+    codec = known.get(name)
+    if not codec or not codec.encoding.ranged:
         raise UsageError(f"light buffer {word}: of {', '.join(known)} the range may be given, as in linear:1")
     try:
         limit = float(text)
@@ -36,4 +37,4 @@ def _ranged(word: str) -> LightEncoding:
     if not LEAST_RANGE <= limit <= MOST_LIGHT:
         raise UsageError(f"light buffer {word}: a range is {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in {name}:1")
     # As its name has it: two ranges that are called the same are the same.
-    return encoding.ranged(float(f"{limit:g}"))
+    return replace(codec, encoding=codec.encoding.ranged(float(f"{limit:g}")))

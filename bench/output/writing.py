@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...reports import tables
+from ...reports.charts import plots
 from .errors import UsageError
 
 
@@ -72,6 +73,19 @@ def whole_file(path: Path) -> Iterator[Path]:
     finally:
         if partial != path:
             partial.unlink(missing_ok=True)
+
+
+def check_plot(path: Path | None) -> None:
+    """Raises UsageError or PlotError where a plot of this name cannot be written; None will do."""
+    if path:
+        check_writable(path)
+        plots.check_format(path)
+
+
+def save_plot(path: Path, figure: Any) -> None:
+    """Write a figure as the format that its name ends in. Raises UsageError where it cannot be written."""
+    with whole_file(path) as partial:
+        plots.save(figure, (partial, path.suffix[1:].lower()))
 
 
 def say(text: str) -> None:

@@ -10,8 +10,7 @@ import pytest
 
 from ..gates.gates import Gate, read_gates
 from ..output.errors import UsageError
-from .plugin import session_of
-from .session import Normalbench
+from .session import Normalbench, session_of
 
 
 class GateFile(pytest.File):

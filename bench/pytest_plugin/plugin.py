@@ -17,67 +17,46 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ..options.option import MEASURED, Field, fields_of
+from ..options.option import Field
 from ..output.errors import UsageError
+from .own_options import BASELINE, REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, flag, mirrored
 
 if TYPE_CHECKING:
-    from .session import Normalbench, Session
+    from .session import Normalbench
 
 MARKER = (
     'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options, which are '
-    "those of normalbench quality or render, and hold columns of the rows to limits before the test runs."
+    "those of the table's command, and hold columns of the rows to limits before the test runs."
 )
-REQUIRE_GL, BASELINE, WRITE_BASELINE = "require_gl", "baseline", "write_baseline"
 KEPT = "normalbench_baseline"
-SESSION = pytest.StashKey["Session"]()
 REPORTED = pytest.StashKey[list[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("normalbench", "normalbench: for tests that do not say otherwise")
-    for name, fields in _mirrored().items():
-        group.addoption(_flag(name), dest=_destination(name), default=None, **_parsed(fields))
+    for name, fields in mirrored().items():
+        group.addoption(flag(name), dest=destination(name), default=None, **_parsed(fields))
     group.addoption(
-        _flag(REQUIRE_GL), action="store_true", help="Without a GL driver fail tests that need one. Default: skip them."
+        flag(REQUIRE_GL), action="store_true", help="Without a GL driver fail tests that need one. Default: skip them."
     )
-    group.addoption(_flag(BASELINE), metavar="FILE", help="What .matches_baseline() compares rows with.")
-    group.addoption(_flag(WRITE_BASELINE), action="store_true", help="Write the baseline instead of comparing with it.")
-
-
-def _mirrored() -> dict[str, list[Field]]:
-    """The options of all measured tables by name; two tables may have one of the same name."""
-    found: dict[str, list[Field]] = {}
-    for group in (group for groups in MEASURED.values() for group in groups):
-        for name, field in fields_of(group).items():
-            found.setdefault(name, []).append(field)
-    return found
-
-
-def _flag(name: str) -> str:
-    return f"--{_destination(name)}".replace("_", "-")
-
-
-def _destination(name: str) -> str:
-    return f"normalbench_{name}"
+    group.addoption(flag(BASELINE), metavar="FILE", help="What .matches_baseline() compares rows with.")
+    group.addoption(flag(WRITE_BASELINE), action="store_true", help="Write the baseline instead of comparing with it.")
 
 
 def _parsed(fields: list[Field]) -> dict[str, Any]:
     """How argparse takes an option."""
-    kind, said = fields[0].kind, " ".join(dict.fromkeys(field.option.help for field in fields))
+    kinds, said = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
+    # Where tables take different kinds, each reads the text in its own way.
+    kind = kinds.pop() if len(kinds) == 1 else str
     if kind is bool:
-        return {"action": argparse.BooleanOptionalAction, "help": said}
-    return {"type": kind, "metavar": kind.__name__.upper(), "help": said}
+        return {"action": argparse.BooleanOptionalAction, "help": said.replace("%", "%%")}
+    return {"type": kind, "metavar": kind.__name__.upper(), "help": said.replace("%", "%%")}
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", MARKER)
-    if config.getoption(_destination(WRITE_BASELINE)):
-        _check_baseline(_baseline_path(config))
-
-
-def _baseline_path(config: pytest.Config) -> Path | None:
-    named = config.getoption(_destination(BASELINE))
-    return config.invocation_params.dir / named if named else None
+    if config.getoption(destination(WRITE_BASELINE)):
+        _check_baseline(baseline_path(config))
 
 
 def _check_baseline(path: Path | None) -> None:
@@ -85,33 +64,17 @@ def _check_baseline(path: Path | None) -> None:
     from ..output.writing import check_writable
 
     if not path:
-        raise pytest.UsageError(f"{_flag(WRITE_BASELINE)} needs {_flag(BASELINE)} FILE")
+        raise pytest.UsageError(f"{flag(WRITE_BASELINE)} needs {flag(BASELINE)} FILE")
     try:
         check_writable(path)
     except UsageError as error:
         raise pytest.UsageError(str(error)) from error
 
 
-def session_of(config: pytest.Config) -> Session:
-    """The one of this process, made when it is first asked for."""
-    if SESSION not in config.stash:
-        from ..gates.baseline import Baseline
-        from .session import Session
-
-        usual, path = {name: config.getoption(_destination(name)) for name in _mirrored()}, _baseline_path(config)
-        config.stash[SESSION] = Session(
-            usual={name: value for name, value in usual.items() if value is not None},
-            typed_in=config.invocation_params.dir,
-            require_gl=bool(config.getoption(_destination(REQUIRE_GL))),
-            baseline=Baseline(path, bool(config.getoption(_destination(WRITE_BASELINE)))) if path else None,
-        )
-    return config.stash[SESSION]
-
-
 @pytest.fixture
 def normalbench(request: pytest.FixtureRequest) -> Normalbench:
     """Measures codecs: .quality(...) and .render(...) give rows to hold to limits; files lie beside the test's own."""
-    from .session import Normalbench
+    from .session import Normalbench, session_of
 
     return Normalbench(session_of(request.config), request.path.parent)
 
@@ -125,7 +88,7 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 
 def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
-    from .session import Normalbench
+    from .session import Normalbench, session_of
 
     try:
         Normalbench(session_of(item.config), item.path.parent).hold_mark(mark.args, mark.kwargs)
@@ -158,7 +121,7 @@ def pytest_testnodedown(node: Any) -> None:
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
     """Write the baseline whole, or hand what belongs there to the process that does."""
-    config, path = session.config, _baseline_path(session.config)
+    config, path = session.config, baseline_path(session.config)
     if exitstatus not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or not path:
         return
     own = config.stash[SESSION].baseline if SESSION in config.stash else None

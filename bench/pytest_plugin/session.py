@@ -14,12 +14,14 @@ import pytest
 
 from ...encodings.errors import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
-from ..gates.limits import Limit, limit, row_name, split_limits
-from ..gates.measured import Found, measured, with_their_options
-from ..options.option import MEASURED, checked_options, fields_of
+from ..gates.limits import Limit, limit, split_limits
+from ..gates.measured import Found, measured, single, table_named, with_their_options
+from ..machine.devices import found_device
+from ..options.option import checked_options, fields_of
 from ..output.errors import MissingError, UsageError
-from ..results.runs import Row
-from ..tables.quality.measure import found_device
+from ..tables.registry import TABLES
+from ..tables.table import Row, Table
+from .own_options import REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, mirrored
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -57,17 +59,17 @@ class Session:
     baseline: Baseline | None
     _found: dict[str, list[Found]] = field(default_factory=dict, repr=False)
 
-    def measured(self, table: str, values: Mapping[str, Any], folder: Path) -> Measured:
+    def measured(self, table: Table, values: Mapping[str, Any], folder: Path) -> Measured:
         """Rows of a table, measured now or before; files are looked for in a folder.
 
         Raises:
             UsageError, MissingError: see measured.measured.
         """
-        known = fields_of(*MEASURED[table])
-        usual = {name: value for name, value in self.usual.items() if name in known}
-        asked = checked_options(table, {**usual, **values})
+        known = fields_of(table.options)
+        usual = {name: known[name].parsed(value) for name, value in self.usual.items() if name in known}
+        asked = checked_options(table.options, {**usual, **values})
         options = _located(table, asked, values, folder, self.typed_in)
-        key = json.dumps([table, str(Path.cwd()), options], sort_keys=True)
+        key = json.dumps([table.name, str(Path.cwd()), options], sort_keys=True)
         if key not in self._found:
             self._found[key] = measured(table, options)
         return Measured(self, table, asked, self._found[key])
@@ -80,10 +82,10 @@ class Session:
 
 
 def _located(
-    table: str, asked: Mapping[str, Any], said: Mapping[str, Any], folder: Path, typed_in: Path
+    table: Table, asked: Mapping[str, Any], said: Mapping[str, Any], folder: Path, typed_in: Path
 ) -> dict[str, Any]:
     """The options, words that are files by their paths from here: a test's beside it, others where they were typed."""
-    known, found = fields_of(*MEASURED[table]), dict(asked)
+    known, found = fields_of(table.options), dict(asked)
     for name, value in asked.items():
         if known[name].option.files and isinstance(value, str):
             there = folder if name in said else typed_in
@@ -103,7 +105,7 @@ class Measured:
     """Rows, of one codec mostly, and what they must keep. `measured["psnr_db"]` is the figure of a single row."""
 
     session: Session = field(repr=False)
-    table: str
+    table: Table
     asked: Mapping[str, Any]
     found: list[Found] = field(repr=False)
 
@@ -128,14 +130,16 @@ class Measured:
             UsageError: there is no such column, or it is no limit.
         """
         if not limits:
-            raise UsageError('no column is held to anything; say psnr_db="at least 47.5"')
+            raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
         self.hold(_limit(column, text) for column, text in limits.items())
 
     def hold(self, limits: Iterable[Limit]) -> None:
         """Every row keeps every limit; see assert_that."""
         limits = list(limits)
+        for one in limits:
+            one.check(self.table)
         rows = self._measurable()
-        self._raise_for([(one, [said for x in limits if (said := x.broken_by(one.row))]) for one in rows])
+        self._raise_for([(one, [said for x in limits if (said := x.broken_by(self.table, one.row))]) for one in rows])
 
     @ends_here
     def matches_baseline(self, **tolerances: float) -> None:
@@ -157,18 +161,19 @@ class Measured:
             if baseline.writes:
                 baseline.record(said)
             else:
-                wrong.append((one, [f"{row_name(one.row)}: {x}" for x in baseline.differences(said, tolerances)]))
+                wrong.append(
+                    (one, [f"{self.table.name_of(one.row)}: {x}" for x in baseline.differences(said, tolerances)])
+                )
         self._raise_for(wrong)
 
     def _request(self) -> dict[str, Any]:
         """Every option, those that nobody named with what is usual."""
-        usual = {key: value for options in MEASURED[self.table] for key, value in asdict(options()).items()}
-        return usual | dict(self.asked)
+        return asdict(self.table.options(**single(self.table, self.asked)))
 
     def _measurable(self) -> list[Found]:
         """The rows less those that a missing GL driver left empty."""
-        missing = found_device()[1] if any(row["skipped"] for row in self.rows) else ""
-        return [one for one in self.found if not missing or one.row["skipped"] != missing]
+        missing = found_device()[1] if any(row.get("skipped") for row in self.rows) else ""
+        return [one for one in self.found if not missing or one.row.get("skipped") != missing]
 
     def _raise_for(self, wrong: Iterable[tuple[Found, list[str]]]) -> None:
         lines: list[str] = []
@@ -193,7 +198,7 @@ def _limit(column: str, text: Any) -> Limit:
 
 @dataclass(frozen=True)
 class Normalbench:
-    """What the fixture `normalbench` is: measures with the options of `normalbench quality` and `render`.
+    """What the fixture `normalbench` is: a method for each table, with the options of its command.
 
     A file is looked for in the test's folder first.
     """
@@ -201,23 +206,19 @@ class Normalbench:
     session: Session = field(repr=False)
     folder: Path
 
-    @ends_here
-    def quality(self, **options: Any) -> Measured:
-        """What codecs lose of normals; octahedral/rgba8 on the playground by JAX where nothing is said."""
-        return self._measured("quality", options)
+    def __getattr__(self, name: str) -> Callable[..., Measured]:
+        """A table's method: it measures with the options of the table's command."""
+        if name not in TABLES:
+            raise AttributeError(f"no table {name!r}; known: {', '.join(TABLES)}")
+        return functools.partial(self._measured, TABLES[name])
 
     @ends_here
-    def render(self, **options: Any) -> Measured:
-        """What codecs and layouts do to the image; octahedral/rgba8 in an exact G-buffer where nothing is said."""
-        return self._measured("render", options)
-
-    @ends_here
-    def hold(self, table: str, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
+    def hold(self, table: Table, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
         """Measure, and hold every row to limits; see Measured.assert_that."""
-        if table not in MEASURED:
-            raise UsageError(f"table {table!r} is not measured; known: {', '.join(MEASURED)}")
         limits = list(limits)
-        self._measured(table, with_their_options(table, options, limits)).hold(limits)
+        for one in limits:
+            one.check(table)
+        self._measured(table, **with_their_options(table, options, limits)).hold(limits)
 
     @ends_here
     def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
@@ -225,10 +226,24 @@ class Normalbench:
         if positional:
             raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
         options, limits = split_limits(values)
-        self.hold(options.pop("table", "quality"), options, limits)
+        self.hold(table_named(options.pop("table", "quality")), options, limits)
 
-    def _measured(self, table: str, options: Mapping[str, Any]) -> Measured:
+    @ends_here
+    def _measured(self, table: Table, /, **options: Any) -> Measured:
         try:
             return self.session.measured(table, options, self.folder)
         except MissingError as error:
             self.session.lacking(error)
+
+
+def session_of(config: pytest.Config) -> Session:
+    """The one of this process, made when it is first asked for."""
+    if SESSION not in config.stash:
+        usual, path = {name: config.getoption(destination(name)) for name in mirrored()}, baseline_path(config)
+        config.stash[SESSION] = Session(
+            usual={name: value for name, value in usual.items() if value is not None},
+            typed_in=config.invocation_params.dir,
+            require_gl=bool(config.getoption(destination(REQUIRE_GL))),
+            baseline=Baseline(path, bool(config.getoption(destination(WRITE_BASELINE)))) if path else None,
+        )
+    return config.stash[SESSION]

@@ -5,19 +5,30 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from .comparison import compared
-from ..output.writing import check_writable, write
+from ..output.writing import check_writable, without, write
+from .comparison import compared, in_short
 from .runs import read_run
 
+FOR_PROGRAMS = ("severity", "keys")
+# What makes `--fail-on` fail.
+FAILS = {"never": (), "worse": ("worse",), "change": ("worse", "better", "")}
 
-def compare_command(before: Path, after: Path, format: str, output: Path | None) -> None:
-    """Write what changed from one results folder to another; that nothing did is said on standard error."""
+
+def compare_command(before: Path, after: Path, fail_on: str, format: str, output: Path | None) -> int:
+    """Write what changed from one results folder to another; that nothing did is said on standard error.
+
+    Returns:
+        the exit status: 1 where something changed that `fail_on` names.
+    """
     ours, theirs = read_run(before), read_run(after)
     if output:
         check_writable(output)
-    rows = compared(ours, theirs)
+    changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         print("normalbench: the machines differ; times are not compared", file=sys.stderr)
-    if not rows:
+    if not changes:
         print(f"normalbench: no change in {len(ours.steps)} steps", file=sys.stderr)
+    rows = in_short(changes) if format in ("table", "markdown") else without(changes, FOR_PROGRAMS)
     write(rows, format, output)
+    failing = [change for change in changes if change["verdict"] in FAILS[fail_on]]
+    return int(bool(failing))

@@ -2,110 +2,164 @@
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
 from typing import Any
 
-from ..gates.limits import row_name
-from .runs import Done, Row
+from ..tables.registry import TABLES
+from ..tables.table import Column, Role, Row, Table
+from .runs import Done
 
 # Two medians closer than this share of each other are the same to anyone who waits for a frame.
 LEAST_EFFECT = 0.05
 # How probable a difference may be by chance alone, of either sign, and still count.
 CHANCE = 0.01
-# Each frame's time, where a row has them; everything that goes by the clock starts alike. A histogram changes where its
-# mean and its largest value do, and takes a page to say so.
-EACH, NOT_COMPARED = "ms_frame_each", ("ms_", "clock", "angle_counts")
-COLUMNS = ("table", "row", "column", "before", "after", "change")
+# Each frame's time, where a row has them.
+EACH, FRAME = "ms_frame_each", "ms_frame"
+# How many lines people read of a comparison.
+LINES = 20
+ONLY = {True: "only before", False: "only after"}
 
 
 def compared(before: Done, after: Done) -> list[Row]:
-    """A row for each figure that is another, and for each step that only one of the runs has."""
-    ours, theirs = _by_key(before), _by_key(after)
+    """A row for each figure that differs, and for each row that only one of the runs has; the worst first."""
     same_machine = before.facts.get("machine") == after.facts.get("machine")
+    ours, theirs = before.tables, after.tables
     found: list[Row] = []
-    for key in dict.fromkeys([*ours, *theirs]):
-        if key not in ours or key not in theirs:
-            step = ours.get(key) or theirs[key]
-            found.append(
-                _change(step["table"], row_name(step["key"]), "", key in ours, key in theirs, "only one has it")
-            )
-            continue
-        found += _between(ours[key]["table"], *(_by_name(step[key]["rows"]) for step in (ours, theirs)), same_machine)
-    return found
+    for name in dict.fromkeys([*ours, *theirs]):
+        table = TABLES.get(name)
+        before_rows, after_rows = (_named(table, rows.get(name, [])) for rows in (ours, theirs))
+        found += _between(name, table, before_rows, after_rows, same_machine)
+    return sorted(found, key=lambda row: -row["severity"])
 
 
-def _by_name(rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
-    """Rows by what they are called, and of those called alike by their order."""
+def _named(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
+    """Rows by what they are called, and those called alike by their order."""
     found: dict[tuple[str, int], Row] = {}
-    names = [row_name(row) for row in rows]
-    for at, (name, row) in enumerate(zip(names, rows, strict=True)):
-        found[name, names[:at].count(name)] = row
+    counts: dict[str, int] = {}
+    for row in rows:
+        name = table.name_of(row) if table else str(list(row.values())[:3])
+        found[name, counts.setdefault(name, 0)] = row
+        counts[name] += 1
     return found
 
 
-def _between(table: str, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
-    """What is another between the rows of one step."""
+def _between(
+    name: str, table: Table | None, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool
+) -> Iterator[Row]:
+    """What differs between the rows of one table."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
-            yield from _changes(table, ours[key], theirs[key], same_machine)
+            yield from _changes(name, table, key[0], ours[key], theirs[key], same_machine)
         else:
-            yield _change(table, key[0], "", key in ours, key in theirs, "only one has it")
+            row = ours.get(key) or theirs[key]
+            yield _change(name, table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
 
 
-def _by_key(run: Done) -> dict[str, Row]:
-    return {json.dumps([step["table"], step["key"]], sort_keys=True): step for step in run.steps}
+def _change(
+    name: str, table: Table | None, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0
+) -> Row:
+    """A line; `severity` is above 0 where it is worse, and the larger the worse."""
+    verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
+    keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)} if table else {}
+    made: Row = {"table": name, "row": called, "column": column, "before": before, "after": after}
+    return made | {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
 
 
-def _change(table: str, row: str, column: str, before: Any, after: Any, change: str) -> Row:
-    return dict(zip(COLUMNS, (table, row, column, before, after, change), strict=True))
-
-
-def _changes(table: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
+def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
     for column in dict.fromkeys([*one, *other]):
+        known = table.column(column) if table else None
         before, after = one.get(column), other.get(column)
-        if not column.startswith(NOT_COMPARED) and not same(before, after):
-            yield _change(table, row_name(one), column, before, after, difference(before, after))
+        if _is_compared(table, known, column) and not same(before, after):
+            yield _change(name, table, one, called, column, before, after, severity_of(known, before, after))
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
-        effect = one["ms_frame"] and other["ms_frame"] / one["ms_frame"] - 1
+        effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
         if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
-            yield _change(
-                table, row_name(one), "ms_frame", one["ms_frame"], other["ms_frame"], f"{100 * effect:+.1f} %"
-            )
+            change = _change(name, table, one, called, FRAME, one[FRAME], other[FRAME], math.log1p(effect))
+            yield change | {"change": f"{100 * effect:+.1f} %"}
+
+
+def _is_compared(table: Table | None, known: Column | None, column: str) -> bool:
+    """Figures are, and whether there are any; of a table that this version does not know, everything."""
+    return not table or column == "skipped" or (known is not None and known.role is Role.FIGURE)
+
+
+def severity_of(column: Column | None, before: Any, after: Any) -> float:
+    """How much worse a figure has become, as the logarithm of a ratio; below 0 where it is better, 0 for neither.
+
+    A figure that is gone is infinitely worse, one that is new infinitely better.
+    """
+    if not column or not column.better:
+        return 0.0
+    if before is None or after is None:
+        return math.inf if after is None else -math.inf
+    if not all(isinstance(value, int | float) for value in (before, after)):
+        return 0.0
+    grows = _growth(column, before, after)
+    return -grows if column.better == "more" else grows
+
+
+def _growth(column: Column, before: float, after: float) -> float:
+    if column.unit == "dB":
+        return (after - before) * math.log(10) / 20
+    if before > 0 and after > 0:
+        return math.log(after / before)
+    return math.copysign(math.inf, after - before)
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two figures are one; what is no number is the same as itself here."""
+    """Whether two figures are equal; NaN equals itself here."""
     return one == other or (one != one and other != other)
 
 
 def difference(before: Any, after: Any) -> str:
-    """By how much a figure is another, as text."""
+    """By how much a figure differs, as text."""
     if isinstance(before, int | float) and isinstance(after, int | float):
         return f"{after - before:+.3g}"
     return "another"
 
 
 def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:
-    """How probable it is by chance that two samples are as far apart in rank as these, in either direction.
+    """How probable it is by chance that two samples are as far apart in rank as these, in either direction."""
+    from scipy.stats import mannwhitneyu
 
-    Mann and Whitney's U (1947), exact: of all ways to deal the ranks, the share with a U as far from its middle. Equal
-    values count half.
-    """
-    n, m = len(one), len(other)
-    u = sum((a > b) + 0.5 * (a == b) for a in one for b in other)
-    middle, total = n * m / 2, sum(_ways(n, m, k) for k in range(n * m + 1))
-    far = sum(_ways(n, m, k) for k in range(n * m + 1) if abs(k - middle) >= abs(u - middle) - 1e-9)
-    return far / total
+    # The exact distribution knows no ties.
+    ties = len({*one, *other}) < len(one) + len(other)
+    return float(mannwhitneyu(one, other, method="asymptotic" if ties else "exact").pvalue)
 
 
-@cache
-def _ways(n: int, m: int, u: int) -> int:
-    """In how many orders of n and m values u pairs stand the one way around."""
-    if u < 0:
-        return 0
-    if n == 0 or m == 0:
-        return int(u == 0)
-    return _ways(n - 1, m, u - m) + _ways(n, m - 1, u)
+def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
+    """Changes for people, the worst first: a line for each row with its worst figure; where these are more than `most`,
+    a line for several rows that share an encoding, or a table."""
+    grouped: list[list[Row]] = []
+    for by in (_by_row, _by_encoding, _by_table):
+        groups: dict[tuple, list[Row]] = {}
+        for change in changes:
+            groups.setdefault(by(change), []).append(change)
+        grouped = list(groups.values())
+        if len(grouped) <= most:
+            break
+    return [_line(group) for group in grouped]
+
+
+def _by_row(change: Row) -> tuple:
+    return change["table"], change["row"]
+
+
+def _by_encoding(change: Row) -> tuple:
+    keys = change["keys"]
+    return change["table"], next((keys[name] for name in ("encoding", "depth", "light_buffer") if keys.get(name)), "")
+
+
+def _by_table(change: Row) -> tuple:
+    return (change["table"],)
+
+
+def _line(group: Sequence[Row]) -> Row:
+    """Of several changes the worst, named by what they have in common."""
+    worst, rows = group[0], list(dict.fromkeys(change["row"] for change in group))
+    shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
+    name = worst["row"] if len(rows) == 1 else " ".join(map(str, shared)) or "several"
+    kept = {column: worst[column] for column in ("column", "before", "after", "change", "verdict")}
+    return {"table": worst["table"], "row": name, "rows": len(rows), "figures": len(group)} | kept

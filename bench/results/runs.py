@@ -8,38 +8,20 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal, read_lines
 from ..output.writing import check_folder, whole_file
+from ..tables.registry import table_of_run
+from ..tables.table import Role, Row, Step, Table
+from .plain import key_text, plain
 
-Row = dict[str, Any]
 RUN, ROWS = "run.json", "rows.jsonl"
 ROOMS = ("encodings", "gbuffer", "bench", "reports")
-
-
-@dataclass(frozen=True)
-class Step:
-    """What is measured at once.
-
-    Attributes:
-        table: which its rows belong to.
-        key: everything that determines them, beside the machine and the sources; plain values.
-        measure: gives the rows.
-    """
-
-    table: str
-    key: Row
-    measure: Callable[[], list[Row]]
-
-    @property
-    def name(self) -> str:
-        return " ".join([self.table, *(str(value) for value in self.key.values() if isinstance(value, str))])
 
 
 @dataclass(frozen=True)
@@ -51,16 +33,30 @@ class Done:
 
     @property
     def tables(self) -> dict[str, list[Row]]:
-        """The rows of each table."""
+        """The rows of each table, by this version's names. A row that was measured again replaces the older one."""
         found: dict[str, list[Row]] = {}
         for step in self.steps:
-            found.setdefault(step["table"], []).extend(step["rows"])
+            table = table_of_run(step["table"])
+            rows = found.setdefault(table.name if table else step["table"], [])
+            made = [_renamed(table, row) for row in step["rows"]]
+            new = {_identity(table, row) for row in made} if table else set()
+            rows[:] = [row for row in rows if not new or _identity(table, row) not in new] + made
         return found
 
     @property
     def finished(self) -> bool:
         """Whether every step has its rows."""
         return bool(self.facts.get("finished"))
+
+
+def _renamed(table: Table | None, row: Row) -> Row:
+    return {table.renamed.get(name, name): value for name, value in row.items()} if table else row
+
+
+def _identity(table: Table | None, row: Row) -> str:
+    """What a row is of, and under what conditions."""
+    names = [c.name for c in table.of_role(Role.KEY, Role.HOW)] if table else []
+    return json.dumps([row.get(name) for name in names], sort_keys=True)
 
 
 def sources() -> str:
@@ -71,6 +67,13 @@ def sources() -> str:
             if path.is_file() and "__pycache__" not in path.parts:
                 digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def facts_of(command: Sequence[str]) -> Row:
+    """What a run records of itself before anything is measured: the command, the sources and the machine."""
+    from .machine import machine
+
+    return {"command": list(command), "sources": sources(), "machine": machine()}
 
 
 def read_run(folder: Path) -> Done:
@@ -111,39 +114,32 @@ class Run:
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self.folder, self.facts, self._journal = folder, facts, kept
-        self._kept = {_text(step["table"], step["key"]): step["rows"] for step in _steps(kept.lines)}
+        self._kept = {key_text(step["table"], step["key"]): step["rows"] for step in _steps(kept.lines)}
 
     @property
     def kept(self) -> int:
         """How many steps have their rows in the file, which a signal may stop a moment after it was written."""
         return len(_steps(read_lines(self.folder / ROWS)))
 
-    def rows(self, step: Step) -> list[Row]:
-        """A step's rows: those that are kept, or measured now and kept for good.
+    def find(self, table: str, step: Step) -> list[Row] | None:
+        """The rows of a step; None where they are not kept."""
+        return self._kept.get(key_text(table, step.key))
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
+        """Keep the rows of a step for good, and give them as they are read back.
 
         Raises:
             UsageError: they cannot be written; what was kept before stays.
         """
-        text = _text(step.table, step.key)
-        if text not in self._kept:
-            rows = _plain(step.measure())
-            self._journal.add({"table": step.table, "key": step.key, "rows": rows})
-            self._kept[text] = rows
-        return self._kept[text]
+        text, kept = key_text(table, step.key), plain(rows)
+        self._journal.add({"table": table, "key": plain([step.key])[0], "rows": kept})
+        self._kept[text] = kept
+        return kept
 
     def finish(self) -> None:
         """Every step has its rows."""
         self.facts["finished"] = True
         _write_facts(self.folder, self.facts)
-
-
-def _plain(rows: Sequence[Row]) -> list[Row]:
-    """Rows as JSON gives them back."""
-    return json.loads(json.dumps(rows, default=lambda number: number.item()))
-
-
-def _text(table: str, key: Row) -> str:
-    return json.dumps([table, key], sort_keys=True)
 
 
 def _write_facts(folder: Path, facts: Row) -> None:
@@ -154,6 +150,11 @@ def _write_facts(folder: Path, facts: Row) -> None:
 def same_work(facts: Row, others: Row) -> bool:
     """Whether two runs ask for the same of the same sources on the same machine."""
     return all(facts.get(name) == others.get(name) for name in ("request", "sources", "machine"))
+
+
+def same_place(facts: Row, others: Row) -> bool:
+    """Whether two runs are of the same sources on the same machine."""
+    return all(facts.get(name) == others.get(name) for name in ("sources", "machine"))
 
 
 def unfinished(parent: Path, facts: Row) -> Path | None:
@@ -180,14 +181,14 @@ def _holds_something_else(folder: Path) -> bool:
 
 @contextmanager
 def opened(folder: Path, facts: Row) -> Iterator[Run]:
-    """A results folder to write: a new one, or one with the same work that was stopped.
+    """A results folder to write: a new one, or one that holds a run, which goes on.
 
     Args:
-        facts: `request`, `sources` and `machine` decide whether it is the same work.
+        facts: `sources` and `machine` decide whether it may go on; another `request` adds to it.
 
     Raises:
-        UsageError: there is something else, the run in it is finished or another process writes it, or nothing can be
-            written.
+        UsageError: there is something else, the run in it is of other sources or another machine, another process
+            writes it, or nothing can be written.
     """
     if _holds_something_else(folder):
         raise UsageError(f"{folder} exists already and holds no run; name a folder that does not")
@@ -202,8 +203,14 @@ def _begun(folder: Path, facts: Row) -> Row:
         _write_facts(folder, facts)
         return dict(facts)
     kept = _facts(folder)
-    if kept.get("finished"):
-        raise UsageError(f"{folder} exists already, with a finished run; name a folder that does not")
-    if not same_work(kept, facts):
-        raise UsageError(f"{folder} holds a run of other options, sources or machine; name another folder")
-    return kept
+    if not same_place(kept, facts):
+        raise UsageError(f"{folder} holds a run of other sources or another machine; name another folder")
+    return kept if same_work(kept, facts) else _extended(folder, kept, facts)
+
+
+def _extended(folder: Path, kept: Row, facts: Row) -> Row:
+    """The facts of a run that goes on with another request: what was asked before is remembered."""
+    before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time")}]
+    made = facts | {"before": before, "finished": False}
+    _write_facts(folder, made)
+    return made

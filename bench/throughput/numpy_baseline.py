@@ -138,7 +138,7 @@ def angles(n: np.ndarray, d: np.ndarray) -> np.ndarray:
 
 
 def whole_row(n: np.ndarray, d: np.ndarray) -> tuple[float, ...]:
-    """MSE, the seeds' 8-bit MSE, and mean, RMS, 99th percentile and largest of the angle in degrees."""
+    """MSE, the article's 8-bit MSE, and mean, RMS, 99th percentile and largest of the angle in degrees."""
     difference = np.abs(n - d)
     angle = angles(n, d)
     return (

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ...encodings.codec import Codec
+from ...encodings.codecs.codec import Codec
 from ...encodings.vec import Vec2, Vec3, dot, select
 
 BLOCK = 2**15

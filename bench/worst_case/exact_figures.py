@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import jax
 import jax.numpy as jnp
 
-from ...encodings.codec import Codec
-from ...encodings.encoding import Encoding
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
 from ...encodings.vec import Vec3
 from ..codecs.user_encodings import NoTwinError
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable

@@ -23,7 +23,7 @@ from operator import add
 
 import numpy as np
 
-from ...encodings.codec import Codec
+from ...encodings.codecs.codec import Codec
 from ..machine.cores import on_all_cores
 from . import cells
 from .exact_codec import BLOCK, WAYS, ExactCodec, degrees

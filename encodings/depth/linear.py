@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..depth_encoding import DepthEncoding
+from ..codecs.depth_encoding import DepthEncoding
 from ..vec import maximum
 
 
@@ -25,7 +25,7 @@ ENCODING = DepthEncoding(
     decode=decode,
     own_units=True,
     storages=("packed16", "packed24", "r16f", "r32f"),
-    citation="seed 002, slides 54-57: planar view depth, for the eye's ray",
+    citation="M. Drobot, Architektury Deferred, slides 54-57: planar view depth, for the eye's ray",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(1, 1),
     ulps_reason="one division, which a GPU makes of a reciprocal; one product",

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..depth_encoding import DepthEncoding
+from ..codecs.depth_encoding import DepthEncoding
 from ..position import Projection
 from ..vec import maximum
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..depth_encoding import DepthEncoding
+from ..codecs.depth_encoding import DepthEncoding
 from ..position import Projection
 from ..vec import maximum
 
@@ -32,7 +32,7 @@ ENCODING = DepthEncoding(
     decode=decode,
     projection=Projection(clip_row, (2.0, -1.0)),
     storages=("depth16", "depth24", "depth32f"),
-    citation="OpenGL 4.6, section 13.8; seed 002, slides 48-53",
+    citation="OpenGL 4.6, section 13.8; M. Drobot, Architektury Deferred, slides 48-53",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(3, 2),
     ulps_reason="two differences, two products, a division by a reciprocal: half a unit each; likewise back",

@@ -6,8 +6,8 @@ normal that was moved by rounding would have another one. -1 and 1 are one angle
 
 from pathlib import Path
 
+from ..codecs.frame_encoding import FrameEncoding
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..frame_encoding import FrameEncoding
 from ..rotation import Frame
 from ..vec import Vec2, Vec3, Vec4, cross, dot, maximum, normalize, select, sign_not_zero
 

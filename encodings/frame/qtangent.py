@@ -6,7 +6,7 @@ number that has a sign, which costs up to twice that in angle.
 
 from pathlib import Path
 
-from ..frame_encoding import FrameEncoding
+from ..codecs.frame_encoding import FrameEncoding
 from ..rotation import Frame, frame_of_quaternion, quaternion_of
 from ..vec import TINY, Vec4, dot, inversesqrt, maximum, select, sign_not_zero, sqrt
 

@@ -8,7 +8,7 @@ that takes one bit of its precision, and none beside it.
 import math
 from pathlib import Path
 
-from ..frame_encoding import FrameEncoding
+from ..codecs.frame_encoding import FrameEncoding
 from ..rotation import Frame, frame_of_quaternion, quaternion_of
 from ..vec import Vec3, Vec4, dot, index_of, maximum, number_of, select, sign_not_zero, sqrt
 

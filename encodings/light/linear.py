@@ -1,11 +1,10 @@
-"""Light over a range, in fixed point: seed 003's RGBA8 scaled to [0, 2]."""
+"""Light over a range, in fixed point: Ols's RGBA8 scaled to [0, 2]."""
 
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import STORAGES
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4
 
 RANGE = 2.0
@@ -41,11 +40,11 @@ ENCODING = LightEncoding(
     title="RGBA8, linear, scaled to [0, 2]",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="add",
     has_alpha=True,
     limit=RANGE,
-    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010 (seed 003)",
+    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(2, 1),
     ulps_reason="a reciprocal and a product; exact for a range that is a power of two",

@@ -7,8 +7,7 @@ taken for that code.
 import math
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import STORAGES
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4, exp2, log2, maximum
 
 LEAST = 1.0 / 255.0
@@ -31,11 +30,11 @@ ENCODING = LightEncoding(
     title="RGBA8, exp2(-L), blended by multiplication",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="multiply",
     has_alpha=True,
     limit=-math.log2(LEAST),
-    citation="drillian, Light Prepass HDR; J. Ols, Prelighting & Log-Lights, 2009 (seed 003)",
+    citation="drillian, Light Prepass HDR; J. Ols, Prelighting & Log-Lights, 2009",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(3, 64),
     ulps_reason="exp2 and log2 within 3 units of 1; the dimmest code stands for 1/177 of light, so of that it is more",

@@ -5,8 +5,7 @@ Le counts half stops from 2^-63.5 up: its whole part in the third channel, the r
 
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import STORAGES
+from ..codecs.light_encoding import LightEncoding
 from ..vec import TINY, Vec3, Vec4, exp2, floor, log2, maximum, minimum, select
 
 # Rows are what red, green and blue contribute to (X', Y, XYZ'); the second matrix is the inverse, to float32's digits
@@ -51,7 +50,7 @@ ENCODING = LightEncoding(
     title="NAO32: LogLuv in RGBA8",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="read",
     has_alpha=False,
     limit=2.0 ** ((STEPS - BIAS) / 2.0) / (MATRIX[1] + MATRIX[4] + MATRIX[7]),

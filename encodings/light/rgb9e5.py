@@ -5,8 +5,7 @@ The format itself is rarely one to render to; the same 32 bits are, in four chan
 
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import STORAGES
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec3, Vec4, floor, floor_log2, jnp, maximum, minimum, power_of_two, select
 
 BITS, BIAS = 9, 15
@@ -43,7 +42,7 @@ ENCODING = LightEncoding(
     title="RGB9E5, its bits in RGBA8",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="read",
     has_alpha=False,
     limit=MOST,

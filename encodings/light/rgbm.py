@@ -7,8 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import STORAGES
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4, ceil, maximum, minimum
 
 RANGE = 6.0
@@ -52,11 +51,11 @@ ENCODING = LightEncoding(
     title="RGBM in RGBA8, to 6",
     encode=encode,
     decode=decode,
-    storage=STORAGES["rgba8"],
+    storages=("rgba8",),
     blend="read",
     has_alpha=False,
     limit=RANGE,
-    citation="B. Karis, RGBM color encoding, 2009; seed 003",
+    citation="B. Karis, RGBM color encoding, 2009; J. Ols, Prelighting & Log-Lights, 2009",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(3, 2),
     ulps_reason="a reciprocal and three products; a multiplier beside a tie may be the next",

@@ -7,8 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..light_encoding import LightEncoding
-from ..storage import SRGB8_A8
+from ..codecs.light_encoding import LightEncoding
 from ..vec import Vec4
 
 RANGE = 2.0
@@ -44,11 +43,11 @@ ENCODING = LightEncoding(
     title="sRGB RGBA8, scaled to [0, 2]",
     encode=encode,
     decode=decode,
-    storage=SRGB8_A8,
+    storages=("srgb8_a8",),
     blend="add",
     has_alpha=True,
     limit=RANGE,
-    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010 (seed 003)",
+    citation="J. Ols, Linear sRGB Blending & Deferred Lighting, 2010",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(2, 1),
     ulps_reason="a reciprocal and a product; exact for a range that is a power of two",

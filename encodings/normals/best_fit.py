@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..encoding import Encoding, LookUp
+from ..codecs.encoding import Encoding, LookUp
 from ..vec import Vec3, jnp, maximum, minimum, unit
 
 SIZE = 1024  # the side of the table

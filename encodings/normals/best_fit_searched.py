@@ -6,7 +6,7 @@ UNORM8 has no code for 0: its values are the odd multiples of 1/255, so that the
 
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec3, dot, floor, jnp, maximum, select, unit
 
 LEVELS = 256

@@ -9,7 +9,7 @@ the storage.
 
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, dot, maximum, sqrt, unit
 
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from ..codecs.encoding import Encoding
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..encoding import Encoding
 from ..vec import TINY, Vec2, Vec3, maximum, select, sign_not_zero, sqrt
 
 

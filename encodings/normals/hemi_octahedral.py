@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, normalize
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..codecs.encoding import Encoding
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..encoding import Encoding
 from ..vec import Vec2, Vec3, dot, floor, index_of, jnp, minimum, number_of, select, sqrt
 
 COUNT, BYTE = 2**16, 256

@@ -6,7 +6,7 @@ by up to 27 degrees, within 0.001 by up to 90, whatever the storage; the n / p f
 
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, dot, minimum, select, sqrt
 
 

@@ -6,7 +6,7 @@ so of the three forms it alone keeps float32's precision all the way to -z; expa
 
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, dot, maximum, select, sqrt
 
 

@@ -5,8 +5,8 @@ Of a view few normals have a Z near -1: with a bias and a scale the codes for Z 
 
 from pathlib import Path
 
+from ..codecs.encoding import Encoding, Parameter
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..encoding import Encoding, Parameter
 from ..vec import Vec2, Vec3, maximum, sqrt
 
 # As published the whole of Z is stored as it is.

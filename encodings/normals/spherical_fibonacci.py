@@ -6,8 +6,8 @@ Point i lies at z = 1 - (2 i + 1) / N, a golden section of a turn further around
 import math
 from pathlib import Path
 
+from ..codecs.encoding import Encoding
 from ..elementary import CONSTANTS, atan2_pi, log2_of, sincos_pi
-from ..encoding import Encoding
 from ..vec import TINY, Vec2, Vec3, dot, floor, index_of, jnp, maximum, number_of, select, sqrt
 
 COUNT, BYTE = 2**16, 256

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, jnp, maximum, minimum
 
 LAST = 255.0  # the last texel of a row, and of a column

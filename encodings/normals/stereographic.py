@@ -7,7 +7,7 @@ normals up to t = 90 degrees + f.
 
 from pathlib import Path
 
-from ..encoding import Encoding, Parameter
+from ..codecs.encoding import Encoding, Parameter
 from ..vec import Vec2, Vec3, dot, select
 
 # Found by hand in 2010, for that scene and field of view: the disk reaches 121.3 degrees from +z.

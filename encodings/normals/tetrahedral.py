@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from ..encoding import Encoding
+from ..codecs.encoding import Encoding
 from ..vec import Vec2, Vec3, dot, floor, index_of, maximum, number_of, select, sign_not_zero, sqrt
 
 FACES = 4

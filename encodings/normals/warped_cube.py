@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from ..codecs.encoding import Encoding
 from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..encoding import Encoding
 from ..vec import Vec3, floor, index_of, normalize, number_of, select
 
 FACES = 6

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.codec import Codec
-from ...encodings.encoding import Encoding
-from ...encodings.storage import R32F, ROUNDINGS, STORAGES, Storage
-from ..gl.device import Device, bind, read_pixels
-from ..gl.shader import ShaderError, read_shader
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
+from ..gl.device import Device
+from .harness import Passes, check_functions, exact
 
 KINDS = ("unorm", "snorm", "float")
 
@@ -26,14 +23,9 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
     """
-    size = encoding.components + encoding.sign_bits
-    code, text = f"vec{size}", re.sub(r"\s+", " ", read_shader(encoding.glsl))
-    for result, verb, given in ((code, "encode", "vec3 n"), ("vec3", "decode", f"{code} e")):
-        signature = f"{result} {encoding.prefix}_{verb}({given}, vec3 view)"
-        if not re.search(rf"\b{result} {encoding.prefix}_{verb} ?\( ?{given.split()[0]}\b", text):
-            raise ShaderError(f"{encoding.glsl}: no function {signature}")
+    check_functions(encoding.glsl, encoding.signatures)
     return {
-        "CODE": code,
+        "CODE": f"vec{encoding.components + encoding.sign_bits}",
         "ENCODE": f"{encoding.prefix}_encode",
         "DECODE": f"{encoding.prefix}_decode",
         "COMPONENTS": encoding.components,
@@ -82,7 +74,7 @@ class Decoded:
     codes: np.ndarray
 
 
-class CodecPasses:
+class CodecPasses(Passes):
     """A codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
@@ -93,27 +85,14 @@ class CodecPasses:
     """
 
     def __init__(self, device: Device, codec: Codec):
-        self._device, self._codec = device, codec
-        is_native = not codec.storage.is_packed and device.native_rounding(codec.storage) == codec.rounding
+        encoding, storage = codec.encoding, codec.storage
+        is_native = not storage.is_packed and device.native_rounding(storage) == codec.rounding
         self.rounded_by = "device" if is_native else "shader"
-        roundings = [codec.rounding_of(channel) for channel in range(codec.storage.channels)]
-        defines = {
-            **encoding_defines(codec.encoding),
-            **storage_defines(codec.storage, roundings, self.rounded_by == "shader"),
-        }
-        names = {"ENCODING": codec.encoding.glsl}
-        with ExitStack() as stack:
-            self._encode = device.owned(stack, device.fragment_pass("encode.frag", defines, names))
-            self._decode = device.owned(stack, device.fragment_pass("decode.frag", defines, names))
-            tables = codec.encoding.tables().items()
-            self._tables = {name: device.owned(stack, device.upload(table)) for name, table in tables}
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> CodecPasses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
+        roundings = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        defines = encoding_defines(encoding) | storage_defines(storage, roundings, not is_native)
+        formats = {"texels": storage.target} | ({"signed_depths": R32F} if encoding.sign_bits else {})
+        shaders, names = ("encode.frag", "decode.frag"), {"ENCODING": encoding.glsl}
+        super().__init__(device, shaders, defines, names, formats, encoding.tables)
 
     def round_trip(self, normals: np.ndarray, views: np.ndarray) -> Decoded:
         """Normals and view-space positions, float32 of shape (height, width, 4), encoded, stored and decoded.
@@ -121,19 +100,7 @@ class CodecPasses:
         Raises:
             FormatError: the device cannot render to the storage's format.
         """
-        size = (normals.shape[1], normals.shape[0])
-        device, storage = self._device, self._codec.storage.target
-        with ExitStack() as stack:
-            given = {"normals": normals, "views": views}
-            sources = {name: device.owned(stack, device.upload(pixels)) for name, pixels in given.items()}
-            texels, depths, *results = (
-                device.owned(stack, device.target(size, kind))
-                for kind in (storage, R32F, STORAGES["rgba32f"], STORAGES["rgba32f"])
-            )
-            kept = [texels, depths] if self._codec.encoding.sign_bits else [texels]
-            device.render(self._encode, kept, **sources, **self._tables)
-            device.render(self._decode, results, texels=texels, signed_depths=depths, **sources, **self._tables)
-            decoded, codes = (read_pixels(result) for result in results)
+        decoded, codes = self._through([STORAGES["rgba32f"]] * 2, normals=normals, views=views)
         return Decoded(decoded[..., :3], codes)
 
 
@@ -146,11 +113,6 @@ def exact_values(device: Device, encoding: Encoding, normals, views, given) -> t
     Returns:
         codes and decoded normals, float32 arrays of shape (count, 4).
     """
-    with ExitStack() as stack:
-        compute: Any = device.owned(
-            stack, device.compute_pass("parity.comp", encoding_defines(encoding), {"ENCODING": encoding.glsl})
-        )
-        tables = encoding.tables().items()
-        bind(compute, {name: device.owned(stack, device.upload(table)) for name, table in tables})
-        codes, decoded = device.computed(compute, [normals, views, given], 2)
+    defines, names = encoding_defines(encoding), {"ENCODING": encoding.glsl}
+    codes, decoded = exact(device, "parity.comp", defines, names, [normals, views, given], 2, encoding.tables)
     return codes, decoded

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-import moderngl
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.depth_codec import DepthCodec
-from ...encodings.depth_encoding import DepthEncoding
+from ...encodings.codecs.depth_codec import DepthCodec
+from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.position import Camera
-from ...encodings.storage import FORMATS, DepthStorage, Storage, store_depth
+from ...encodings.storages.depth_storage import DepthStorage, store_depth
+from ...encodings.storages.storage import FORMATS, Storage
 from ...encodings.vec import jnp
 from ..gl.device import Device, read_pixels
+from ..gl.handles import Texture, VertexArray
 from ..gl.raw import DepthBuffer
-from ..gl.shader import ShaderError, read_shader
 from .codec_passes import storage_kind
+from .harness import Passes, Textures, check_functions, exact, set_uniforms
 
 HOMES = ("packed", "channel", "attachment")
 RG32F = Storage("rg32f", "RG32F", "float", (32, 32), 0x8230)
@@ -32,11 +32,7 @@ def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
     """
-    text = re.sub(r"\s+", " ", read_shader(encoding.glsl))
-    for verb, given in (("encode", "depth"), ("decode", "number")):
-        signature = f"float {encoding.name}_{verb}_depth(float {given}, float near, float far)"
-        if not re.search(rf"\bfloat {encoding.name}_{verb}_depth ?\(", text):
-            raise ShaderError(f"{encoding.glsl}: no function {signature}")
+    check_functions(encoding.glsl, encoding.signatures)
     return {
         "DEPTH_ENCODE": f"{encoding.name}_encode_depth",
         "DEPTH_DECODE": f"{encoding.name}_decode_depth",
@@ -69,7 +65,7 @@ class Rebuilt:
     depths: np.ndarray
 
 
-class DepthPasses:
+class DepthPasses(Passes):
     """A depth codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
@@ -81,24 +77,11 @@ class DepthPasses:
     """
 
     def __init__(self, device: Device, codec: DepthCodec):
-        self._device, self._codec = device, codec
-        storage = codec.storage
-        self.rounded_by = "device" if rounds_to_nearest(device, storage) else "shader"
-        defines = {
-            **depth_defines(codec.encoding),
-            **_storage_defines(storage, self.rounded_by == "shader"),
-        }
-        names = {"DEPTH_ENCODING": codec.encoding.glsl}
-        with ExitStack() as stack:
-            self._encode = device.owned(stack, device.fragment_pass("depth_encode.frag", defines, names))
-            self._decode = device.owned(stack, device.fragment_pass("depth_decode.frag", defines, names))
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> DepthPasses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
+        self._codec, is_native = codec, rounds_to_nearest(device, codec.storage)
+        self.rounded_by = "device" if is_native else "shader"
+        defines = depth_defines(codec.encoding) | _storage_defines(codec.storage, not is_native)
+        shaders, names = ("depth_encode.frag", "depth_decode.frag"), {"DEPTH_ENCODING": codec.encoding.glsl}
+        super().__init__(device, shaders, defines, names, {"texels": codec.storage.format})
 
     def round_trip(self, points: np.ndarray, camera: Camera, by_inverse_projection: bool) -> Rebuilt:
         """Points on the screen through the storage.
@@ -107,17 +90,14 @@ class DepthPasses:
             points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
             by_inverse_projection: the way to the position; only where the number is a depth buffer's.
         """
-        device, size = self._device, points.shape[1::-1]
         given = _seen(camera, self._codec.encoding) | {"by_inverse_projection": by_inverse_projection}
         for program in (self._encode.program, self._decode.program):
-            _set(program, given)
-        with ExitStack() as stack:
-            source = device.owned(stack, device.upload(points))
-            texels = _stored(device, stack, self._codec.storage, self._encode, source)
-            results = [device.owned(stack, device.target(size, kind)) for kind in (FORMATS["rgba32f"], RG32F)]
-            device.render(self._decode, results, points=source, texels=texels)
-            positions, stored = (read_pixels(result) for result in results)
+            set_uniforms(program, given)
+        positions, stored = self._through([FORMATS["rgba32f"], RG32F], points=points)
         return Rebuilt(positions[..., :3], stored[..., 0], stored[..., 1])
+
+    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+        return {"texels": _stored(self._device, stack, self._codec.storage, self._encode, sources["points"])}
 
 
 def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
@@ -131,16 +111,7 @@ def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
     }
 
 
-def _set(program: Any, values: dict[str, Any]) -> None:
-    """Uniforms by name; those the compiler dropped are left out."""
-    for name, value in values.items():
-        if name in program:
-            program[name].value = value
-
-
-def _stored(
-    device: Device, stack: ExitStack, storage: DepthStorage, passed: moderngl.VertexArray, source: moderngl.Texture
-) -> moderngl.Texture:
+def _stored(device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, source: Texture) -> Texture:
     """What a pass writes into a storage, as a texture; released with the stack."""
     if storage.home != "attachment":
         target = device.owned(stack, device.target(source.size, storage.format))
@@ -199,9 +170,7 @@ def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points
         numbers and depths, (count, 2); positions of the numbers by the inverse projection, and of the depths by the
         eye's ray, (count, 3).
     """
-    with ExitStack() as stack:
-        names = {"DEPTH_ENCODING": encoding.glsl}
-        compute: Any = device.owned(stack, device.compute_pass("depth_parity.comp", depth_defines(encoding), names))
-        _set(compute, _seen(camera, encoding))
-        values, projected, along_rays = device.computed(compute, [points], 3)
+    defines, names = depth_defines(encoding), {"DEPTH_ENCODING": encoding.glsl}
+    seen = _seen(camera, encoding)
+    values, projected, along_rays = exact(device, "depth_parity.comp", defines, names, [points], 3, **seen)
     return values[:, :2], projected[:, :3], along_rays[:, :3]

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import re
-from contextlib import ExitStack
-from typing import Any
-
 import numpy as np
 
 from ...encodings import vec
-from ...encodings.frame_codec import FrameCodec
-from ...encodings.frame_encoding import FrameEncoding
-from ...encodings.storage import STORAGES
-from ..gl.device import Device, read_pixels
-from ..gl.shader import ShaderError, read_shader
+from ...encodings.codecs.frame_codec import FrameCodec
+from ...encodings.codecs.frame_encoding import FrameEncoding
+from ...encodings.storages.storage import STORAGES
+from ..gl.device import Device
 from .codec_passes import storage_defines
+from .harness import Passes, check_functions, exact
 
 ROUNDING = "nearest"
 
@@ -25,12 +21,8 @@ def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.
     """
-    name, text = encoding.name, re.sub(r"\s+", " ", read_shader(encoding.glsl))
-    wanted = [f"vec4 {name}_encode(Frame frame, float least)", f"Frame {name}_decode(vec4 e, float least)"]
-    wanted += [f"vec4 {name}_settle(Frame frame, vec4 stored)"] if encoding.settle else []
-    for signature in wanted:
-        if not re.search(rf"\b{signature.split('(')[0]} ?\(", text):
-            raise ShaderError(f"{encoding.glsl}: no function {signature}")
+    check_functions(encoding.glsl, encoding.signatures)
+    name = encoding.name
     return {
         "FRAME_ENCODE": f"{name}_encode",
         "FRAME_DECODE": f"{name}_decode",
@@ -42,7 +34,7 @@ def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
     }
 
 
-class FramePasses:
+class FramePasses(Passes):
     """A frame codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
@@ -54,24 +46,13 @@ class FramePasses:
     """
 
     def __init__(self, device: Device, codec: FrameCodec):
-        self._device, self._storage = device, codec.storage
-        is_native = not codec.storage.is_packed and device.native_rounding(codec.storage) == ROUNDING
+        encoding, storage = codec.encoding, codec.storage
+        is_native = not storage.is_packed and device.native_rounding(storage) == ROUNDING
         self.rounded_by = "device" if is_native else "shader"
-        defines = {
-            **frame_defines(codec.encoding, codec.least),
-            **storage_defines(codec.storage, [ROUNDING] * codec.storage.channels, not is_native),
-        }
-        names = {"FRAME_ENCODING": codec.encoding.glsl}
-        with ExitStack() as stack:
-            self._encode = device.owned(stack, device.fragment_pass("frame_encode.frag", defines, names))
-            self._decode = device.owned(stack, device.fragment_pass("frame_decode.frag", defines, names))
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> FramePasses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
+        roundings = [ROUNDING] * storage.channels
+        defines = frame_defines(encoding, codec.least) | storage_defines(storage, roundings, not is_native)
+        shaders, names = ("frame_encode.frag", "frame_decode.frag"), {"FRAME_ENCODING": encoding.glsl}
+        super().__init__(device, shaders, defines, names, {"texels": storage.target})
 
     def round_trip(self, normals: np.ndarray, tangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Normals with hands, and tangents, float32 of shape (height, width, 4), encoded, stored and decoded.
@@ -79,17 +60,7 @@ class FramePasses:
         Raises:
             FormatError: the device cannot render to the storage's format.
         """
-        device, size = self._device, (normals.shape[1], normals.shape[0])
-        with ExitStack() as stack:
-            given = {"normals": normals, "tangents": tangents}
-            sources = {name: device.owned(stack, device.upload(pixels)) for name, pixels in given.items()}
-            texels, *results = (
-                device.owned(stack, device.target(size, kind))
-                for kind in (self._storage.target, STORAGES["rgba32f"], STORAGES["rgba32f"])
-            )
-            device.render(self._encode, [texels], **sources)
-            device.render(self._decode, results, texels=texels)
-            decoded_normals, decoded_tangents = (read_pixels(result) for result in results)
+        decoded_normals, decoded_tangents = self._through([STORAGES["rgba32f"]] * 2, normals=normals, tangents=tangents)
         return decoded_normals, decoded_tangents
 
 
@@ -102,9 +73,5 @@ def exact_frames(device: Device, encoding: FrameEncoding, least: float, *given: 
     Returns:
         codes, decoded normals with hands, and decoded tangents, likewise.
     """
-    names = {"FRAME_ENCODING": encoding.glsl}
-    with ExitStack() as stack:
-        compute: Any = device.owned(
-            stack, device.compute_pass("frame_parity.comp", frame_defines(encoding, least), names)
-        )
-        return device.computed(compute, given, 3)
+    defines, names = frame_defines(encoding, least), {"FRAME_ENCODING": encoding.glsl}
+    return exact(device, "frame_parity.comp", defines, names, given, 3)

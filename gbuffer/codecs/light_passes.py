@@ -2,40 +2,35 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
 
-import moderngl
 import numpy as np
 
 from ...encodings import chromaticity, vec
-from ...encodings.light_encoding import LightEncoding
-from ...encodings.storage import STORAGES, Storage
-from ..gl.device import Device, bind, read_pixels
-from ..gl.shader import ShaderError, read_shader
+from ...encodings.codecs.light_codec import LightCodec
+from ...encodings.storages.storage import STORAGES, Storage
+from ..gl.device import ADD, MULTIPLY, Device, bind, read_pixels
+from ..gl.handles import Texture, VertexArray
+from .harness import Passes, Textures, check_functions, exact
 
-ADD = (moderngl.ONE, moderngl.ONE)
 # How the light buffer's code blends; one that is read is overwritten.
-BLEND_OF = {"add": ADD, "multiply": (moderngl.DST_COLOR, moderngl.ZERO), "read": None}
+BLEND_OF = {"add": ADD, "multiply": MULTIPLY, "read": None}
 
 
-def light_defines(encoding: LightEncoding) -> dict[str, object]:
+def light_defines(codec: LightCodec) -> dict[str, object]:
     """The macros that make `light_code.glsl` speak of an encoding.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
     """
-    # Over another range it has another name, and the same functions.
-    prefix, text = encoding.glsl.stem, re.sub(r"\s+", " ", read_shader(encoding.glsl))
-    for verb, given in (("encode", "vec4 light"), ("decode", "vec4 e")):
-        if not re.search(rf"\bvec4 {prefix}_{verb} ?\( ?vec4\b", text):
-            raise ShaderError(f"{encoding.glsl}: no function vec4 {prefix}_{verb}({given})")
+    encoding = codec.encoding
+    check_functions(encoding.glsl, encoding.signatures)
     return {
-        "LIGHT_ENCODE": f"{prefix}_encode",
-        "LIGHT_DECODE": f"{prefix}_decode",
+        "LIGHT_ENCODE": f"{encoding.prefix}_encode",
+        "LIGHT_DECODE": f"{encoding.prefix}_decode",
         "LIGHT_READS": int(encoding.blend == "read"),
+        "LIGHT_CHANNELS": codec.storage.channels,
         **vec.CONSTANTS,
         **chromaticity.CONSTANTS,
         **encoding.constants,
@@ -50,26 +45,17 @@ class Sum:
     texels: np.ndarray
 
 
-class LightPasses:
-    """A light encoding on a GL device; a context manager that releases what it holds there.
+class LightPasses(Passes):
+    """A light codec on a GL device; a context manager that releases what it holds there.
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
     """
 
-    def __init__(self, device: Device, encoding: LightEncoding):
-        self._device, self._encoding = device, encoding
-        defines, names = light_defines(encoding), {"LIGHT_ENCODING": encoding.glsl}
-        with ExitStack() as stack:
-            self._add = device.owned(stack, device.fragment_pass("add_light.frag", defines, names))
-            self._decode = device.owned(stack, device.fragment_pass("decode_light.frag", defines, names))
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> LightPasses:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
+    def __init__(self, device: Device, codec: LightCodec):
+        self._codec = codec
+        shaders, names = ("add_light.frag", "decode_light.frag"), {"LIGHT_ENCODING": codec.glsl}
+        super().__init__(device, shaders, light_defines(codec), names, {"texels": codec.storage})
 
     def accumulate(self, lights: np.ndarray) -> Sum:
         """Lights, float32 of shape (count, width, 4), added one by one in their order; each column is a pixel.
@@ -77,30 +63,25 @@ class LightPasses:
         Raises:
             FormatError: the device cannot render to the encoding's format.
         """
-        device, size = self._device, (lights.shape[1], 1)
-        with ExitStack() as stack:
-            table = device.owned(stack, device.upload(lights))
-            texels = device.owned(stack, self._summed(table, size, len(lights), stack))
-            results = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
-            device.render(self._decode, results, texels=texels)
-            light, kept = (read_pixels(result)[0] for result in results)
-        return Sum(light, kept)
+        light, kept = self._through([STORAGES["rgba32f"]] * 2, lights=lights)
+        return Sum(light[0], kept[0])
 
-    def _summed(self, table: moderngl.Texture, size: tuple[int, int], count: int, stack: ExitStack):
-        device, none = self._device, self._encoding.no_light
-        copies = 2 if self._encoding.blend == "read" else 1
-        textures = [device.owned(stack, device.target(size, self._encoding.storage)) for _ in range(copies)]
+    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+        width, count = sources["lights"].size
+        device, none = self._device, self._codec.no_light
+        copies = 2 if self._codec.blend == "read" else 1
+        textures = [device.owned(stack, device.target((width, 1), self._codec.storage)) for _ in range(copies)]
         targets = [device.owned(stack, device.framebuffer([texture])) for texture in textures]
         for target in targets:
             target.clear(none, none, none, none)
-        device.blend(BLEND_OF[self._encoding.blend])
+        device.blend(BLEND_OF[self._codec.blend])
         for i in range(count):
             targets[(i + 1) % copies].use()
-            bind(self._add.program, {"lights": table, "light_before": textures[i % copies]})
-            self._add.program["light"] = i
-            self._add.render(moderngl.TRIANGLES, vertices=3)
+            bind(self._encode.program, {**sources, "light_before": textures[i % copies]})
+            self._encode.program["light"] = i
+            self._encode.render(vertices=3)
         device.idle.use()
-        return textures[count % copies]
+        return {"texels": textures[count % copies]}
 
 
 @dataclass(frozen=True)
@@ -116,22 +97,22 @@ class Resolved:
     by_light: np.ndarray
 
 
-def resolved(device: Device, encoding: LightEncoding, colours: moderngl.Texture, samples: int) -> Resolved:
+def resolved(device: Device, codec: LightCodec, colours: Texture, samples: int) -> Resolved:
     """Linear light, RGBA32F of several samples a pixel, kept in a light encoding and resolved; row 0 on top.
 
     Raises:
         FormatError: the device cannot render to the encoding's format.
     """
-    defines, names = light_defines(encoding) | {"SAMPLES": samples}, {"LIGHT_ENCODING": encoding.glsl}
+    defines, names = light_defines(codec) | {"SAMPLES": samples}, {"LIGHT_ENCODING": codec.glsl}
     with ExitStack() as stack:
 
-        def target(storage: Storage, samples: int = 1) -> moderngl.Texture:
+        def target(storage: Storage, samples: int = 1) -> Texture:
             return device.owned(stack, device.target(colours.size, storage, samples))
 
-        def passed(shader: str) -> moderngl.VertexArray:
+        def passed(shader: str) -> VertexArray:
             return device.owned(stack, device.fragment_pass(shader, defines, names))
 
-        kept, texels = target(encoding.storage, samples), target(encoding.storage)
+        kept, texels = target(codec.storage, samples), target(codec.storage)
         device.render(passed("encode_samples.frag"), [kept], colours=colours)
         device.resolve(kept, texels)
         results = [target(STORAGES["rgba32f"]) for _ in range(3)]
@@ -141,7 +122,7 @@ def resolved(device: Device, encoding: LightEncoding, colours: moderngl.Texture,
     return Resolved(by_code, by_light)
 
 
-def read_samples(device: Device, colours: moderngl.Texture, samples: int) -> np.ndarray:
+def read_samples(device: Device, colours: Texture, samples: int) -> np.ndarray:
     """Every sample of an RGBA32F texture: float32 of shape (samples, height, width, 3), row 0 on top."""
     with ExitStack() as stack:
         one = device.owned(stack, device.fragment_pass("one_sample.frag", {"SAMPLES": samples}))
@@ -154,7 +135,7 @@ def read_samples(device: Device, colours: moderngl.Texture, samples: int) -> np.
     return np.stack(found)
 
 
-def exact_light(device: Device, encoding: LightEncoding, lights, given) -> tuple[np.ndarray, np.ndarray]:
+def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.ndarray, np.ndarray]:
     """Texels of lights, and light of given texels, by a compute shader and without storage.
 
     Args:
@@ -163,8 +144,6 @@ def exact_light(device: Device, encoding: LightEncoding, lights, given) -> tuple
     Returns:
         texels and decoded light, float32 arrays of shape (count, 4).
     """
-    names = {"LIGHT_ENCODING": encoding.glsl}
-    with ExitStack() as stack:
-        compute: Any = device.owned(stack, device.compute_pass("light_parity.comp", light_defines(encoding), names))
-        texels, decoded = device.computed(compute, [lights, given], 2)
+    defines, names = light_defines(codec), {"LIGHT_ENCODING": codec.glsl}
+    texels, decoded = exact(device, "light_parity.comp", defines, names, [lights, given], 2)
     return texels, decoded

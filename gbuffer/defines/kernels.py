@@ -11,10 +11,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...encodings.encoding import Encoding
-from ...encodings.storage import STORAGES
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import STORAGES
 from ..codecs.codec_passes import encoding_defines
-from ..gl.shader import SHADERS, Source
+from ..gl.shader import Source, shaders
 
 # The shaders by what they run as; fragment first, for that is where encoders live.
 STAGES: Mapping[str, str] = MappingProxyType({"fragment": "kernel.frag", "compute": "kernel.comp"})
@@ -59,7 +59,7 @@ class Operation:
     @property
     def names(self) -> dict[str, Path]:
         """The files that a kernel includes by name."""
-        return {**self.own_names, "OPERATION": SHADERS / self.glsl}
+        return {**self.own_names, "OPERATION": shaders()[self.glsl]}
 
     def source(self, shader: str) -> Source:
         """The operation in one of the kernels. Raises ShaderError where a file cannot be read."""

@@ -9,13 +9,13 @@ from types import MappingProxyType
 from typing import Any, Protocol
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.storage import STORAGES, Storage
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.storage import STORAGES, Storage
 from ..codecs.codec_passes import storage_defines
 from ..codecs.depth_passes import depth_defines
-from ..frame.frame import layout_defines
 from ..layouts.layout import COMPONENTS, Layout, Target
 from .kernels import Operation
+from .layouts import layout_defines
 from .materials import CONSTANTS
 
 # Of the depths that are packed; what they are changes no count.
@@ -107,7 +107,7 @@ class WordPacking:
         encoding = next(e for e in suits if bool(e.sign_bits) == self.signed)
         # A depth needs a normal beside it to be a layout; that lies in a second target, which no kernel writes.
         beside = Target("rgba16f", " ".join(f"normal.{axis}" for axis in "xyz"[: encoding.components]))
-        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding.name, "")
+        return Layout(self.name, self.name, (self.target, *(() if self.numbers else (beside,))), encoding, "")
 
     def pack(self) -> Operation:
         return Operation("kernel_pack.glsl", max(self.numbers, 2), 3, self.channels, *self._read(), is_portable=False)
@@ -127,18 +127,18 @@ class WordPacking:
         return defines, {"DEPTH_ENCODING": depth.glsl}
 
 
-def _of(name: str) -> tuple[Packing, ...]:
-    storage = STORAGES[name]
+def packings_of(storage: Storage) -> tuple[Packing, ...]:
+    """A storage for two numbers, and for three where it has room for them."""
     return tuple(StoragePacking(storage, numbers) for numbers in (2, 3) if numbers <= storage.channels)
 
 
 # What `--storage` may name: a storage for two numbers and for three, some by their bits alone, and words of layouts.
 PACKINGS: Mapping[str, tuple[Packing, ...]] = MappingProxyType(
-    {name: _of(name) for name in STORAGES}
+    {name: packings_of(storage) for name, storage in STORAGES.items()}
     | {
-        "12:12": _of("rgb8_12_12"),
-        "16:16": _of("rgba8_16_16"),
-        "11:10:11": _of("rgba8_11_10_11"),
+        "12:12": packings_of(STORAGES["rgb8_12_12"]),
+        "16:16": packings_of(STORAGES["rgba8_16_16"]),
+        "11:10:11": packings_of(STORAGES["rgba8_11_10_11"]),
         "11:11": (WordPacking("rgba8 11:11", Target("rgba8", "normal.x:11 normal.y:11"), 2),),
         "depth16": (WordPacking("rgba8 depth 8:8", Target("rgba8", "depth:16")),),
         "depth24": (WordPacking("rgba8 depth 8:8:8", Target("rgba8", "depth:24")),),

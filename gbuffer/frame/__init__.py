@@ -1,1 +1,1 @@
-"""A frame's configuration and its resources."""
+"""A frame: its plan, its resources, and what passes draw with."""

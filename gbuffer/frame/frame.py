@@ -1,54 +1,35 @@
-"""One frame's resources: the targets of a layout, light buffers, shadow map, and programs over a scene."""
+"""A frame on the device: the resources of a pipeline's plan, and programs over a scene."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import moderngl
 import numpy as np
 
-from ...encodings.catalogue import ENCODINGS
-from ...encodings.light_encoding import LightEncoding
-from ...encodings.storage import FORMATS, R32F, ROUNDINGS, Storage
-from ..codecs.codec_passes import encoding_defines, levels_of, storage_kind
+from ...encodings.storages.storage import ROUNDINGS
+from ..codecs.codec_passes import encoding_defines
 from ..codecs.depth_passes import depth_defines
 from ..codecs.light_passes import light_defines
 from ..defines import materials
-from ..gl.device import Device, FormatError, bind
-from ..gl.raw import DepthBuffer, depth_stencil
-from ..layouts.layout import COMPONENTS, PACKINGS, Layout
+from ..defines.layouts import layout_defines
+from ..gl import raw
+from ..gl.device import Device, bind
+from ..gl.handles import Buffer, Framebuffer, Program, Texture3D, VertexArray
+from ..layouts.layout import Layout
 from ..scenes.scene import Scene
-from .scene_buffers import SceneBuffers, sun_matrix
+from .contract import Pipeline
+from .held import Held
+from .plan import Plan
+from .resource import DEPTH_MAP, DEPTH_STENCIL, Resource
+from .resources import LIGHT, LIGHT_HOLDS, SHADOW_SIZE
+from .scene_buffers import SceneBuffers, Sight, sun_matrix
 
-SHADOW_SIZE = 1024
 FRAME_BINDING = 0
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a frame is made of.
-
-    Attributes:
-        size: width and height of the final image.
-        samples: of each pixel.
-        layout, light_buffer: what the G-buffer and the light are kept in.
-        light_targets: 1 or 2, see `accumulation.glsl`.
-        shadows: whether the sun has a shadow map.
-        scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
-    """
-
-    size: tuple[int, int]
-    samples: int
-    layout: Layout
-    light_buffer: LightEncoding
-    light_targets: int
-    shadows: bool
-    scale: float
 
 
 class Frame:
@@ -57,23 +38,21 @@ class Frame:
     Args:
         device: where.
         scene: what is drawn.
+        pipeline: whose resources.
         plan: with which targets.
-        scaled: whether G-buffer and light buffer have the plan's scale, and one sample a pixel.
     """
 
-    def __init__(self, device: Device, scene: Scene, plan: Plan, scaled: bool):
-        self.device, self.context, self.scene, self.plan = device, device.context, scene, plan
-        self.stack = ExitStack()
-        width, height = plan.size
-        self.buffer_size = (
-            (max(round(width * plan.scale), 1), max(round(height * plan.scale), 1)) if scaled else plan.size
-        )
-        self.buffer_samples = 1 if scaled else plan.samples
+    def __init__(self, device: Device, scene: Scene, pipeline: Pipeline, plan: Plan):
+        self.device, self.context, self.scene, self.pipeline = device, device.context, scene, pipeline
         # Without anything that casts one there is no shadow to keep a map of.
-        self.shadows = plan.shadows and scene.sun is not None and any(part.casts for part in scene.parts)
+        casts = scene.sun is not None and any(part.casts for part in scene.parts)
+        self.plan = replace(pipeline.planned(plan), shadows=plan.shadows and casts)
+        self.stack = ExitStack()
+        self._held: dict[Resource, Held] = {}
+        self._framebuffers: dict[tuple[Any, ...], Framebuffer] = {}
+        self._blocks: dict[tuple[Any, ...], Buffer] = {}
         try:
             self.scene_buffers = SceneBuffers(device, self.stack, scene)
-            self.blocks = {size: self._frame_block(size) for size in {self.buffer_size, plan.size}}
             tables = plan.layout.codec.encoding.tables().items()
             self.tables = {name: device.owned(self.stack, device.upload(table)) for name, table in tables}
         except BaseException:
@@ -87,100 +66,83 @@ class Frame:
         self.device.idle.use()
         self.stack.close()
 
-    def _frame_block(self, size: tuple[int, int]) -> moderngl.Buffer:
-        view = self.scene.view
-        projection = view.projection(self.plan.size[0] / self.plan.size[1])
-        to_world = np.linalg.inv(self.scene_buffers.view)
-        to_sun = sun_matrix(self.scene) @ to_world if self.shadows else np.eye(4)
-        previous = projection @ self.scene.previous.matrix() @ to_world
-        up = np.tan(np.radians(view.fov) / 2)
-        rays = (up * self.plan.size[0] / self.plan.size[1], up, view.near, view.far)
-        vectors = [(*self.scene.ambient, 0.0), rays, (*size, SHADOW_SIZE, 0.0)]
-        matrices = [projection, np.linalg.inv(projection), to_world, to_sun, previous]
-        data = np.concatenate([*(m.T.ravel() for m in matrices), *map(np.array, vectors)])
-        return self.device.owned(self.stack, self.context.buffer(data.astype(np.float32).tobytes()))
+    # Resources
 
-    def texture(self, size: tuple[int, int], storage: Storage, samples: int) -> moderngl.Texture:
-        """A render target, released with the frame."""
-        return self.device.owned(self.stack, self.device.target(size, storage, samples))
+    def show(self, scene: Scene) -> None:
+        """Draw the scene at another moment from here on. Raises ValueError as `SceneBuffers.show`."""
+        self.scene_buffers.show(scene)
+        self.scene = scene
+        for block in self._blocks.values():
+            block.release()
+        self._blocks.clear()
 
-    @cached_property
-    def gbuffer(self) -> list[moderngl.Texture]:
-        targets = self.plan.layout.targets
-        return [self.texture(self.buffer_size, target.storage, self.buffer_samples) for target in targets]
+    def advance(self) -> None:
+        """Begin the next frame: what is kept moves on by one copy."""
+        for resource in self.pipeline.resources.values():
+            if resource.kept and resource not in self._held:
+                for _ in range(resource.copies):
+                    self.clear(resource)
+                    self.held(resource).move_on()
+            elif resource.kept:
+                self.held(resource).move_on()
 
-    @cached_property
-    def light(self) -> list[moderngl.Texture]:
-        return self._light_targets()
+    def held(self, resource: Resource) -> Held:
+        """A resource on the device."""
+        if resource.shares and resource.is_shared(self.plan):
+            return self.held(resource.shares)
+        if resource not in self._held:
+            self._held[resource] = Held(self.device, self.stack, resource, self.plan)
+        return self._held[resource]
 
-    @cached_property
-    def next_light(self) -> list[moderngl.Texture]:
-        """The light buffer's second copy, for a code that is read while it is written."""
-        return self._light_targets()
+    def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
+        """A resource's textures, of the copy in use or of one before it: none where the plan has no such resource."""
+        held = self.held(resource).copy(copy)
+        return [one.texture if isinstance(one, raw.DepthBuffer) else one for one in held]
 
-    def _light_targets(self) -> list[moderngl.Texture]:
-        storage, targets = self.plan.light_buffer.storage, self.plan.light_targets
-        return [self.texture(self.buffer_size, storage, self.buffer_samples) for _ in range(targets)]
-
-    @cached_property
-    def linear_depth(self) -> moderngl.Texture:
-        return self.texture(self.buffer_size, R32F, self.buffer_samples)
-
-    @cached_property
-    def final(self) -> moderngl.Texture:
-        return self.texture(self.plan.size, FORMATS["rgba32f"], self.plan.samples)
-
-    @cached_property
-    def depth(self) -> DepthBuffer:
-        """Depth and stencil of the G-buffer."""
-        return self._depth_stencil(self.buffer_size, self.buffer_samples)
-
-    @cached_property
-    def final_depth(self) -> DepthBuffer:
-        """Depth and stencil of the final image: the G-buffer's own where the two have one size."""
-        same = (self.buffer_size, self.buffer_samples) == (self.plan.size, self.plan.samples)
-        return self.depth if same else self._depth_stencil(self.plan.size, self.plan.samples)
-
-    def _depth_stencil(self, size: tuple[int, int], samples: int) -> DepthBuffer:
-        made = depth_stencil(self.context, size, samples)
-        self.stack.callback(made.release)
-        return made
-
-    @cached_property
-    def shadow_map(self) -> moderngl.Texture:
-        texture = self.device.owned(self.stack, self.context.depth_texture((SHADOW_SIZE, SHADOW_SIZE)))
-        texture.compare_func = ""
-        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        return texture
+    def clear(self, resource: Resource) -> None:
+        """Colour to 0, or to what stands for no light; depth to 1 and stencil to 0."""
+        none = self.plan.light_buffer.no_light if resource == LIGHT else 0.0
+        textures, is_depth = self.textures(resource), resource.texels(self.plan)[:1] in ((DEPTH_MAP,), (DEPTH_STENCIL,))
+        if not textures:
+            return
+        made = self.framebuffer([], resource, True) if is_depth else self.framebuffer(textures)
+        if resource.format == DEPTH_STENCIL:
+            made.use()
+            raw.clear_depth_stencil()
+        else:
+            made.clear(none, none, none, none, depth=1.0)
 
     def framebuffer(
-        self, colours: Sequence[moderngl.Texture], depth: DepthBuffer | None = None, writes_depth: bool = False
-    ) -> moderngl.Framebuffer:
-        """Targets to draw into. Raises FormatError where the device cannot."""
-        try:
-            made = self.device.owned(self.stack, self.context.framebuffer(list(colours)))
-            if depth:
-                depth.attach(made)
-        except moderngl.Error as error:
-            raise FormatError(f"{self.device.renderer} cannot render to these targets: {error}") from error
-        made.depth_mask = writes_depth
-        return made
+        self, colours: Sequence[Any], depth: Resource | None = None, writes_depth: bool = False, at: int | None = None
+    ) -> Framebuffer:
+        """Targets to draw into, made once; `at` is the slice of volumes. Raises FormatError where the device cannot."""
+        against = self.held(depth).copy(0)[0] if depth else None
+        key = (*(texture.glo for texture in colours), against, writes_depth, at)
+        if key not in self._framebuffers:
+            volumes = bool(colours) and isinstance(colours[0], Texture3D)
+            make = self.device.slice_framebuffer(colours, at) if volumes else self.device.framebuffer(colours, against)
+            make.depth_mask = writes_depth
+            self._framebuffers[key] = self.device.owned(self.stack, make)
+        return self._framebuffers[key]
+
+    # Programs
 
     @cached_property
     def _defines(self) -> dict[str, object]:
         plan = self.plan
         return {
             **materials.CONSTANTS,
+            **LIGHT_HOLDS,
             **encoding_defines(plan.layout.codec.encoding),
             **depth_defines(plan.layout.depth_encoding),
             **layout_defines(plan.layout, shader_roundings(self.device, plan.layout)),
-            "SAMPLES": self.buffer_samples,
+            "SAMPLES": plan.surface_samples,
             "LIGHT_TARGETS": plan.light_targets,
             **light_defines(plan.light_buffer),
-            "SHADOWS": int(self.shadows),
+            "SHADOWS": int(plan.shadows),
         }
 
-    def program(self, vertex: str, fragment: str, **defines: object) -> moderngl.Program:
+    def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
         plan = self.plan
         names: Mapping[str, Path] = {
@@ -190,108 +152,33 @@ class Frame:
         }
         return self.device.shared_program(vertex, fragment, {**self._defines, **defines}, names)
 
-    def fullscreen(self, program: moderngl.Program) -> moderngl.VertexArray:
-        """A program to run over a whole target: `render(vertices=3)`."""
-        return self.array(program, [])
-
-    def array(self, program: moderngl.Program, content: list[Any], indices: Any = None) -> moderngl.VertexArray:
+    def array(self, program: Program, content: list[Any], indices: Any = None) -> VertexArray:
         """Vertices under a program, released with the frame."""
         made = self.context.vertex_array(program, content, indices)
         # Several arrays share a program: each releases itself alone.
         self.stack.callback(made.release)
         return made
 
-    def geometry(self, program: moderngl.Program) -> Geometry:
-        """A program to draw the scene's meshes with."""
-        return Geometry(self, program)
+    def bind(self, program: Program, size: tuple[int, int], view: Sight | None, textures: Mapping[str, Any]) -> None:
+        """Bind what a draw into a target of this size reads, seen from a view or by the scene's own camera (None)."""
+        if (size, view) not in self._blocks:
+            self._blocks[size, view] = self._block(size, view)
+        self._blocks[size, view].bind_to_uniform_block(FRAME_BINDING)
+        self.scene_buffers.bind(view)
+        bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **textures})
 
-    def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
-        """Depth test, blending and culling of the draws that follow; everything else off."""
-        flags = moderngl.NOTHING
-        if depth:
-            self.context.depth_func = depth
-            flags |= moderngl.DEPTH_TEST
-        if blend:
-            self.context.blend_func = blend
-            flags |= moderngl.BLEND
-        if cull:
-            self.context.cull_face = cull
-            flags |= moderngl.CULL_FACE
-        self.context.enable_only(flags)
-
-    @property
-    def gbuffer_textures(self) -> dict[str, Any]:
-        """What a pass that reads the G-buffer binds."""
-        given: dict[str, Any] = {"gbuffer": self.gbuffer}
-        if "depth" not in self.plan.layout.components:
-            given["linear_depth"] = self.linear_depth
-        return given
-
-    def prepare(self, program: moderngl.Program, size: tuple[int, int], **textures: Any) -> None:
-        """Bind what shaders read before a draw into a target of this size: tables, textures, G-buffer, light."""
-        self.blocks[size].bind_to_uniform_block(FRAME_BINDING)
-        self.scene_buffers.bind()
-        given: dict[str, Any] = {"bumps": self.scene_buffers.bumps, **self.tables, **textures}
-        if self.shadows:
-            given["shadow_map"] = self.shadow_map
-        bind(program, given)
-
-
-class Geometry:
-    """The scene's meshes under one program."""
-
-    def __init__(self, frame: Frame, program: moderngl.Program):
-        self._frame, self.program = frame, program
-        # The compiler drops what nobody reads; its bytes are skipped.
-        attributes = {"in_position": 3, "in_normal": 3, "in_tangent": 4, "in_uv": 2}
-        form = " ".join(f"{n}f" if name in program else f"{4 * n}x" for name, n in attributes.items())
-        read = [name for name in attributes if name in program]
-        self._arrays = [
-            frame.array(program, [(vertices, form, *read)], triangles)
-            for vertices, triangles in frame.scene_buffers.meshes
-        ]
-
-    def draw(self, name: str | int, cull: str = "back") -> None:
-        """Draw one of the scene's lists, without the "back" or "front" sides of what is closed."""
-        buffers, context = self._frame.scene_buffers, self._frame.context
-        context.cull_face = cull
-        for draw in buffers.draws[name]:
-            (context.disable if buffers.two_sided[draw.mesh] else context.enable)(moderngl.CULL_FACE)
-            self.program["first"] = draw.first
-            self._arrays[draw.mesh].render(moderngl.TRIANGLES, instances=draw.count)
-
-
-def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]:
-    """The macros that make `gbuffer.glsl` speak of a layout; `rounds` is `shader_roundings`."""
-    words = layout.words
-    storages = [target.storage for target in layout.targets]
-    first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
-    first |= {"POWER": "power", "KIND": "kind", "INSTANCE": "instance"}
-    widen, bias = PACKINGS[layout.packing]
-    return {
-        **{name: COMPONENTS.index(component) for name, component in first.items()},
-        "NUMBERS": len(COMPONENTS),
-        "WORDS": len(words),
-        "WORD_COMPONENT": tuple(COMPONENTS.index(word.component) for word in words),
-        "WORD_TARGET": tuple(word.target for word in words),
-        "WORD_FIRST": tuple(word.first for word in words),
-        "WORD_BITS": tuple(word.bits for word in words),
-        "TARGETS": len(storages),
-        "TARGET_KIND": tuple(storage_kind(storage) for storage in storages),
-        "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
-        "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
-        "TARGET_ROUNDS": rounds,
-        "NORMAL_LEVELS": levels_of(ENCODINGS[layout.encoding]),
-        "NORMAL_SCALE": layout.normal_scales,
-        "NORMAL_BIASED": int(layout.codec.storage.is_biased),
-        "PACK_WIDEN": widen,
-        "PACK_BIAS": bias,
-        "HAS_DEPTH": int("depth" in layout.components),
-        "HAS_POWER": int("power" in layout.components),
-        "HAS_KIND": int("kind" in layout.components),
-        "HAS_INSTANCE": int("instance" in layout.components),
-        "WORLD_SPACE": int(layout.space == "world"),
-    }
+    def _block(self, size: tuple[int, int], view: Sight | None) -> Buffer:
+        """What `frame.glsl` declares."""
+        sight, previous = view or self.scene.view, view or self.scene.previous
+        picture = size if view else self.plan.size
+        projection, to_world = sight.projection(picture[0] / picture[1]), np.linalg.inv(sight.matrix())
+        to_sun = sun_matrix(self.scene) @ to_world if self.plan.shadows else np.eye(4)
+        previous_clip = projection @ previous.matrix() @ to_world
+        sizes = (*self.plan.surface_size, SHADOW_SIZE, 0.0)
+        vectors = [(*self.scene.ambient, 0.0), sight.rays(picture), sizes, (*size, 0.0, 0.0)]
+        matrices = [projection, np.linalg.inv(projection), to_world, to_sun, previous_clip]
+        data = np.concatenate([*(m.T.ravel() for m in matrices), *map(np.array, vectors)])
+        return self.device.owned(self.stack, self.context.buffer(data.astype(np.float32).tobytes()))
 
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:

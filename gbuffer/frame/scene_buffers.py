@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass
+from typing import Protocol
 
-import moderngl
 import numpy as np
 
 from ..gl.device import Device
+from ..gl.handles import Buffer, Texture
 from ..scenes.mesh import Mesh, tangents, wound
 from ..scenes.scene import KINDS, LIGHT_KINDS, Light, Scene
 
@@ -16,6 +17,22 @@ INSTANCES, ORDER, LIGHTS, MATERIALS = 0, 1, 2, 3
 LAYERS = 3
 # Instances are told apart by 1 to 255, so that eight bits hold them.
 IDENTITIES = 255
+
+
+class Sight(Protocol):
+    """Where a scene is seen from: a `View`, or any other hashable value that has these."""
+
+    def matrix(self) -> np.ndarray:
+        """World to view space, (4, 4)."""
+        ...
+
+    def projection(self, aspect: float) -> np.ndarray:
+        """View to clip space, (4, 4)."""
+        ...
+
+    def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
+        """The corner of a picture of this size at depth 1, right and up, and the near and the far plane."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -28,11 +45,12 @@ class Draw:
 
 
 class SceneBuffers:
-    """What a scene's frames are drawn from, released with `stack`.
+    """What a scene's frames are drawn from, released with `stack`; it may move from frame to frame.
 
     Attributes:
         draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
             (closed) and "thin casters" (two-sided), and for each light's index the opaque instances within its reach.
+        view: world space to that of the scene's own camera, by which transparent instances are ordered.
         lights, first_lamp: the lights as shaders number them, and the first that is no sun.
         meshes: vertex and index buffers.
         two_sided: whether the back of each mesh is drawn as well.
@@ -41,39 +59,59 @@ class SceneBuffers:
 
     def __init__(self, device: Device, stack: ExitStack, scene: Scene):
         self._device, self._stack, self._scene = device, stack, scene
-        self.view = scene.view.matrix()
         self.two_sided = [part.two_sided for part in scene.parts]
         self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
+        self.bumps = device.owned(stack, _bump_texture(device))
+        # Tables of the moment.
+        self._moment = ExitStack()
+        stack.callback(lambda: self._moment.close())
+        self.show(scene)
+
+    def show(self, scene: Scene) -> None:
+        """Draw the scene at another moment from here on.
+
+        Raises:
+            ValueError: it has other meshes, or lights of other kinds.
+        """
+        if what_is_built(scene) != what_is_built(self._scene):
+            raise ValueError("only a scene of the same meshes and kinds of light is another moment of a scene")
+        self._moment.close()
+        self._scene, self.view = scene, scene.view.matrix()
         self._material = np.concatenate([part.materials for part in scene.parts])
         self._transparent = np.array([m.alpha < 1 for m in scene.materials])[self._material]
         self.draws: dict[str | int, list[Draw]] = {}
         # The shaders find the sun in the first place.
         self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
         self.first_lamp = int(scene.sun is not None)
-        order = self._order()
-        tables = {INSTANCES: self._instances(), ORDER: order, LIGHTS: self._lights(), MATERIALS: self._materials()}
-        self._tables = {binding: self._buffer(data) for binding, data in tables.items()}
-        self.bumps = device.owned(stack, _bump_texture(device))
+        self._tables = {ORDER: self._table(self._order()), MATERIALS: self._table(self._materials())}
+        self._seen: dict[Sight, dict[int, Buffer]] = {}
 
-    def bind(self) -> None:
-        """Make the tables those that shaders see."""
-        for binding, buffer in self._tables.items():
+    def bind(self, view: Sight | None = None) -> None:
+        """Make the tables those that shaders see: instances and lights in the space of a view, else the scene's own."""
+        sight = view or self._scene.view
+        if sight not in self._seen:
+            matrix = sight.matrix()
+            tables = {INSTANCES: self._instances(matrix), LIGHTS: self._lights(matrix)}
+            self._seen[sight] = {binding: self._table(data) for binding, data in tables.items()}
+        for binding, buffer in (self._tables | self._seen[sight]).items():
             buffer.bind_to_storage_buffer(binding)
 
-    def _buffer(self, data: np.ndarray) -> moderngl.Buffer:
+    def _table(self, data: np.ndarray) -> Buffer:
         # An empty list is a buffer all the same.
-        return self._device.owned(self._stack, self._device.context.buffer(data.tobytes() or bytes(16)))
+        return self._device.owned(self._moment, self._device.context.buffer(data.tobytes() or bytes(16)))
 
-    def _upload_mesh(self, mesh: Mesh) -> tuple[moderngl.Buffer, moderngl.Buffer]:
+    def _upload_mesh(self, mesh: Mesh) -> tuple[Buffer, Buffer]:
         vertices = np.concatenate([mesh.positions, mesh.normals, tangents(mesh), mesh.uv], axis=1)
-        return self._buffer(vertices.astype(np.float32)), self._buffer(wound(mesh).astype(np.int32))
+        given = vertices.astype(np.float32), wound(mesh).astype(np.int32)
+        corners, triangles = (self._device.context.buffer(data.tobytes() or bytes(16)) for data in given)
+        return self._device.owned(self._stack, corners), self._device.owned(self._stack, triangles)
 
-    def _instances(self) -> np.ndarray:
+    def _instances(self, view: np.ndarray) -> np.ndarray:
         models = np.concatenate([part.models for part in self._scene.parts])
         count = len(models)
         table = np.zeros(count, [("model_view", np.float32, (4, 4)), ("numbers", np.int32, 4)])
         # GLSL's matrices go column by column.
-        table["model_view"] = np.swapaxes(self.view @ models, 1, 2)
+        table["model_view"] = np.swapaxes(view @ models, 1, 2)
         layers = np.where(self._transparent, (np.cumsum(self._transparent) - 1) % LAYERS + 1, 0)
         table["numbers"][:, 0], table["numbers"][:, 1] = self._material, layers
         table["numbers"][:, 2] = np.arange(count) % IDENTITIES + 1
@@ -86,15 +124,8 @@ class SceneBuffers:
         ]
         return np.array(rows, np.float32)
 
-    def _lights(self) -> np.ndarray:
-        return np.array([self._light(light) for light in self.lights], np.float32).reshape(-1, 16)
-
-    def _light(self, light: Light) -> list[float]:
-        position = self.view[:3, :3] @ np.array(light.position) + self.view[:3, 3]
-        direction = self.view[:3, :3] @ np.array(light.direction)
-        outer, inner = np.cos(np.radians([light.outer, light.inner]))
-        kind = LIGHT_KINDS.index(light.kind)
-        return [*position, light.radius, *light.colour, kind, *direction, outer, inner, 0, 0, 0]
+    def _lights(self, view: np.ndarray) -> np.ndarray:
+        return np.array([_light(light, view) for light in self.lights], np.float32).reshape(-1, 16)
 
     def _order(self) -> np.ndarray:
         """Fills `draws` and gives the instances that they list."""
@@ -127,6 +158,20 @@ class SceneBuffers:
         # Special materials first: where a general surface meets one in one depth, both geometry passes keep that one.
         self.draws["opaque"] = self.draws["special"] + self.draws["general"]
         return np.array(order, np.int32)
+
+
+def _light(light: Light, view: np.ndarray) -> list[float]:
+    position = view[:3, :3] @ np.array(light.position) + view[:3, 3]
+    direction = view[:3, :3] @ np.array(light.direction)
+    outer, inner = np.cos(np.radians([light.outer, light.inner]))
+    kind = LIGHT_KINDS.index(light.kind)
+    return [*position, light.radius, *light.colour, kind, *direction, outer, inner, 0, 0, 0]
+
+
+def what_is_built(scene: Scene) -> tuple[object, ...]:
+    """What passes are built for, and may not change from frame to frame."""
+    meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
+    return *meshes, *sorted(light.kind for light in scene.lights)
 
 
 def _listed(instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:
@@ -173,7 +218,7 @@ def sun_matrix(scene: Scene) -> np.ndarray:
     return matrix
 
 
-def _bump_texture(device: Device, size: int = 256) -> moderngl.Texture:
+def _bump_texture(device: Device, size: int = 256) -> Texture:
     """A normal map, tiling: round pits, as slopes along u and v up to about 0.7."""
     u, v = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size)
     cells = 4
@@ -181,7 +226,4 @@ def _bump_texture(device: Device, size: int = 256) -> moderngl.Texture:
     radius = np.hypot(x, y)
     ring = np.where(radius < 0.42, np.sin(np.pi * radius / 0.42), 0.0)
     slopes = 0.7 * np.stack([x, y], axis=-1) / np.maximum(radius, 1e-9)[..., None] * ring[..., None]
-    texture = device.context.texture((size, size), 2, slopes.astype(np.float16).tobytes(), dtype="f2")
-    texture.build_mipmaps()
-    texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-    return texture
+    return device.mipmapped(slopes.astype(np.float16))

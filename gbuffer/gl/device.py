@@ -12,9 +12,10 @@ from typing import Any, Protocol, TypeVar
 import moderngl
 import numpy as np
 
-from ...encodings.storage import STORAGES, Storage, store_texel
+from ...encodings.storages.rounding import store_texel
+from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import jnp
-from .raw import DepthBuffer, samples_of
+from .raw import DepthBuffer, attach_slice, samples_of
 from .shader import ShaderError, Source
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
@@ -23,6 +24,9 @@ DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
 NATIVE_ROUNDINGS = ("nearest", "truncate")
 # More than any one frame uses: the one that was asked for longest ago is released.
 KEPT_PROGRAMS = 64
+# Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
+ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
+OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
 
 
@@ -49,6 +53,11 @@ def _create_context() -> moderngl.Context:
 
 class FormatError(Exception):
     """The device cannot render to a format."""
+
+
+def _dtype(storage: Storage) -> str:
+    by_bits = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
+    return by_bits.get(storage.bits[0], "f1")
 
 
 class Device:
@@ -130,16 +139,42 @@ class Device:
 
     def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
         """A texture of a storage format, to render to and to fetch from."""
-        dtype = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
         texture = self.context.texture(
             size,
             storage.channels,
             samples=samples if samples > 1 else 0,
-            dtype=dtype.get(storage.bits[0], "f1"),
+            dtype=_dtype(storage),
             internal_format=storage.internal_format,
         )
         if samples == 1:
             texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def volume(self, size: tuple[int, int, int], storage: Storage) -> moderngl.Texture3D:
+        """A texture of three dimensions, to render to by slices. moderngl chooses its format by type and channels."""
+        volume = self.context.texture3d(size, storage.channels, dtype=_dtype(storage))
+        volume.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return volume
+
+    def depth_map(self, size: tuple[int, int]) -> moderngl.Texture:
+        """A depth texture whose depths shaders read as numbers."""
+        texture = self.context.depth_texture(size)
+        texture.compare_func = ""
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    @staticmethod
+    def smooth(texture: moderngl.Texture | moderngl.Texture3D) -> None:
+        """What shaders sample there is blended between texels, and ends at the border."""
+        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        texture.repeat_x = texture.repeat_y = False
+
+    def mipmapped(self, texels: np.ndarray) -> moderngl.Texture:
+        """A float16 array of shape (height, width, channels) that shaders sample at every size."""
+        height, width, channels = texels.shape
+        texture = self.context.texture((width, height), channels, texels.tobytes(), dtype="f2")
+        texture.build_mipmaps()
+        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         return texture
 
     def given_samples(self, asked: int) -> int:
@@ -196,18 +231,53 @@ class Device:
         self.context.enable_only(moderngl.DEPTH_TEST)
         self.context.depth_func = "1"
 
-    def framebuffer(self, targets: list[moderngl.Texture]) -> moderngl.Framebuffer:
-        """Textures to draw into. Raises FormatError where the device cannot."""
+    def framebuffer(
+        self, targets: Sequence[moderngl.Texture], depth: DepthBuffer | moderngl.Texture | None = None
+    ) -> moderngl.Framebuffer:
+        """Textures to draw into, or a depth alone. Raises FormatError where the device cannot."""
         try:
-            return self.context.framebuffer(targets)
+            if not isinstance(depth, DepthBuffer):
+                return self.context.framebuffer(list(targets), depth)
+            size, samples, none = depth.texture.size, depth.texture.samples, self.context.empty_framebuffer
+            made = self.context.framebuffer(list(targets)) if targets else none(size, samples=samples)
+            depth.attach(made)
         except moderngl.Error as error:
             raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
+        return made
+
+    def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], at: int | None) -> moderngl.Framebuffer:
+        """One slice of each volume to draw into, or all slices by `gl_Layer`; a framebuffer of moderngl's has flat
+        targets, which give way."""
+        width, height, _ = volumes[0].size
+        with ExitStack() as stack:
+            flat = [self.owned(stack, self.target((width, height), STORAGES["rgba8"])) for _ in volumes]
+            made = self.framebuffer(flat)
+            made.use()
+            for index, volume in enumerate(volumes):
+                attach_slice(index, volume.glo, at)
+        return made
 
     def blend(self, function: tuple[int, int] | None) -> None:
         """Blend what is drawn next by source and destination factor, or not; no depth test, whatever drew before."""
-        self.context.enable_only(moderngl.BLEND if function else moderngl.NOTHING)
-        if function:
-            self.context.blend_func = function
+        self.state(None, function)
+
+    def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
+        """Depth test, blending and culling of the draws that follow; everything else off."""
+        flags = moderngl.NOTHING
+        if depth:
+            self.context.depth_func = depth
+            flags |= moderngl.DEPTH_TEST
+        if blend:
+            self.context.blend_func = blend
+            flags |= moderngl.BLEND
+        if cull:
+            self.context.cull_face = cull
+            flags |= moderngl.CULL_FACE
+        self.context.enable_only(flags)
+
+    def cull(self, is_on: bool) -> None:
+        """Leave out the sides that `state` or `cull_face` names, or draw both."""
+        (self.context.enable if is_on else self.context.disable)(moderngl.CULL_FACE)
 
     def resolve(self, samples: moderngl.Texture, pixels: moderngl.Texture) -> None:
         """A texture's samples averaged into one of a sample a pixel, as the hardware does. Raises FormatError."""

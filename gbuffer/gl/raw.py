@@ -14,6 +14,7 @@ DEPTH32F_STENCIL8 = 0x8CAD
 DEPTH_ATTACHMENT, DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x8D00, 0x821A, 0x8D40, 0x8CD5
 FRAMEBUFFER_DEPTH_STENCIL, STENCIL = 0x84F9, 0x1802
 STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
+COLOR_ATTACHMENT = 0x8CE0
 FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
 ALWAYS, NOTEQUAL = 0x0207, 0x0205
 KEEP, ZERO, REPLACE, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x1E01, 0x8507, 0x8508
@@ -26,6 +27,8 @@ _SIGNATURES = {
     "glGetTexLevelParameteriv": "uiup",
     "glTexStorage2DMultisample": "uiuiib",
     "glFramebufferTexture2D": "uuuui",
+    "glFramebufferTexture": "uuui",
+    "glFramebufferTextureLayer": "uuuii",
     "glCheckFramebufferStatus": "u",
     "glClearBufferfi": "uifi",
     "glClearBufferiv": "uip",
@@ -111,6 +114,14 @@ class DepthBuffer:
     def release(self) -> None:
         """Free it on the device."""
         function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(self._number)))
+
+
+def attach_slice(index: int, volume: int, at: int | None) -> None:
+    """Make a volume's slice the colour target `index` of the framebuffer in use; all slices if `at` is None."""
+    if at is None:
+        function("glFramebufferTexture")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0)
+    else:
+        function("glFramebufferTextureLayer")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0, at)
 
 
 def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int) -> DepthBuffer:

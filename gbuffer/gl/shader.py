@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
-SHADERS = Path(__file__).parents[1] / "shaders"
+ROOM = Path(__file__).parents[1]
+SUFFIXES = (".glsl", ".vert", ".frag", ".comp")
+# Of the encodings: not the pairs, which may have the name of another kind's.
+SHARED = ("*.glsl", "storages/*.glsl")
 _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
 # "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's; "stdin:12:" or "0:12:" glslang's.
 _PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
@@ -18,24 +22,40 @@ class ShaderError(Exception):
     """A shader that cannot be read or does not compile; the message names the file and the line."""
 
 
+@cache
+def shaders() -> Mapping[str, Path]:
+    """Every shader of this room, and what the encodings share, by file name. Raises ShaderError where two have one."""
+    found: dict[str, Path] = {}
+    shared = (path for pattern in SHARED for path in (ROOM.parent / "encodings").glob(pattern))
+    for path in sorted([*ROOM.rglob("*.*"), *shared]):
+        if path.suffix in SUFFIXES and path != found.setdefault(path.name, path):
+            raise ShaderError(f"two shaders have one name: {found[path.name]} and {path}")
+    return found
+
+
 class Source:
     """A shader's text with every include expanded once.
+
+    An include is a file next to the one that includes it, else a shader of `shaders`, by its name alone.
 
     Where each line comes from is kept here and not told to the compiler by `#line`: Mesa forgets the source string
     number in some of its messages, and then blames the wrong file.
 
     Args:
-        path: the shader, in the project's shader folder if relative.
-        defines: macros set at its head.
+        path: the shader: a name of `shaders`, or a path.
+        defines: macros set at its head; those that nothing mentions are left out, so that what is the same program has
+            the same text.
         names: files that stand behind `#include NAME`.
     """
 
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         self._names: Mapping[str, Path] = names or {}
         self._seen: set[Path] = set()
-        self.place = main = (SHADERS / path).resolve()
+        self.place = main = Path(shaders().get(str(path), path)).resolve()
         version, *rest = self._expand(main)
-        head = [(f"#define {name} {glsl_value(value)}", main, 1) for name, value in (defines or {}).items()]
+        macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
+        mentioned = set(re.findall(r"\w+", " ".join([*(line for line, _, _ in rest), *macros.values()])))
+        head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
         self._lines: list[Line] = [version, *head, *rest]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 
@@ -50,7 +70,7 @@ class Source:
     def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:
         if match["name"] and match["name"] not in self._names:
             raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
-        target = self._names[match["name"]] if match["name"] else path.parent / match["file"]
+        target = self._names[match["name"]] if match["name"] else _beside(path, match["file"])
         target = Path(target).resolve()
         return [] if target in self._seen else self._expand(target)
 
@@ -65,6 +85,12 @@ class Source:
             return f"{path}:{number}"
 
         return _PLACE.sub(place, log.strip())
+
+
+def _beside(path: Path, file: str) -> Path:
+    """The file that a shader at `path` includes."""
+    near = path.parent / file
+    return near if near.is_file() else shaders().get(file, near)
 
 
 def read_shader(path: Path) -> str:

@@ -12,15 +12,17 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
-from ...encodings.codec import Codec
-from ...encodings.depth_encoding import DepthEncoding
-from ...encodings.storage import FORMATS, ROUNDINGS, Storage
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.depth_encoding import DepthEncoding
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (
@@ -74,7 +76,7 @@ class Layout:
         space: "view" or "world", what the normal's axes are.
         rounding: "nearest" or "truncate", how the normal's own format rounds.
         packing: how words with bits round, a key of PACKINGS.
-        depth: the encoding of the depth; the usual one, "", is the first of the catalogue that suits the normal.
+        depth: the encoding of the depth; None for the first of the catalogue that suits the normal.
 
     Raises:
         LayoutError: what it names does not exist, does not fit, or clashes.
@@ -83,12 +85,12 @@ class Layout:
     name: str
     title: str
     targets: tuple[Target, ...]
-    encoding: str
+    encoding: Encoding
     source: str
     space: str = "view"
     rounding: str = "nearest"
     packing: str = "nearest"
-    depth: str = ""
+    depth: DepthEncoding | None = None
 
     def __post_init__(self):
         self._check_names()
@@ -96,40 +98,33 @@ class Layout:
         for component in found:
             if found.count(component) > 1:
                 raise LayoutError(f"layout {self.name}: {component} lies in two places")
-        size = ENCODINGS[self.encoding].components
-        normal = {f"normal.{axis}" for axis in "xyz"[:size]}
+        encoding, name = self.encoding, self.encoding.name
+        normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
         if {c for c in found if c.startswith("normal.")} != normal:
-            raise LayoutError(f"layout {self.name}: {self.encoding} needs {', '.join(sorted(normal))}, and no more")
-        if ENCODINGS[self.encoding].sign_bits and "depth" not in found:
+            raise LayoutError(f"layout {self.name}: {name} needs {', '.join(sorted(normal))}, and no more")
+        if encoding.sign_bits and "depth" not in found:
+            raise LayoutError(f"layout {self.name}: {name} keeps a sign in the depth's, but the layout keeps no depth")
+        if self.depth_encoding.signed != (encoding.sign_bits > 0):
+            known = ", ".join(depth.name for depth in self._suitable_depths)
             raise LayoutError(
-                f"layout {self.name}: {self.encoding} keeps a sign in the depth's, but the layout keeps no depth"
+                f"layout {self.name}: {self.depth_encoding.name} does not suit {name}, whose depth is {known}"
             )
-        if self.depth and self.depth not in self._suitable_depths:
-            known = ", ".join(self._suitable_depths)
-            raise LayoutError(f"layout {self.name}: {self.depth} does not suit {self.encoding}, whose depth is {known}")
 
     @property
-    def _suitable_depths(self) -> dict[str, DepthEncoding]:
-        """Depth encodings that keep the sign that the normal needs, or none."""
-        is_signed = ENCODINGS[self.encoding].sign_bits > 0
-        return {name: depth for name, depth in DEPTH_ENCODINGS.items() if depth.signed == is_signed}
+    def _suitable_depths(self) -> list[DepthEncoding]:
+        """Depth encodings that keep a sign if the normal needs one, and only then."""
+        return [depth for depth in DEPTH_ENCODINGS.values() if depth.signed == (self.encoding.sign_bits > 0)]
 
     @property
     def depth_encoding(self) -> DepthEncoding:
         """The encoding of its depth."""
-        return DEPTH_ENCODINGS[self.depth or next(iter(self._suitable_depths))]
+        return self.depth or self._suitable_depths[0]
 
     def _check_names(self) -> None:
-        known = {"encoding": ENCODINGS, "space": SPACES, "rounding": ROUNDINGS, "packing": PACKINGS}
-        known |= {"depth": DEPTH_ENCODINGS} if self.depth else {}
-        for field, names in known.items():
-            if getattr(self, field) not in names:
-                raise LayoutError(
-                    f"layout {self.name}: unknown {field} {getattr(self, field)!r}; known: {', '.join(names)}"
-                )
+        for field, names in (("space", SPACES), ("rounding", ROUNDINGS), ("packing", PACKINGS)):
+            _check_known(self.name, field, getattr(self, field), names)
         for target in self.targets:
-            if target.format not in FORMATS:
-                raise LayoutError(f"layout {self.name}: unknown format {target.format!r}; known: {', '.join(FORMATS)}")
+            _check_known(self.name, "format", target.format, FORMATS)
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
@@ -164,7 +159,7 @@ class Layout:
 
     def _check_word(self, place: str, component: str, storage: Storage, bits: int) -> None:
         """Raises LayoutError where a word cannot say what it must."""
-        signed_depth = component == "depth" and ENCODINGS[self.encoding].sign_bits > 0
+        signed_depth = component == "depth" and self.encoding.sign_bits > 0
         least = LEAST_BITS.get(component, 2 if signed_depth else 1)
         if bits < least:
             raise LayoutError(f"{place}: {component} needs {least} bits, not {bits}")
@@ -175,9 +170,9 @@ class Layout:
 
     def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
         """Raises LayoutError where a number of the normal's code is not kept as the encoding needs it."""
-        encoding = ENCODINGS[self.encoding]
+        encoding = self.encoding
         if encoding.is_precise and (storage.kind == "float" or self.rounding != "nearest" or self.packing != "nearest"):
-            raise LayoutError(f"{place}: {self.encoding} is rounded precisely, in fixed point and not otherwise")
+            raise LayoutError(f"{place}: {encoding.name} is rounded precisely, in fixed point and not otherwise")
         levels = encoding.levels_of("xyz".index(component[-1]))
         room = storage.levels(0) if storage.kind == "float" else 2**bits - (storage.kind == "snorm")
         if levels > room:
@@ -187,8 +182,8 @@ class Layout:
     def summary(self) -> str:
         """All that makes it what it is, in one line."""
         targets = "; ".join(f"{target.format}: {target.holds}" for target in self.targets)
-        depth = f", {self.depth} depth" if self.depth else ""
-        return f"{targets}; {self.encoding}, {self.space} space, {self.rounding}, packed {self.packing}{depth}"
+        depth = f", {self.depth.name} depth" if self.depth else ""
+        return f"{targets}; {self.encoding.name}, {self.space} space, {self.rounding}, packed {self.packing}{depth}"
 
     @property
     def components(self) -> frozenset[str]:
@@ -199,7 +194,7 @@ class Layout:
     def codec(self) -> Codec:
         """The normal's encoding, the format it lies in, and how that rounds."""
         home = next(word.target for word in self.words if word.component == "normal.x")
-        return Codec(ENCODINGS[self.encoding], self.targets[home].storage, self.rounding)
+        return Codec(self.encoding, self.targets[home].storage, self.rounding)
 
     @property
     def normal_storage(self) -> str:
@@ -211,7 +206,7 @@ class Layout:
     def normal_bits(self) -> int:
         """The bits its normal takes, with one for each sign bit."""
         taken = (w.bits or self.targets[w.target].storage.bits[w.first] for w in self.words if "normal" in w.component)
-        return sum(taken) + ENCODINGS[self.encoding].sign_bits
+        return sum(taken) + self.encoding.sign_bits
 
     @property
     def normal_scales(self) -> tuple[float, ...]:
@@ -246,7 +241,13 @@ class Layout:
             storage.target.name, " ".join(f"normal.{a}{size}" for a, size in zip(components, sizes, strict=False))
         )
         rounding = {"packing" if storage.is_packed else "rounding": codec.rounding}
-        return replace(self, targets=(*kept, home), encoding=codec.encoding.name, **rounding)
+        return replace(self, targets=(*kept, home), encoding=codec.encoding, **rounding)
+
+
+def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> None:
+    """Raises LayoutError for a name that is not among the known ones."""
+    if name not in known:
+        raise LayoutError(f"layout {layout}: unknown {field} {name!r}; known: {', '.join(known)}")
 
 
 def _ends(storage: Storage) -> list[int]:
@@ -296,7 +297,15 @@ def _from_data(path: Path, data: dict[str, Any]) -> Layout:
         raise LayoutError(f"{path}: {', '.join(texts)} are texts, and encoding must be given")
     if not isinstance(targets, list) or not targets or not all(_is_target(target) for target in targets):
         raise LayoutError(f"{path}: targets is a list of tables, each with a format and what it holds, as texts")
-    return Layout(path.stem, targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts)
+    named = {"encoding": _named(path, "encoding", texts.pop("encoding"), ENCODINGS)}
+    depth = texts.pop("depth")
+    named |= {"depth": _named(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
+    return Layout(path.stem, targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
+
+
+def _named(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:
+    _check_known(path.stem, field, name, known)
+    return known[name]
 
 
 def _is_target(data: object) -> bool:

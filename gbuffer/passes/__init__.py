@@ -1,1 +1,1 @@
-"""The passes of the pipelines."""
+"""The passes of the pipelines, each beside its shaders."""

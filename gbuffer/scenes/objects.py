@@ -1,4 +1,4 @@
-"""Seed 004's test scene: many objects of one general and one special part each, point lights and a sun."""
+"""Jo Kyeong-jun's test scene: many objects of one general and one special part each, point lights and a sun."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .mesh import plane, sphere
 from .scene import Light, Material, Part, Scene, View, placed
 from .setting import Setting, coloured
 
-TITLE = "objects of one general and one special part each (seed 004), 64 point lights and a sun"
+TITLE = "objects of one general and one special part each (Jo Kyeong-jun), 64 point lights and a sun"
 FRAMES = 1
 FIELD = (30.0, 30.0)
 

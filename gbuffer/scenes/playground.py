@@ -1,4 +1,4 @@
-"""The scene that the seeds' quality table was measured on.
+"""The scene that the quality table of Pranckevicius' article was measured on.
 
 World space is left-handed, y up, z into the screen, the eye at (0, 0, -5); view space is GL's, so z is turned around.
 Both sides of every surface are drawn: one looks into the lower teapots through the gap around their lids, and those
@@ -22,7 +22,7 @@ from .scene import Light, Material, Part, Scene, View, placed
 from .setting import Setting, coloured
 from .teapot import HEIGHT, teapot
 
-TITLE = "the seeds' playground, without its four lamp arms"
+TITLE = "the article's playground, without its four lamp arms"
 CAMERA = Camera(width=640, height=480, fov=60.0, near=0.1, far=100.0)
 EYE = (0.0, 0.0, -5.0)
 TEAPOT_CELLS = 16

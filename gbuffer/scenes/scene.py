@@ -118,6 +118,11 @@ class View:
         matrix[2, 2], matrix[2, 3] = (near + far) / (near - far), 2 * near * far / (near - far)
         return matrix
 
+    def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
+        """The corner of a picture of this size at depth 1, right and up, and the near and the far plane."""
+        up = np.tan(np.radians(self.fov) / 2)
+        return up * size[0] / size[1], up, self.near, self.far
+
 
 @dataclass(frozen=True)
 class Scene:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..charts.pareto import Error, Panel
+from .sections import Section
 
 Row = dict[str, Any]
 
@@ -68,8 +69,7 @@ class Found:
         name: the folder's.
         facts: what run.json says.
         tables: rows by table, as they were kept.
-        short: of each table what people look at first: titles and rows.
-        asked: the tables that were asked for.
+        sections: the tables as the page shows them, in its order.
         steps: how many have their rows.
         domains: of each encoding, the normals that it is made for.
         preferred: codecs whose pictures come first.
@@ -85,8 +85,7 @@ class Found:
     name: str
     facts: Row
     tables: Mapping[str, Sequence[Row]]
-    short: Mapping[str, Sequence[tuple[str, Sequence[Row]]]] = field(default_factory=dict)
-    asked: Sequence[str] = ()
+    sections: Sequence[Section] = ()
     steps: int = 0
     domains: Mapping[str, str] = field(default_factory=dict)
     preferred: Sequence[CodecKey] = ()
@@ -120,21 +119,15 @@ class Found:
 
     @property
     def request(self) -> Row:
-        """What was asked for: at least `count` and `seed`."""
+        """What was asked for, by option."""
         request = self.facts.get("request")
-        return {"count": None, "seed": None} | (request if isinstance(request, dict) else {})
+        return request if isinstance(request, dict) else {}
 
     @property
     def command(self) -> str:
         """The command line that made the run."""
         words = self.facts.get("command")
         return " ".join(["normalbench", *map(str, words if isinstance(words, list) else [])])
-
-
-def whole(rows: Sequence[Row]) -> list[Row]:
-    """Rows that all have the same columns, in the order in which these come up."""
-    columns = dict.fromkeys(column for row in rows for column in row)
-    return [{column: row.get(column) for column in columns} for row in rows]
 
 
 def plain_text(value: Any) -> Any:

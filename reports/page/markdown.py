@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 from .. import tables
-from .found import Found, Row, whole
+from .found import Found, Row
 from .page import judged, remarks
+from .sections import whole
 
 # What GitHub takes of a comment, less room for a word of one's own.
 LONGEST = 60_000
@@ -43,11 +44,9 @@ def _blocks(found: Found) -> Iterator[str]:
         yield f"**{contest.headline}** {' '.join(said)}".rstrip() + "\n"
         if at == 0:
             yield tables.to_markdown(contest.rows)
-    for short in found.short.values():
-        for title, rows in short:
-            if rows:
-                heading = f"<details><summary>{_plain(title)}</summary>\n"
-                yield "\n".join([heading, tables.to_markdown(_rows(whole(rows))), "</details>\n"])
+    for sheet in (sheet for section in found.sections for sheet in section.summary if sheet.rows):
+        heading = f"<details><summary>{_plain(sheet.title)}</summary>\n"
+        yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])
     machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
     versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
     yield f"Measured by {_code(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,9 @@ from .. import tables
 from ..charts import spheres
 from ..charts.drawings import Drawing, inline
 from ..charts.pictures import CAPTIONS
-from . import embedded, sections
-from .definitions import definition
-from .found import Found, Row, whole
+from . import embedded
+from .found import Found, Row
+from .sections import Section, whole
 from .verdict import Contest, contests, is_number
 
 HERE = Path(__file__).parent
@@ -26,20 +26,17 @@ WRAPPED = 24
 KINDS = {"normals": "the normals as they are"} | CAPTIONS
 
 
-# In the order of the page.
-NAVIGATION = (
-    ("quality", "Normals"),
-    ("pictures", "Pictures"),
-    ("angles", "Angles"),
-    ("sphere", "Sphere"),
-    ("image", "Image"),
-    ("cost", "Cost"),
-    ("passes", "Passes"),
-    ("light", "Light"),
-    ("depth", "Depth"),
-    ("frames", "Frames"),
-    ("measured", "Measured"),
-)
+# What the navigation calls a section's extras that have a heading of their own.
+EXTRAS = {"pictures": "Pictures", "angles": "Angles", "sphere": "Sphere"}
+# The columns of a contest.
+CONTEST = {
+    "by": "The measure.",
+    "first": "Who leads by it; several are a tie, within 0.05 dB or half a percent of an angle.",
+    "figure": "The leader's figure.",
+    "next": "Who comes next.",
+    "ahead": "By how much the leader is ahead.",
+    "unit": "Of figure and distance.",
+}
 
 
 @dataclass(frozen=True)
@@ -72,12 +69,10 @@ class Table:
     folded: bool = False
 
 
-def table(title: str, rows: Sequence[Row], folded: bool = False) -> Table:
+def table(title: str, rows: Sequence[Row], says: Callable[[str], str], folded: bool = False) -> Table:
     """Rows as a table to show; columns that say the same in each row are said once."""
     shown, constants = tables.without_constants(whole(rows))
-    columns = [
-        Column(name, name.replace("_", " "), definition(name), tables.is_numeric(shown, name)) for name in shown[0]
-    ]
+    columns = [Column(name, name.replace("_", " "), says(name), tables.is_numeric(shown, name)) for name in shown[0]]
     cells = [[_cell(row[c.name], c.numeric) for c in columns] for row in shown]
     return Table(title, columns, cells, constants.replace("_", " "), folded)
 
@@ -129,11 +124,10 @@ class Chart:
 class Part:
     """A section as the template shows it."""
 
-    section: sections.Section
+    section: Section
     charts: Sequence[Chart]
     tables: Sequence[Table]
     measured: Sequence[tuple[str, str]]
-    asked: bool
 
     @property
     def is_there(self) -> bool:
@@ -141,12 +135,18 @@ class Part:
         return bool(self.tables)
 
 
-def drawings(found: Found) -> dict[str, list[Drawing]]:
-    """Every chart of a run by the section that shows it; "angles" and "sphere" are of sections of their own."""
-    made = {s.key: list(s.drawings(found, s.rows(found))) for s in sections.SECTIONS}
-    made["angles"] = list(sections.histograms(found, whole(found.tables.get("quality", ()))))
-    made["sphere"] = spheres.drawings(found.maps)
-    return made
+def navigation(found: Found) -> list[tuple[str, str]]:
+    """Anchors and their names, in the order of the page."""
+    made = []
+    for section in found.sections:
+        made.append((section.key, section.short))
+        made += [(extra, EXTRAS[extra]) for extra in section.extras if extra in EXTRAS]
+    return [*made, ("measured", "Measured")]
+
+
+def drawings(found: Found) -> list[Drawing]:
+    """Every chart of a run."""
+    return [drawing for section in found.sections for drawing in section.drawings] + spheres.drawings(found.maps)
 
 
 def _template() -> Any:
@@ -170,18 +170,15 @@ def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> st
         svgs: the drawings' SVG files, by name; one that is missing is not shown.
         gallery: its pictures.
     """
-    made = drawings(found)
-    parts = [_part(found, section, made[section.key], svgs) for section in sections.SECTIONS]
     script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
     return _template().render(
         found=found,
         remarks=remarks(found),
-        nav=NAVIGATION,
-        contests=[(contest, table(title, contest.rows)) for contest, title in titled],
+        nav=navigation(found),
+        contests=[(contest, table(title, contest.rows, lambda name: CONTEST[name])) for contest, title in titled],
         family=instructions(found.tables.get("cost", ()))[1],
-        parts={part.section.key: part for part in parts},
-        angles=_charts(made["angles"], svgs),
+        parts=[_part(found, section, svgs) for section in found.sections],
         spheres=spheres.globes(found.maps),
         directions=found.maps[0].directions if found.maps else 0,
         cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
@@ -198,7 +195,6 @@ def _charts(made: Sequence[Drawing], svgs: Mapping[str, str]) -> list[Chart]:
     return [Chart(d, inline(svgs[d.name], d)) for d in made if d.name in svgs]
 
 
-def _part(found: Found, section: sections.Section, made: Sequence[Drawing], svgs: Mapping[str, str]) -> Part:
-    shown = [table(sheet.title, sheet.rows, sheet.folded) for sheet in section.sheets(found)]
-    asked = section.table in found.asked
-    return Part(section, _charts(made, svgs), shown, section.measured(found), asked)
+def _part(found: Found, section: Section, svgs: Mapping[str, str]) -> Part:
+    shown = [table(s.title, s.rows, section.says, s.folded) for s in section.sheets(found.domains)]
+    return Part(section, _charts(section.drawings, svgs), shown, section.measured())

@@ -39,7 +39,7 @@ class Measure:
 
 MEASURES = (
     Measure(LEADING, "PSNR", "dB", True),
-    Measure("psnr_seed_db", "PSNR as the article measures it", "dB", True),
+    Measure("psnr_article_db", "PSNR as the article measures it", "dB", True),
     Measure("angle_mean_deg", "mean angle", "degrees", False),
     Measure("angle_p99_deg", "99 % of angles below", "degrees", False),
     Measure("angle_max_deg", "largest angle", "degrees", False),
@@ -132,7 +132,7 @@ def standing(measure: Measure, figures: Mapping[str, float]) -> Standing | None:
 def contests(
     quality: Sequence[Row], images: Sequence[Row], costs: Mapping[str, float], domains: Mapping[str, str]
 ) -> list[Contest]:
-    """Every question that rows answer: sets in their order, of each the number of bits with most codecs first.
+    """Every question that rows answer: sets in their order, of each the number of bits with most encodings first.
 
     Args:
         quality: rows of the quality table, of any version; what has no figures takes no part.
@@ -145,8 +145,9 @@ def contests(
     for row in usable:
         groups.setdefault((str(row.get("normals")), row["bits"]), []).append(row)
     made = [_contest(key, rows, images, costs, domains) for key, rows in groups.items()]
+    encodings = {key: len({row.get("encoding") for row in rows}) for key, rows in groups.items()}
     sets = list(dict.fromkeys(normals for normals, _ in groups))
-    return sorted(made, key=lambda c: (sets.index(c.normals), -c.codecs, c.bits))
+    return sorted(made, key=lambda c: (sets.index(c.normals), -encodings[c.normals, c.bits], c.bits))
 
 
 def _contest(
@@ -159,7 +160,9 @@ def _contest(
     normals, bits = key
     backends = list(dict.fromkeys(row.get("backend") for row in rows))
     by_backend = {b: {named(r): r for r in rows if r.get("backend") == b} for b in backends}
-    leading = by_backend["jax" if "jax" in by_backend else backends[0]]
+    first = "jax" if "jax" in by_backend else backends[0]
+    # A codec that the first back end has no rows of takes part by another's.
+    leading = {name: row for b in (*backends, first) for name, row in by_backend[b].items()}
     found = [standing(m, _figures(leading, m.column)) for m in MEASURES]
     found += [_by_image(scene, leading, images) for scene in dict.fromkeys(row.get("scene") for row in images)]
     known = {name: costs[row["encoding"]] for name, row in leading.items() if row.get("encoding") in costs}

@@ -1,6 +1,6 @@
 #version 430
 // A highlight of each colour and luminance.
-#include "../encodings/chromaticity.glsl"
+#include "chromaticity.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Given { vec4 given[]; };

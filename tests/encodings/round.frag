@@ -1,6 +1,6 @@
 #version 430
 // The shader's own rounding, on any number; and the way back from numbers that are laid across channels.
-#include "../encodings/storage.glsl"
+#include "storage.glsl"
 
 uniform sampler2D source;
 out vec4 texel;

@@ -12,10 +12,10 @@ from neighbours import around
 from normalbench.bench.tables.depth import measure as depth
 from normalbench.encodings import elementary
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS
-from normalbench.encodings.depth_codec import DepthCodec
-from normalbench.encodings.depth_encoding import ULP
+from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.depth_encoding import ULP
 from normalbench.encodings.position import Camera, position_from_linear_depth, position_from_window_depth
-from normalbench.encodings.storage import DEPTH_STORAGES, store_depth
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES, store_depth
 from normalbench.encodings.vec import Vec2, depth_or_far
 from normalbench.gbuffer.codecs import depth_passes
 from normalbench.gbuffer.codecs.depth_passes import DepthPasses, exact_values
@@ -272,7 +272,7 @@ def numbers_by_jax(codec: DepthCodec, camera: Camera, depths: np.ndarray) -> np.
     near, far, size = jnp.float32(camera.near), jnp.float32(camera.far), 2**13
     # Always so many at once: JAX compiles each operation for each shape.
     parts = np.pad(depths, (0, -len(depths) % size)).reshape(-1, size)
-    return np.concatenate([np.asarray(codec.numbers(jnp.asarray(part), near, far)) for part in parts])[: len(depths)]
+    return np.concatenate([np.asarray(codec.stored(jnp.asarray(part), near, far)) for part in parts])[: len(depths)]
 
 
 @pytest.mark.parametrize("name", DEPTH_STORAGES)

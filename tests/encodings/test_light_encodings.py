@@ -1,8 +1,6 @@
 """Light codes: the languages agree before storage, formats store as emulated, and codes hold what they say."""
 
-import inspect
 import itertools
-import re
 from functools import cache
 from pathlib import Path
 
@@ -13,12 +11,13 @@ import pytest
 from mutants import swapped_calls
 
 from normalbench.bench.options.light_names import light_buffers_named
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS, LIGHT_NAMES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
 from normalbench.encodings.chromaticity import chromaticity, coloured, luminance
+from normalbench.encodings.codecs.light_codec import LightCodec
+from normalbench.encodings.codecs.light_encoding import BLENDS
 from normalbench.encodings.light.nao32 import INVERSE, MATRIX
-from normalbench.encodings.light_buffer import stored
-from normalbench.encodings.light_encoding import BLENDS
-from normalbench.encodings.storage import R11G11B10F, SRGB8_A8, from_srgb, store_small_float, store_srgb, to_srgb
+from normalbench.encodings.storages.rounding import from_srgb, store_small_float, store_srgb, to_srgb
+from normalbench.encodings.storages.storage import LIGHT_STORAGES, R11G11B10F, SRGB8_A8
 from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
 from normalbench.gbuffer.codecs.light_passes import exact_light, light_defines
 from normalbench.gbuffer.gl import shader
@@ -26,7 +25,7 @@ from normalbench.gbuffer.gl.shader import ShaderError, Source
 
 ROOT = Path(__file__).parents[2]
 ULP = 2.0**-23
-EVERY = sorted(LIGHT_ENCODINGS)
+EVERY = sorted(LIGHT_BUFFERS)
 SPECIAL = np.float32([0, -0.0, 1e-45, 1e-39, 2.0**-126, -1, -1e30, np.nan, np.inf, -np.inf, 3e38, 65408, 65504, 65536])
 
 
@@ -65,14 +64,14 @@ def given_texels(encoding, texels: np.ndarray) -> np.ndarray:
 
 @cache
 def expected(name: str):
-    encoding, light = LIGHT_ENCODINGS[name], lights()
+    encoding, light = LIGHT_BUFFERS[name], lights()
     texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
     given = given_texels(encoding, texels)
     return light, texels, given, decoded(name, given)
 
 
 def decoded(name: str, texels: np.ndarray) -> np.ndarray:
-    return rows(jax.jit(LIGHT_ENCODINGS[name].decode)(planes(texels)))
+    return rows(jax.jit(LIGHT_BUFFERS[name].decode)(planes(texels)))
 
 
 def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -95,7 +94,7 @@ def disagreement(gl, name: str) -> list[tuple[float, str]]:
     multiplier or exponent two codes far apart do.
     """
     light, texels, given, light_of_given = expected(name)
-    gl_texels, gl_light = exact_light(gl, LIGHT_ENCODINGS[name], light, given)
+    gl_texels, gl_light = exact_light(gl, LIGHT_BUFFERS[name], light, given)
     as_texels = (
         np.abs(texels.astype(np.float64) - gl_texels).max(axis=1) / np.maximum(1, np.abs(texels).max(axis=1)) / ULP
     )
@@ -117,15 +116,15 @@ def disagreement(gl, name: str) -> list[tuple[float, str]]:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_before_storage_the_languages_differ_by_no_more_ulps_than_the_encoding_states(gl, name):
-    for (ulps, story), allowed in zip(disagreement(gl, name), LIGHT_ENCODINGS[name].ulps, strict=True):
-        assert ulps <= allowed, f"{story}; allowed {allowed}: {LIGHT_ENCODINGS[name].ulps_reason}"
+    for (ulps, story), allowed in zip(disagreement(gl, name), LIGHT_BUFFERS[name].encoding.ulps, strict=True):
+        assert ulps <= allowed, f"{story}; allowed {allowed}: {LIGHT_BUFFERS[name].encoding.ulps_reason}"
 
 
 @pytest.mark.parametrize("name", EVERY)
 def test_no_light_makes_a_texel_that_is_no_number(gl, name):
     """Denormals, infinities, NaN and negative light: texels are finite in both languages, and so is their light."""
     light, texels, _, _ = expected(name)
-    gl_texels, _ = exact_light(gl, LIGHT_ENCODINGS[name], light, texels)
+    gl_texels, _ = exact_light(gl, LIGHT_BUFFERS[name], light, texels)
     for language, found in (("JAX", texels), ("GLSL", gl_texels), ("decoded", decoded(name, texels))):
         bad = ~np.isfinite(found).all(axis=1)
         assert not bad.any(), f"{name} by {language}: {light[bad][0]!r} gives {found[bad][0]!r}"
@@ -134,7 +133,7 @@ def test_no_light_makes_a_texel_that_is_no_number(gl, name):
 def mutants() -> list:
     found = []
     for name in EVERY:
-        text = LIGHT_ENCODINGS[name].glsl.read_text()
+        text = LIGHT_BUFFERS[name].glsl.read_text()
         found += [pytest.param(name, changed, id=f"{name}: {what}") for what, changed in swapped_calls(text)]
     return found
 
@@ -142,42 +141,39 @@ def mutants() -> list:
 @pytest.mark.parametrize("name, text", mutants())
 def test_swapping_two_arguments_is_noticed(gl, monkeypatch, name, text):
     original = shader.read_shader
-    monkeypatch.setattr(shader, "read_shader", lambda p: text if p == LIGHT_ENCODINGS[name].glsl else original(p))
+    monkeypatch.setattr(shader, "read_shader", lambda p: text if p == LIGHT_BUFFERS[name].glsl else original(p))
     try:
         found = disagreement(gl, name)
     except ShaderError:
         return
-    allowed = LIGHT_ENCODINGS[name].ulps
+    allowed = LIGHT_BUFFERS[name].encoding.ulps
     assert any(ulps > most for (ulps, _), most in zip(found, allowed, strict=True)), [story for _, story in found]
 
 
-def test_the_catalogue_and_the_files_are_the_same():
-    files = {suffix: {p.stem for p in (ROOT / "encodings/light").glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
-    assert files[".py"] == files[".glsl"] == set(LIGHT_NAMES) == set(LIGHT_ENCODINGS)
+@pytest.mark.parametrize("name", LIGHT_NAMES)
+def test_a_light_encoding_is_blended_in_a_known_way(name):
+    assert LIGHT_ENCODINGS[name].blend in BLENDS
 
 
-@pytest.mark.parametrize("name", EVERY)
-def test_a_light_encoding_is_complete(name):
-    encoding = LIGHT_ENCODINGS[name]
-    assert encoding.name == name and encoding.blend in BLENDS
-    assert encoding.title and encoding.citation and encoding.ulps_reason
-    assert inspect.getdoc(encoding.encode) and inspect.getdoc(encoding.decode), "what is cut off is said"
-    text = encoding.glsl.read_text()
-    assert re.search(rf"vec4 {name}_encode\(vec4 light\)", text) and re.search(rf"vec4 {name}_decode\(vec4 e\)", text)
-    assert f"{name}.py" in text.splitlines()[0], "the twin is named"
-    python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
-    assert python == set(re.findall(r"^    // (.+)$", text, re.M)), "the twins carry the same formula"
+def test_a_light_buffer_is_an_encoding_in_a_storage():
+    """A buffer goes by its encoding's name, or by its format's where a texel is the light itself."""
+    plain = [name for name, codec in LIGHT_BUFFERS.items() if codec.encoding is LIGHT_ENCODINGS["plain"]]
+    assert plain == ["rgba32f", "rgba16f", "r11g11b10f"]
+    assert list(LIGHT_BUFFERS) == [*plain, *LIGHT_NAMES[1:]]
+    assert [name for name, codec in LIGHT_BUFFERS.items() if codec.misfit] == []
+    misfit = LightCodec(LIGHT_ENCODINGS["rgbm"], LIGHT_STORAGES["rgba16f"]).misfit
+    assert misfit == "rgbm is made for rgba8"
 
 
 def round_trip(name: str, light) -> np.ndarray:
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     whole = np.repeat(np.atleast_1d(np.float32(light))[:, None], 4, axis=1)
-    return rows(encoding.decode(stored(encoding, encoding.encode(light_or_none(planes(whole))))))
+    return rows(encoding.decode(encoding.store(encoding.encode(light_or_none(planes(whole))))))
 
 
 @pytest.mark.parametrize("name", EVERY)
 def test_no_light_is_exactly_none_and_what_an_empty_buffer_holds(name):
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     assert np.all(round_trip(name, 0.0) == 0.0)
     empty = Vec4(*[jnp.full(1, encoding.no_light, jnp.float32)] * 4)
     assert np.all(rows(encoding.decode(empty)) == 0.0)
@@ -186,7 +182,7 @@ def test_no_light_is_exactly_none_and_what_an_empty_buffer_holds(name):
 @pytest.mark.parametrize("name", EVERY)
 def test_the_limit_is_the_most_white_light_that_comes_back(name):
     """The catalogue's figure: log2(255) = 7.994 for log, the range of linear, sRGB and RGBM, the formats' largest."""
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     below = np.float32(min(encoding.limit * 0.999, BRIGHTEST))
     kept, most = round_trip(name, below)[0, :3], round_trip(name, 1e30)[0, :3]
     if encoding.storage.kind == "float":
@@ -205,12 +201,12 @@ def test_light_that_is_read_and_written_again_stays_as_it_is(name):
 
     The first time RGBM may find a smaller multiplier for what it kept; from then on it stays.
     """
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     light = np.random.default_rng(0).uniform(0, 1.5, (4096, 4)).astype(np.float32)
     light *= np.linspace(0, 1, 4096, dtype=np.float32)[:, None]
-    texels = stored(encoding, encoding.encode(planes(light)))
-    texels = stored(encoding, encoding.encode(light_or_none(encoding.decode(texels))))
-    again = stored(encoding, encoding.encode(light_or_none(encoding.decode(texels))))
+    texels = encoding.store(encoding.encode(planes(light)))
+    texels = encoding.store(encoding.encode(light_or_none(encoding.decode(texels))))
+    again = encoding.store(encoding.encode(light_or_none(encoding.decode(texels))))
     held = 4 if encoding.has_alpha else 3
     changed = np.abs(rows(encoding.decode(again)) - rows(encoding.decode(texels)))[:, :held].max(axis=1) > 1e-6
     assert not changed.any(), f"{name}: {light[changed][0]!r} becomes {rows(again)[changed][0]!r}"
@@ -230,8 +226,8 @@ def test_a_range_that_is_no_power_of_two_is_the_same_in_both_languages(gl, name)
 
 
 def test_the_log_codes_range_is_7_994():
-    assert abs(LIGHT_ENCODINGS["log"].limit - np.log2(255)) < 1e-12
-    steps = np.diff(rows(LIGHT_ENCODINGS["log"].decode(planes(np.float32([[c / 255] * 4 for c in (1, 2, 3)]))))[:, 0])
+    assert abs(LIGHT_BUFFERS["log"].limit - np.log2(255)) < 1e-12
+    steps = np.diff(rows(LIGHT_BUFFERS["log"].decode(planes(np.float32([[c / 255] * 4 for c in (1, 2, 3)]))))[:, 0])
     assert abs(steps[0] + 1) < 1e-6, "the last step is a whole 1.0 of light"
 
 
@@ -252,13 +248,13 @@ def test_rgb9e5_stores_what_the_specification_says():
     largest = np.floor(clamped.max(axis=1) / 2.0 ** (exponent - 24) + 0.5)
     exponent = np.where(largest == 512, exponent + 1, exponent)
     mantissas = np.floor(clamped / 2.0 ** (exponent - 24)[:, None] + 0.5)
-    got = rows(LIGHT_ENCODINGS["rgb9e5"].decode(stored_texels("rgb9e5", light)))[:, :3]
+    got = rows(LIGHT_BUFFERS["rgb9e5"].decode(stored_texels("rgb9e5", light)))[:, :3]
     assert np.array_equal(got, (mantissas * 2.0 ** (exponent - 24)[:, None]).astype(np.float32))
 
 
 def stored_texels(name: str, light: np.ndarray) -> Vec4:
-    encoding = LIGHT_ENCODINGS[name]
-    return stored(encoding, encoding.encode(light_or_none(planes(light))))
+    encoding = LIGHT_BUFFERS[name]
+    return encoding.store(encoding.encode(light_or_none(planes(light))))
 
 
 def small_floats(bits: int) -> np.ndarray:
@@ -345,7 +341,7 @@ def test_both_languages_rebuild_the_same_colour(gl):
     rng = np.random.default_rng(0)
     given = np.exp2(rng.uniform(-110, 20, (4096, 4))).astype(np.float32)
     given[:64, :3], given[64:128, :2] = 0, 0
-    source = Source(Path(__file__).with_name("chromaticity.comp"), light_defines(LIGHT_ENCODINGS["rgba32f"]))
+    source = Source(Path(__file__).with_name("chromaticity.comp"), light_defines(LIGHT_BUFFERS["rgba32f"]))
     compute = gl.context.compute_shader(source.text)
     inputs, outputs = gl.context.buffer(given.tobytes()), gl.context.buffer(reserve=given.nbytes)
     for binding, buffer in enumerate((inputs, outputs)):

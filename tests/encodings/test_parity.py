@@ -14,8 +14,8 @@ from normalbench.bench.normals.normal_sets import hemisphere, playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import ROUNDINGS, STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses, exact_values
 from normalbench.gbuffer.gl import shader
 from normalbench.gbuffer.gl.shader import ShaderError

@@ -10,8 +10,8 @@ from normalbench.bench.normals.normal_sets import from_arrays, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case.search import worst_case
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 
 COUNT = 4_000_000
 

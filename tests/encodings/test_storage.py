@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from neighbours import around
 
-from normalbench.encodings.storage import ROUNDINGS, STORAGES, store_half, store_number, store_texel, store_unorm
+from normalbench.encodings.storages.rounding import store_half, store_number, store_texel, store_unorm
+from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
 from normalbench.gbuffer.gl.device import read_pixels
 

@@ -7,13 +7,14 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.depth_codec import DepthCodec
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.depth_codec import DepthCodec
 from normalbench.encodings.position import Camera
-from normalbench.encodings.storage import DEPTH_STORAGES, STORAGES
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.layouts.layout import PACKINGS, Layout, LayoutError, Target, read_layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -28,7 +29,7 @@ HAIR = KINDS.index("hair")
 
 
 def plan(layout: Layout, **changes) -> Plan:
-    return replace(Plan((160, 120), 1, layout, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0), **changes)
+    return replace(Plan((160, 120), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0), **changes)
 
 
 @cache
@@ -40,7 +41,7 @@ def kept(name: str) -> list[np.ndarray]:
 
 
 def layout(*targets: Target, encoding: str = "octahedral", **more) -> Layout:
-    return Layout("mine", "mine", targets, encoding, "a test", **more)
+    return Layout("mine", "mine", targets, ENCODINGS[encoding], "a test", **more)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
@@ -79,15 +80,17 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
         ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
         ([("rgb565", "normal.x normal.y")], {}, "unknown format 'rgb565'; known: rgba8"),
         ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "keeps no depth"),
-        ([("rg16f", "normal.x normal.y")], {"encoding": "cubemap"}, "unknown encoding 'cubemap'"),
         ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
         ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
         ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
-        ([("rg16f", "normal.x normal.y")], {"depth": "deep"}, "unknown depth 'deep'; known: linear"),
-        ([("rg16f", "normal.x normal.y"), ("r32f", "depth")], {"depth": "linear_sign"}, "does not suit octahedral"),
         (
             [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
-            {"encoding": "xy_sign", "depth": "logarithmic"},
+            {"depth": DEPTH_ENCODINGS["linear_sign"]},
+            "does not suit octahedral",
+        ),
+        (
+            [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
+            {"encoding": "xy_sign", "depth": DEPTH_ENCODINGS["logarithmic"]},
             "does not suit xy_sign, whose depth is linear_sign",
         ),
     ],
@@ -110,6 +113,11 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
         ("[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "encoding must be given"),
         ("encoding = 'octahedral'\ncolour = 3\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "'colour'"),
         ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "octahedral needs"),
+        ("encoding = 'cubemap'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "unknown encoding 'cubemap'; known"),
+        (
+            "encoding = 'xy'\ndepth = 'deep'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'",
+            "unknown depth 'deep'; known: linear",
+        ),
     ],
 )
 def test_a_file_that_is_no_layout_is_one_line(tmp_path, text, said):
@@ -126,7 +134,7 @@ def test_a_layout_is_read_from_a_file(tmp_path):
     path.write_text(f"encoding = 'octahedral'\nspace = 'world'\npacking = 'truncate'\ndepth = 'logarithmic'\n{targets}")
     read = read_layout(path)
     assert (read.name, read.space, read.packing, read.normal_bits) == ("mine", "world", "truncate", 24)
-    assert read.depth == "logarithmic" and "logarithmic depth" in read.summary
+    assert read.depth is DEPTH_ENCODINGS["logarithmic"] and "logarithmic depth" in read.summary
     assert read.normal_storage == "rgba8 12:12"
 
 
@@ -154,7 +162,7 @@ def test_a_pipeline_says_what_a_layout_lacks(gl):
     with pytest.raises(LayoutError, match=r"deferred needs albedo.b, .*, which layout normal_depth does not keep"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
-        light = LIGHT_ENCODINGS["r11g11b10f"]
+        light = LIGHT_BUFFERS["r11g11b10f"]
         check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"], light_targets=1, light_buffer=light))
 
 
@@ -195,7 +203,7 @@ def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
     """The room through a layout that names its depth's code: packed in 16 and 24 bits, and in a float of its own."""
     normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
     home = Target("r32f" if holds == "depth" else "rgba8", holds)
-    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=name)
+    mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=DEPTH_ENCODINGS[name])
     storage = {"depth:16 power": "packed16", "depth:24": "packed24", "depth": "r32f"}[holds]
     exact = -kept("fp32")[0][..., 2][covered()].astype(np.float64)
     with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as made:
@@ -233,7 +241,7 @@ def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.nd
     preset = LAYOUTS[name]
     axes = np.linalg.inv(ROOM.view.matrix())[:3, :3] if preset.space == "world" else np.eye(3)
     n, view = (from_array((a @ axes.T).astype(np.float32)) for a in (n, position))
-    encoding, codec = ENCODINGS[preset.encoding], preset.codec
+    encoding, codec = preset.encoding, preset.codec
     code = encoding.encode(n, view)
     bits_of = {word.component: word.bits for word in preset.words}
     bits = [bits_of[f"normal.{axis}"] for axis in "xyz"[: encoding.components]]

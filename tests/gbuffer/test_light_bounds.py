@@ -10,8 +10,8 @@ import relighting
 from drawing import FP32, SIZE, apart, covered_by_glass, draw, lamps, scene_of, towards
 from relighting import surfaces
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -22,12 +22,13 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
     """Pixels that each local light's bounds shade, and the surfaces."""
-    plan = Plan(size, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    plan = Plan(size, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
-        r.passes["lights"].queries = []
-        r.passes["lights"]()
-        return np.array([query.samples for query in r.passes["lights"].queries]), surfaces(scene, r.gbuffer())
+        lights = r.passes["lights"]
+        lights.run.queries = []
+        lights()
+        return np.array([query.samples for query in lights.run.queries]), surfaces(scene, r.gbuffer())
 
 
 def test_bounds_shade_little_more_than_lights_reach(gl):

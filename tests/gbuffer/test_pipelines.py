@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -87,7 +87,7 @@ def test_passes_draw_the_triangles_they_are_for(gl, name):
         "transparent": triangles_of(scene, lambda material, _: material.alpha < 1),
     }
     for pipeline, again in (("prepass", opaque), ("hybrid", special)):
-        plan = Plan(SIZE, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
+        plan = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         with rendering(gl, PIPELINES[pipeline], scene, plan) as r:
             counted = r.triangles()
         expected["material"] = again

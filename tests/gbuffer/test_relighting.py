@@ -11,13 +11,14 @@ import relighting
 from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
 from relighting import relight, surfaces
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.gbuffer.defines.materials import CONSTANTS
-from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.frame.resources import SHADOW_SIZE
 from normalbench.gbuffer.frame.scene_buffers import sun_matrix
 from normalbench.gbuffer.layouts.layout import Layout, Target
 from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.passes.passes import SHADOW_OFFSET
+from normalbench.gbuffer.passes.shadow_map import SHADOW_OFFSET
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -170,7 +171,7 @@ def test_the_normal_map_tilts_against_its_slopes(gl):
     view = View((0.3, 3.0, 0.2), (0.3, 0.0, 0.0), 40.0, 0.5, 20.0)
     bumpy = Material(bump=0.8, bump_repeat=1.0)
     scene = Scene((Part(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
-    plan = Plan(SIZE, 1, FP32, LIGHT_ENCODINGS["rgba32f"], 2, False, 1.0)
+    plan = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
         seen = surfaces(scene, r.gbuffer())
@@ -212,7 +213,7 @@ def test_one_white_light_gets_its_power_back_from_a_light_pass_without_powers(gl
     materials; highlights of power 4 to 1024 from one of 32."""
     lamp = Light("point", (3.0, 3.0, 3.0), (2.0, 1.5, 5.0), 14.0)
     scene = replace(scene_of("gloss"), lights=(lamp,))
-    bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), "xyz", "")
+    bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), ENCODINGS["xyz"], "")
     expected = draw(gl, "forward", scene).image
     for targets in (1, 2):
         found = apart(draw(gl, "prepass", scene, layout=bare, targets=targets).image, expected)

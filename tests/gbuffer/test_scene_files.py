@@ -14,8 +14,8 @@ from normalbench.bench.normals.normal_names import mesh_set
 from normalbench.bench.normals.normal_sets import playground
 from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.scenes.files.read import file_scene, file_view, read_mesh_file, seen
 from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents, wound
 from normalbench.gbuffer.scenes.playground import CAMERA, in_view_space

@@ -5,19 +5,20 @@ from dataclasses import replace
 import pytest
 
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
+from normalbench.gbuffer.gl import shader
 from normalbench.gbuffer.gl.shader import ShaderError, Source, glsl_value
 
 
 def test_an_include_is_pasted_once(tmp_path):
-    (tmp_path / "a.glsl").write_text("float a;\n")
+    (tmp_path / "a.glsl").write_text("float a;  // X\n")
     (tmp_path / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
     (tmp_path / "main.frag").write_text('#version 430\n#include "a.glsl"\n#include "b.glsl"\n#include NAMED\n')
-    text = Source(tmp_path / "main.frag", {"X": 1.5}, {"NAMED": tmp_path / "b.glsl"}).text
+    text = Source(tmp_path / "main.frag", {"X": "Y", "Y": 1.5, "Z": 2}, {"NAMED": tmp_path / "b.glsl"}).text
     assert text.count("float a;") == text.count("float b;") == 1
-    assert text.startswith("#version 430\n#define X 1.5\n")
+    assert text.startswith("#version 430\n#define X Y\n#define Y 1.5\n"), "what nothing mentions is left out"
 
 
 @pytest.mark.parametrize("broken", ["return nonsense;", "return no_such_function(n.xy);", "return n;", "retrun n.xy;"])
@@ -69,3 +70,14 @@ def test_a_missing_include_is_one_line(tmp_path):
     (tmp_path / "main.frag").write_text("#version 430\n#include NOBODY\n")
     with pytest.raises(ShaderError, match=r"main\.frag:2: nothing is named NOBODY"):
         Source(tmp_path / "main.frag")
+
+
+def test_every_shader_has_a_name_of_its_own(tmp_path, monkeypatch):
+    """An include is found by its name alone; two files of one name are named in one line."""
+    assert shader.shaders()["gbuffer.glsl"].parent.name == "glsl"
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "same.glsl").write_text("float same;\n")
+    monkeypatch.setattr(shader, "ROOM", tmp_path)
+    with pytest.raises(ShaderError, match=r"two shaders have one name: .*a/same\.glsl and .*b/same\.glsl"):
+        shader.shaders.__wrapped__()

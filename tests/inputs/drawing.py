@@ -7,9 +7,9 @@ from functools import cache
 
 import numpy as np
 
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
-from normalbench.gbuffer.frame.frame import SHADOW_SIZE, Plan
-from normalbench.gbuffer.gl.device import read_pixels
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.frame.resources import LIGHT, SHADOW_MAP, SHADOW_SIZE
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import displayed, rendering
@@ -35,12 +35,12 @@ class Drawn:
 def draw(gl, pipeline: str, scene: Scene, layout=FP32, shadows=False, targets=2, scale=1.0) -> Drawn:
     chosen = PIPELINES[pipeline]
     targets = min(targets, max(chosen.light_targets, default=1))
-    plan = Plan(SIZE, 1, layout, LIGHT_ENCODINGS["rgba32f"], targets, shadows, scale)
+    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, shadows, scale)
     with rendering(gl, chosen, scene, plan) as r:
         r.draw()
         deferred = chosen.has_gbuffer
-        light = [read_pixels(texture)[::-1] for texture in r.frame.light] if deferred else []
-        depths = np.frombuffer(r.frame.shadow_map.read(), np.float32) if r.frame.shadows else None
+        light = r.read(LIGHT) if deferred else []
+        depths = np.frombuffer(r.frame.textures(SHADOW_MAP)[0].read(), np.float32) if r.frame.plan.shadows else None
         return Drawn(
             r.image(),
             light,

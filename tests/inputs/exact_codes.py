@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from normalbench.encodings.encoding import Encoding
-from normalbench.encodings.storage import Storage
+from normalbench.encodings.codecs.encoding import Encoding
+from normalbench.encodings.storages.storage import Storage
 from normalbench.encodings.vec import Vec2, Vec3
 
 

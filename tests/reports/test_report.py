@@ -15,21 +15,17 @@ from PIL import Image
 
 from normalbench.bench.normals.normal_sets import hemisphere
 from normalbench.bench.results.runs import read_run
-from normalbench.bench.suite import report_command, short
+from normalbench.bench.suite import report as report_command
 from normalbench.bench.tables.cost import measure as cost
-from normalbench.bench.tables.depth import measure as depth
-from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.tables.render import measure as rendering
-from normalbench.bench.tables.sweep import measure as sweep
-from normalbench.bench.tables.tangent_frames import measure as frames
+from normalbench.bench.tables.quality.work import beside
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import charts
 from normalbench.reports.charts.drawings import THEME
 from normalbench.reports.page import embedded
-from normalbench.reports.page.definitions import definition
 from normalbench.reports.page.found import PictureSet
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800"
@@ -38,9 +34,9 @@ FORBIDDEN = ("<script>alert", "<img src=x", "\u202e")
 
 def quality_row(encoding: str, **more) -> dict:
     about = {"encoding": encoding, "storage": "rgba8", "rounding": "nearest", "normals": "playground"}
-    figures = {"psnr_db": 50.0, "psnr_seed_db": 49.0, "angle_mean_deg": 0.3, "angle_p99_deg": 0.6}
+    figures = {"psnr_db": 50.0, "psnr_article_db": 49.0, "angle_mean_deg": 0.3, "angle_p99_deg": 0.6}
     figures |= {"angle_max_deg": 0.9, "effective_bits": None, "angle_counts": "0.25:3 0.28125:1"}
-    return dict.fromkeys(quality.COLUMNS) | about | {"backend": "jax", "bits": 16} | figures | more
+    return TABLES["quality"].empty() | about | {"backend": "jax", "bits": 16} | figures | more
 
 
 def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
@@ -132,13 +128,11 @@ def test_markdown_of_a_real_run(run, results, tmp_path):
 
 def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
     row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
-    rows = [
-        dict.fromkeys(depth.COLUMNS) | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)
-    ]
+    rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
     request = {"tables": "depth", "count": 4096, "seed": 0}
     _, read = reported(run, a_run(tmp_path / "run", {"depth": rows}, request=request))
     assert "This run has no rows about normals" in read.text
-    assert "Not in this run: it was not asked for" in read.text
+    assert "What normals lose" not in read.text, "nobody asked for it"
     assert "What depth loses" in read.text and "the worst position error, near 0.1, far 10" in read.text
     assert {path.name for path in (tmp_path / "run/charts").iterdir()} == {"depth.png", "depth.svg"}
 
@@ -223,7 +217,7 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
     folder, rows = tmp_path / "run", []
     for name, count, guards in (("per_pixel_view", 30, 2), ("spherical", 24, 1)):
         about = {"measure": "isa", "encoding": name, "operation": "encode", "stage": "fragment", "family": "navi31"}
-        rows.append(dict.fromkeys(cost.COLUMNS) | about | {"instructions": count, "transcendental": 1})
+        rows.append(TABLES["cost"].empty() | about | {"instructions": count, "transcendental": 1})
         path, text = cost.listing(rows[-1], "BB0:\n" + "        v_cmp_lt_f32_e32 vcc, 0, v1\n" * guards)
         (folder / "disassembly" / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / "disassembly" / path).write_text(text)
@@ -266,13 +260,13 @@ def test_pictures_that_do_not_fit_are_named_and_the_articles_come_first(results,
 
 
 def test_every_column_is_defined():
-    tables = (quality, rendering, cost, lights, depth, frames, sweep)
-    columns = {column for table in tables for column in table.COLUMNS} - {"angle_counts", "ms_frame_each", "cycles"}
-    columns -= {"ns_per_megapixel", "millions_per_second", "spread", "turns", "software"}  # of no run
-    assert [column for column in sorted(columns) if not definition(column)] == []
-    assert not definition("colours")
-    shown = short.beside([quality_row("octahedral")])[0]
-    assert all(definition(column) for column in shown)
+    """Of rows and of summaries; a definition is a sentence."""
+    for table in TABLES.values():
+        for column in (*table.columns, *table.also):
+            assert re.fullmatch(r"\S.*\.", column.says, re.S), f"{table.name}.{column.name}"
+        assert table.column("colours") is None
+    shown = beside([quality_row("octahedral")])[0]
+    assert all(TABLES["quality"].column(column) for column in shown)
 
 
 def test_inline_charts_take_the_pages_colours_and_share_no_id(results):
@@ -286,7 +280,7 @@ def test_inline_charts_take_the_pages_colours_and_share_no_id(results):
         raw = set(re.findall(r"(?<!, )#[0-9a-f]{6}\b", svg))
         assert not raw, f"colours of one theme: {raw}"
         assert "<title" in svg and "<desc" in svg and "<text" in svg
-    css = (Path(report_command.__file__).parents[1] / "reports/page.css").read_text()
+    css = (Path(report_command.__file__).parents[2] / "reports/page/page.css").read_text()
     assert all(f"--{name}:" in css for name in THEME.values())
 
 

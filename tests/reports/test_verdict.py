@@ -87,3 +87,9 @@ def test_sets_and_bits_are_contests_of_their_own_the_fullest_bits_first():
 def test_rows_without_figures_take_no_part():
     rows = [row("whole", 50.0), row("other", None), row("half", math.nan), {"encoding": "odd"}, row("more", "55")]
     assert only(rows).codecs == 1 and contests([], [], {}, {}) == []
+
+
+def test_a_codec_that_is_there_in_glsl_alone_takes_part():
+    """As a user's own encoder is, next to others that JAX measured."""
+    found = only([row("whole", 50.0), row("whole", 50.0, backend="glsl"), row("mine", 52.0, backend="glsl")])
+    assert found.codecs == 2 and "mine in rg8 wins: 52.00 dB, 2.00 dB ahead of whole" in found.headline

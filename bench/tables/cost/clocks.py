@@ -7,12 +7,12 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 
-import moderngl
 import numpy as np
 
-from ....encodings.storage import STORAGES
+from ....encodings.storages.storage import STORAGES
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.gl.device import Device
+from ....gbuffer.gl.handles import Texture
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.render import Clock, clock_of
 from .measure import Case, Row
@@ -57,9 +57,9 @@ class Field:
     def __init__(self, device: Device, stack: ExitStack, size: tuple[int, int]):
         self.device, self.stack, self.size = device, stack, size
         self.targets = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
-        self._points: dict[int, moderngl.Texture] = {}
+        self._points: dict[int, Texture] = {}
 
-    def points(self, numbers: int) -> moderngl.Texture:
+    def points(self, numbers: int) -> Texture:
         """A texture of directions or codes."""
         if numbers not in self._points:
             self._points[numbers] = self.device.owned(self.stack, self.device.upload(_points(self.size, numbers)))

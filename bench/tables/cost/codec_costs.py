@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ....encodings.codec import Codec
+from ....encodings.codecs.codec import Codec
 from ....gbuffer.defines.packings import SIGN, packing_of
 from .measure import PACKING_OPERATIONS, Row
 

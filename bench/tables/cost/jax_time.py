@@ -11,11 +11,11 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
 from ...metrics.meter import FAST_BLOCK, LANES, compiled
+from ...normals.directions import CORES, make_input
 from ...output.errors import MissingError
-from ...throughput.measure import CORES, make_input
 from .clocks import summary
 from .measure import Case, Row
 
@@ -65,13 +65,18 @@ def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[s
 
 def _size(case: Case) -> int:
     """How many numbers go in."""
-    encoding = ENCODINGS[str(case.encoding)]
+    encoding = _encoding(case)
     return 3 if case.operation == "encode" else encoding.components + encoding.sign_bits
+
+
+def _encoding(case: Case) -> Encoding:
+    assert case.encoding, "packings are not timed in JAX"
+    return case.encoding
 
 
 def _made(case: Case, normals: Normals) -> Work | str:
     """A case's work, run once, which compiles it; or why there is none."""
-    encoding = ENCODINGS[str(case.encoding)]
+    encoding = _encoding(case)
     try:
         work = normals.work({"encode": encoding.encode, "decode": encoding.decode}[case.operation], _size(case))
         work()

@@ -8,7 +8,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from ....encodings.encoding import Encoding
+from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.defines import kernels
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
@@ -17,6 +17,7 @@ from ...isa import isa, spirv
 from ...isa.disassembly import KINDS, issue_slots, jumps, kinds
 from ...isa.isa import Compiled, Failure, Job, Outcome
 from ...machine.cores import on_all_cores
+from .table import TABLE
 
 Row = dict[str, Any]
 
@@ -38,12 +39,6 @@ WHOLE = {
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
 LISTED = ("issue_slots", *KINDS, "branches", "loops")
-COLUMNS = (
-    *("measure", "encoding", "storage", "operation", "stage", "family", "instructions", *LISTED, "spirv_instructions"),
-    *("vgprs", "sgprs", "spills", "code_bytes", *WHOLE, "cycles"),
-    *("ns_per_megapixel", "millions_per_second", "ceiling", "spread", "turns", "size", "repeats", "software", "clock"),
-    *("device", "driver", "compiler", "skipped"),
-)
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
 GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
@@ -54,30 +49,31 @@ class Case:
     """An encoding's operation, or a packing's.
 
     Attributes:
-        encoding, storage: one of them, and None for the other.
+        encoding, storage: an encoding or the name of a packing, and None for the other.
         operation: "encode", "decode", "pack" or "unpack".
         make: makes it; raises ShaderError.
     """
 
-    encoding: str | None
+    encoding: Encoding | None
     storage: str | None
     operation: str
     make: Callable[[], Operation]
 
     @property
     def name(self) -> str:
-        return f"{self.encoding or self.storage} {self.operation}"
+        return f"{self.encoding.name if self.encoding else self.storage} {self.operation}"
 
     def row(self, measure: str, **more: Any) -> Row:
         """A row of the table that is about it."""
-        about = {"encoding": self.encoding, "storage": self.storage, "operation": self.operation}
-        return dict.fromkeys(COLUMNS) | {"measure": measure} | about | more
+        name = self.encoding.name if self.encoding else None
+        about = {"encoding": name, "storage": self.storage, "operation": self.operation}
+        return TABLE.empty() | {"measure": measure} | about | more
 
 
 def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[Case]:
     """Every operation of each encoding, and what the packings add to it."""
     makers = {"encode": kernels.encode, "decode": kernels.decode}
-    found = [Case(e.name, None, name, partial(makers[name], e)) for e in encodings for name in operations]
+    found = [Case(e, None, name, partial(makers[name], e)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
         found += [Case(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
@@ -143,7 +139,7 @@ def isa_rows(
     lacks += dict.fromkeys(o.reason for o in outcomes.values() if isinstance(o, Failure) and o.is_missing)
     dead = {family: reason for family in families if (reason := _all_failed(outcomes, family, jobs))}
     for family, reason in dead.items():
-        yield dict.fromkeys(COLUMNS) | {"measure": "isa", "family": family, "skipped": reason}, ""
+        yield TABLE.empty() | {"measure": "isa", "family": family, "skipped": reason}, ""
     for family in [f for f in families if f not in dead] or [None]:
         for (case, stage), made in zip(pairs, prepared, strict=True):
             row = case.row("isa", stage=stage, family=family, compiler=compiler)

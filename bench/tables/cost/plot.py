@@ -10,9 +10,9 @@ from itertools import product
 from pathlib import Path
 from types import MappingProxyType
 
-from ....encodings.codec import Codec
-from ....encodings.encoding import Encoding
-from ....encodings.storage import Storage
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import Storage
 from ....reports.charts import pareto, plots
 from ...normals.normal_sets import NormalSet
 from ...output.writing import whole_file

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations
 
 from ...isa.disassembly import names
-from ...metrics import published as seeds
-from .measure import COLUMNS, Row
+from ...metrics import published
+from .measure import Row
+from .table import TABLE
 
 # What compares, chooses between two numbers or keeps one within bounds; v_cmpx masks lanes, as the kernel's own does.
 GUARDS = ("v_cmp_", "v_cndmask", "v_min", "v_max", "v_med")
@@ -18,11 +19,11 @@ def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Ro
     operations = tuple(operations)
     rows = []
     for key in ((encoding, operation) for encoding in encodings for operation in operations):
-        if key not in seeds.SLOTS:
+        if key not in published.SLOTS:
             continue
-        row = dict.fromkeys(COLUMNS) | {"measure": "article", "encoding": key[0], "operation": key[1]}
-        rows.append(row | {"instructions": sum(seeds.SLOTS[key]), "compiler": seeds.SLOTS_BY})
-        for (gpu, compiler), (registers, cycles) in zip(seeds.GPUS.items(), seeds.CYCLES[key], strict=True):
+        row = TABLE.empty() | {"measure": "article", "encoding": key[0], "operation": key[1]}
+        rows.append(row | {"instructions": sum(published.SLOTS[key]), "compiler": published.SLOTS_BY})
+        for (gpu, compiler), (registers, cycles) in zip(published.GPUS.items(), published.CYCLES[key], strict=True):
             rows.append(row | {"device": gpu, "vgprs": registers, "cycles": cycles, "compiler": compiler})
     return rows
 

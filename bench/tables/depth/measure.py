@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
@@ -12,17 +12,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.depth_codec import REBUILDS, DepthCodec
+from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.position import Camera
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
+from .table import TABLE
 
-COLUMNS = (
-    *("depth", "storage", "bits", "rebuilt", "backend", "near", "far", "ratio", "fov", "distance", "count"),
-    *("error_mean", "error_max", "half_step", "bound", "signs_lost", "device", "rounded_by", "seed", "skipped"),
-)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
 # A distance stands for depths that are up to this share of it nearer or farther.
@@ -124,7 +121,7 @@ def _by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt
 
     # Not compiled as a whole: for so few points that would take longer than all else.
     def rebuilt(depths: np.ndarray, right: np.ndarray, up: np.ndarray):
-        number = codec.numbers(jnp.asarray(depths), seen.near, seen.far)
+        number = codec.stored(jnp.asarray(depths), seen.near, seen.far)
         position = REBUILDS[case.rebuilt].position(codec, number, Vec2(jnp.asarray(right), jnp.asarray(up)), seen)
         return np.stack([np.asarray(c) for c in position], axis=-1), number, codec.depths(number, seen.near, seen.far)
 
@@ -199,7 +196,7 @@ def through(case: Case, on: Points) -> Measured:
 def measure(case: Case) -> list[Row]:
     """A case's rows; those that the device cannot give have its reason in `skipped` and no figures."""
     camera, codec = case.camera, case.codec
-    shared = dict.fromkeys(COLUMNS) | {
+    shared = TABLE.empty() | {
         "depth": codec.encoding.name,
         "storage": codec.storage.name,
         "bits": codec.storage.bits,
@@ -231,10 +228,3 @@ def _figures(case: Case, found: Measured, part: slice) -> Row:
         "bound": float(found.bounds[part].max()),
         "signs_lost": int(found.lost[part].sum()) if case.codec.encoding.signed else None,
     }
-
-
-def rows(chosen: Iterable[Case], tick: Callable[[str], None]) -> Iterator[Row]:
-    """The table, a case at a time."""
-    for case in chosen:
-        yield from measure(case)
-        tick(case.name)

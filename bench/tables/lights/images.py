@@ -12,13 +12,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_ENCODINGS
-from ....encodings.light_buffer import stored
-from ....encodings.light_encoding import LightEncoding
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4, light_or_none
 from ....gbuffer.codecs.light_passes import Resolved, read_samples, resolved
-from ....gbuffer.frame.frame import Plan
-from ....gbuffer.gl.device import Device, FormatError, read_pixels
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.frame.resources import FINAL, LIGHT
+from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
@@ -32,7 +32,7 @@ Row = dict[str, Any]
 EXPOSURE = 2.0
 # What counts as visibly wrong: more than this in any channel as displayed.
 VISIBLE = 8 / 255
-REFERENCE = LIGHT_ENCODINGS["rgba32f"]
+REFERENCE = LIGHT_BUFFERS["rgba32f"]
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,11 @@ class Shot:
 
 
 @partial(jax.jit, static_argnames="encoding")
-def _by_model(encoding: LightEncoding, samples) -> tuple[Any, Any]:
+def _by_model(encoding: LightCodec, samples) -> tuple[Any, Any]:
     """Light of shape (samples, pixels, 3) resolved in the code and in light: (pixels, 3) each."""
     r, g, b = (samples[..., i] for i in range(3))
-    texels = stored(encoding, encoding.encode(light_or_none(Vec4(r, g, b, jnp.zeros_like(r)))))
-    averaged = stored(encoding, Vec4(*(jnp.mean(c, axis=0) for c in texels)))
+    texels = encoding.store(encoding.encode(light_or_none(Vec4(r, g, b, jnp.zeros_like(r)))))
+    averaged = encoding.store(Vec4(*(jnp.mean(c, axis=0) for c in texels)))
     by_code, by_light = encoding.decode(averaged), Vec4(*(jnp.mean(c, axis=0) for c in encoding.decode(texels)))
     return jnp.stack(by_code[:3], axis=-1), jnp.stack(by_light[:3], axis=-1)
 
@@ -72,15 +72,15 @@ class Resolves:
         failed: why the device cannot keep some of the codes.
     """
 
-    def __init__(self, device: Device, shot: Shot, encodings: Sequence[LightEncoding], samples: int):
+    def __init__(self, device: Device, shot: Shot, encodings: Sequence[LightCodec], samples: int):
         plan, scene = shot.plan(samples), brighter(shot.scene, EXPOSURE)
         with rendering(device, PIPELINES["forward"], scene, plan) as made:
             made.draw()
-            colours = made.frame.final
+            colours = made.frame.textures(FINAL)[0]
             self._light = read_samples(device, colours, samples)
-            self._device: dict[LightEncoding, Resolved] = {}
-            self._model: dict[LightEncoding, Resolved] = {}
-            self.failed: dict[LightEncoding, str] = {}
+            self._device: dict[LightCodec, Resolved] = {}
+            self._model: dict[LightCodec, Resolved] = {}
+            self.failed: dict[LightCodec, str] = {}
             for encoding in encodings:
                 try:
                     self._device[encoding] = resolved(device, encoding, colours, samples)
@@ -88,18 +88,18 @@ class Resolves:
                     self.failed[encoding] = str(error)
         self.right = displayed(self._light.mean(axis=0, dtype=np.float64))
 
-    def device(self, encoding: LightEncoding) -> Resolved:
+    def device(self, encoding: LightCodec) -> Resolved:
         """By the device's own resolve, as displayed."""
         found = self._device[encoding]
         return Resolved(displayed(found.by_code), displayed(found.by_light))
 
-    def model(self, encoding: LightEncoding) -> Resolved:
+    def model(self, encoding: LightCodec) -> Resolved:
         """By the model, of the same samples, as displayed."""
         if encoding not in self._model:
             self._model[encoding] = self._modelled(encoding)
         return self._model[encoding]
 
-    def _modelled(self, encoding: LightEncoding) -> Resolved:
+    def _modelled(self, encoding: LightCodec) -> Resolved:
         flat = jnp.asarray(self._light.reshape(len(self._light), -1, 3))
         found = (np.asarray(a).reshape(self._light.shape[1:]) for a in _by_model(encoding, flat))
         return Resolved(*map(displayed, found))
@@ -148,16 +148,16 @@ class Lit:
         with self._rendered(REFERENCE, max(pipeline.light_targets)) as made:
             self.reference = displayed(made.image())
             # The most light that any target keeps in a pixel.
-            self._brightest = np.max([read_pixels(t)[::-1, :, :3].max(axis=-1) for t in made.frame.light], axis=0)
+            self._brightest = np.max([light[..., :3].max(axis=-1) for light in made.read(LIGHT)], axis=0)
 
     @contextmanager
-    def _rendered(self, encoding: LightEncoding, targets: int) -> Iterator[Rendering]:
+    def _rendered(self, encoding: LightCodec, targets: int) -> Iterator[Rendering]:
         plan = replace(self._shot.plan(), light_buffer=encoding, light_targets=targets)
         with rendering(self._device, self._pipeline, self._shot.scene, plan) as made:
             made.draw()
             yield made
 
-    def measure(self, encoding: LightEncoding, targets: int) -> tuple[Row, np.ndarray]:
+    def measure(self, encoding: LightCodec, targets: int) -> tuple[Row, np.ndarray]:
         """Figures of a frame, and the frame as displayed. Raises FormatError and ShaderError."""
         with self._rendered(encoding, targets) as made:
             image = displayed(made.image())
@@ -174,7 +174,7 @@ class Lit:
         return row, image
 
 
-def targets_of(pipeline: Pipeline, encoding: LightEncoding, asked: Sequence[int]) -> Iterator[int]:
+def targets_of(pipeline: Pipeline, encoding: LightCodec, asked: Sequence[int]) -> Iterator[int]:
     """How many of the light targets asked for a pipeline may have in this code, two first.
 
     Of one target the fourth number is needed, by whoever may have two; who may only have one has it without asking.

@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.light_encoding import LightEncoding
+from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
@@ -19,25 +19,8 @@ from ....gbuffer.pipelines import Pipeline
 from ...output.errors import UsageError
 from .images import Lit, Resolves, Shot, targets_of, with_power
 from .sums import Adder, banding, chromaticity, equal_lights, gradient, random_lights
+from .table import TABLE
 
-COLUMNS = (
-    *("experiment", "light_buffer", "light_targets", "pipeline", "scene", "power", "size", "samples", "samples_asked"),
-    *("backend", "sum", "lights", "channel", "order", "peak", "colour", "model", "gl", "error", "gl_error"),
-    *("model_rms", "gl_rms", "model_max", "gl_max", "bound", "levels", "gl_levels", "exact_step", "largest_step"),
-    *("gl_largest_step", "shown_step", "gl_shown_step", "stored_error", "gl_stored_error", "amplification"),
-    *(
-        "gl_amplification",
-        "psnr_db",
-        "held_psnr_db",
-        "beyond_percent",
-        "mse",
-        "invalid",
-        "code_psnr_db",
-        "light_psnr_db",
-        "aliased_psnr_db",
-    ),
-    *("wrong_percent", "rounds", "agree_percent", "device", "seed", "skipped"),
-)
 # Why the GL device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
 Row = dict[str, Any]
@@ -93,7 +76,7 @@ CONDITIONS = (
 )
 
 
-def check_light_twin(encoding: LightEncoding) -> None:
+def check_light_twin(encoding: LightCodec) -> None:
     """Traces a light encoding's Python half. Raises UsageError where it fails; one line with its file."""
     light = Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4)
     try:
@@ -105,12 +88,12 @@ def check_light_twin(encoding: LightEncoding) -> None:
         raise UsageError(f"{place}: {type(error).__name__}: {error}") from error
 
 
-def _row(experiment: str, encoding: LightEncoding, device: Device | None, **more: Any) -> Row:
+def _row(experiment: str, encoding: LightCodec, device: Device | None, **more: Any) -> Row:
     described = {"experiment": experiment, "light_buffer": encoding.name}
-    return dict.fromkeys(COLUMNS) | described | {"device": device.renderer if device else None} | more
+    return TABLE.empty() | described | {"device": device.renderer if device else None} | more
 
 
-def sum_rows(names: list[str], encoding: LightEncoding, sums: Sums, device: Device | None) -> Iterator[Row]:
+def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device | None) -> Iterator[Row]:
     """Rows of some of SUM_EXPERIMENTS; where the device cannot measure, the model's alone and the reason."""
     try:
         with Adder(encoding, device) as adder:
@@ -126,7 +109,7 @@ def sum_rows(names: list[str], encoding: LightEncoding, sums: Sums, device: Devi
 
 
 def resolve_rows(
-    device: Device, shot: Shot, encodings: list[LightEncoding], given: dict[int, list[int]], seen: Callable[..., None]
+    device: Device, shot: Shot, encodings: list[LightCodec], given: dict[int, list[int]], seen: Callable[..., None]
 ) -> Iterator[Row]:
     """Rows of `resolve`.
 
@@ -158,7 +141,7 @@ def image_rows(
     pipeline: Pipeline,
     shot: Shot,
     power: float,
-    encodings: list[LightEncoding],
+    encodings: list[LightCodec],
     targets: list[int],
     seen: Callable[..., None],
 ) -> Iterator[Row]:
@@ -193,7 +176,7 @@ def sorted_rows(rows: list[Row]) -> list[Row]:
     )
 
 
-def banded(encoding: LightEncoding, peak: float) -> np.ndarray:
+def banded(encoding: LightCodec, peak: float) -> np.ndarray:
     """A lamp's falloff as a light buffer keeps it by the model, (width, 3)."""
     with Adder(encoding, None) as adder:
         return adder.model(gradient(peak)[None]).light[:, :3]

@@ -12,9 +12,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.chromaticity import coloured, luminance
-from ....encodings.light_buffer import IDEAL, Blending, accumulate
-from ....encodings.light_encoding import LightEncoding
-from ....encodings.storage import Storage, to_srgb
+from ....encodings.codecs.light_buffer import IDEAL, Blending, accumulate
+from ....encodings.codecs.light_codec import LightCodec
+from ....encodings.storages.rounding import to_srgb
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.codecs.light_passes import LightPasses, Sum
 from ....gbuffer.gl.device import Device
@@ -49,7 +50,7 @@ def array(planes: Sequence[Any]) -> np.ndarray:
 
 
 @partial(jax.jit, static_argnames=("encoding", "blending"))
-def _summed(encoding: LightEncoding, lights: Vec4, count, blending: Blending) -> tuple[Vec4, Vec4]:
+def _summed(encoding: LightCodec, lights: Vec4, count, blending: Blending) -> tuple[Vec4, Vec4]:
     texels = accumulate(encoding, lights, count, blending)
     return encoding.decode(texels), texels
 
@@ -69,7 +70,7 @@ class Adder:
         ShaderError: the encoding's GLSL does not compile.
     """
 
-    def __init__(self, encoding: LightEncoding, device: Device | None):
+    def __init__(self, encoding: LightCodec, device: Device | None):
         self.encoding = encoding
         self._passes = LightPasses(device, encoding) if device else None
 

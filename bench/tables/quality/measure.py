@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -14,71 +15,22 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.codec import Codec
-from ....encodings.encoding import Encoding
-from ....encodings.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.codecs.codec import Codec
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
-from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
+from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...codecs.user_encodings import NoTwinError, encodings_named
+from ...codecs.user_encodings import NoTwinError
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
-from ...output.errors import MissingError, UsageError, pick
 from ...worst_case import exact_figures
+from .table import TABLE
 
-COLUMNS = (
-    "encoding",
-    "storage",
-    "rounding",
-    "normals",
-    "backend",
-    "bits",
-    "count",
-    "background",
-    "not_finite",
-    "invalid",
-    "mse",
-    "psnr_db",
-    "psnr_seed_db",
-    "angle_mean_deg",
-    "angle_rms_deg",
-    "angle_p99_deg",
-    "angle_max_deg",
-    "angle_sup_deg",
-    "sup_x",
-    "sup_y",
-    "sup_z",
-    "sup_found_by",
-    "sup_moved_deg",
-    "angle_counts",
-    "effective_bits",
-    "domain",
-    "codes",
-    "limit_mean_deg",
-    "limit_rms_deg",
-    "limit_max_deg",
-    "reached_mean_percent",
-    "reached_rms_percent",
-    "reached_max_percent",
-    "below_limit",
-    "codes_unused",
-    "codes_duplicate",
-    "codes_unstable",
-    "exact",
-    "device",
-    "rounded_by",
-    "seed",
-    "skipped",
-)
-
-# What only a program reads.
-FOR_PROGRAMS = ("angle_counts",)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # How many cases share a set's chunks: each keeps its own histogram.
-TOGETHER = 64
+TOGETHER = 16
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
@@ -120,31 +72,12 @@ def _decoded_meter() -> Meter:
     return Meter(lambda chunk: chunk.decoded)
 
 
-def _rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
+def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
+    """Planes as the pixels of an image, float32 of shape (height, width, 4)."""
     pixels = np.zeros((height * width, 4), np.float32)
     for channel, plane in enumerate(planes):
         pixels[:, channel] = np.asarray(plane).ravel()
     return pixels.reshape(height, width, 4)
-
-
-def check_twin(encoding: Encoding) -> None:
-    """Traces an encoding's Python half on one normal.
-
-    Raises:
-        UsageError: it raises, or its code has another size than it says; one line with its file.
-    """
-    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
-    where = encoding.glsl.with_suffix(".py")
-    try:
-        code = jax.eval_shape(encoding.encode, n, n)
-        size = encoding.components + encoding.sign_bits
-        if len(code) != size:
-            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
-        jax.eval_shape(encoding.decode, code, n)
-    except NoTwinError:
-        return
-    except Exception as error:  # whatever a user's own code raises
-        raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error
 
 
 @dataclass(frozen=True)
@@ -171,7 +104,7 @@ def _by_glsl(case: Case) -> Iterator[Decoding]:
     with CodecPasses(gl, case.codec) as passes:
 
         def decoded(chunk: Chunk) -> Decoded:
-            pixels = (_rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
+            pixels = (rgba(planes, CHUNK // CHUNK_WIDTH, CHUNK_WIDTH) for planes in (chunk.n, chunk.view))
             n = passes.round_trip(*pixels).normals.reshape(-1, 3)
             return Decoded(chunk.n, Vec3(*np.ascontiguousarray(n.T)), chunk.covered)
 
@@ -197,40 +130,6 @@ def cases(
     return [Case(codec, chosen, backend, *exact) for chosen in normal_sets for codec in codecs for backend in backends]
 
 
-def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
-    """Every combination of comma-separated names, files of users' encodings among them. Raises UsageError."""
-    chosen = encodings_named(encodings)
-    return [
-        Codec(encoding, storage, rounding)
-        for storage in storages_named(storages)
-        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
-        for encoding in chosen
-    ]
-
-
-def storages_named(names: str) -> list[Storage]:
-    """The storages of comma-separated names, of numbers laid across channels by their bits too. Raises UsageError."""
-    try:
-        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
-    except ValueError as error:
-        raise UsageError(f"--storage: {error}") from error
-    return pick("storage", names, {**STORAGES, **{name: storage for name, storage in made.items() if storage}})
-
-
-def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
-    """The codecs whose storage has room for their components, and a line for each that is left out.
-
-    Raises:
-        UsageError: none is left.
-    """
-    codecs = list(codecs)
-    fit = [codec for codec in codecs if codec.fits]
-    left_out = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
-    if not fit:
-        raise UsageError(left_out[0] if left_out else "nothing to measure")
-    return fit, left_out
-
-
 def measure(case: Case, tick: Tick = idle) -> Row:
     """One row of the quality table; `tick` is called as each chunk of the set is done.
 
@@ -246,7 +145,7 @@ def measure(case: Case, tick: Tick = idle) -> Row:
 
 
 def _described(case: Case) -> Row:
-    return dict.fromkeys(COLUMNS) | {
+    return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
         "rounding": case.codec.rounding,
@@ -285,7 +184,7 @@ def _figures(s: Statistics, area: float | None) -> Row:
         "invalid": s.invalid,
         "mse": s.mse,
         "psnr_db": psnr_db(s.mse),
-        "psnr_seed_db": psnr_db(s.seed_mse),
+        "psnr_article_db": psnr_db(s.article_mse),
         "angle_mean_deg": s.angle_mean_deg,
         "angle_rms_deg": s.angle_rms_deg,
         "angle_p99_deg": s.angle_p99_deg,
@@ -320,31 +219,6 @@ def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[
             yield measure(case, lambda case=case: tick(case))
 
 
-def require_jax() -> None:
-    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it."""
-    try:
-        jax.devices()
-    except Exception as error:
-        reason = str(error).strip().splitlines() or ["the platform does not start"]
-        raise MissingError(f"JAX has no device to compute on: {reason[0]}; unset JAX_PLATFORMS") from error
-
-
-def found_device() -> tuple[Device | None, str]:
-    """The GL device; or None, and why there is none."""
-    try:
-        return device(), ""
-    except NoDeviceError as error:
-        return None, str(error)
-
-
-def require_device() -> Device:
-    """The GL device. Raises MissingError where there is none."""
-    gl, missing = found_device()
-    if not gl:
-        raise MissingError(missing)
-    return gl
-
-
 @dataclass(frozen=True)
 class RoundTrip:
     """A codec on an image: float32 arrays of shape (height, width, 3); `encoded` is what the texels stand for."""
@@ -355,19 +229,31 @@ class RoundTrip:
     covered: np.ndarray
 
 
+def _planes(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
+    """Normals, view positions and coverage of a set that is an image, pixel by pixel."""
+    assert normals.shape
+    count, chunks = math.prod(normals.shape), [load() for load in normals.loads()]
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *chunks)
+
+
+def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
+    """A set that is an image: normals of shape (height, width, 3), and which pixels are covered."""
+    assert normals.shape
+    n, _, covered = _planes(normals)
+    return np.stack([np.asarray(p) for p in n], axis=-1).reshape(*normals.shape, 3), covered.reshape(normals.shape)
+
+
 def image_round_trip(case: Case) -> RoundTrip:
     """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
-    assert case.normal_set.shape
-    height, width = case.normal_set.shape
-    chunks = [load() for load in case.normal_set.loads()]
-    n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: height * width], *chunks)
+    height, width = case.normal_set.shape or (0, 0)
+    n, view, covered = _planes(case.normal_set)
 
     def image(planes) -> np.ndarray:
         return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)
 
     if case.backend == "glsl":
         with CodecPasses(device(), case.codec) as passes:
-            result = passes.round_trip(_rgba(n, height, width), _rgba(view, height, width))
+            result = passes.round_trip(rgba(n, height, width), rgba(view, height, width))
         encoded, decoded = result.codes[..., :3].copy(), result.normals
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))

@@ -9,19 +9,25 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Iterable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ....encodings.codec import Codec
+from ....encodings.codecs.codec import Codec
 from ....encodings.vec import Vec3
+from ....gbuffer.codecs.codec_passes import CodecPasses
+from ....gbuffer.gl.device import device
 from ...metrics.meter import angle_between, compiled, readable
 from ...output.writing import whole_file
+from ...worst_case.exact_figures import has_twin
+from .measure import UNMEASURABLE, rgba
 
 # Cells across a disc, and directions along each side of a cell.
 CELLS, FINE = 96, 5
+# Of an image of directions.
+WIDTH = 2048
 WHOLE_SPHERE = "sphere"
 
 
@@ -54,12 +60,14 @@ def _grid() -> tuple[np.ndarray, np.ndarray]:
 
 
 def sphere_map(codec: Codec) -> SphereMap:
-    """A codec's errors over the sphere, by JAX; over the half that faces the viewer where it can hold no more."""
+    """A codec's errors over the sphere, by JAX, or by GLSL where it has no twin in JAX; over the half that faces the
+    viewer where it can hold no more."""
     halves, inside = _grid()
     held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
     n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
     found = np.full((2, *inside.shape), np.nan, np.float32)
-    found[:held, inside] = np.asarray(_angles(codec)(n))
+    angles = _angles(codec) if has_twin(codec.encoding) else partial(_angles_by_glsl, codec)
+    found[:held, inside] = np.asarray(angles(n))
     cells = found.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
     some = ~np.isnan(cells).all(axis=-1)
     mean, largest = (np.full(some.shape, np.nan, np.float32) for _ in range(2))
@@ -76,15 +84,31 @@ def _angles(codec: Codec):
     return compiled(angles)
 
 
+def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:
+    """Angles of planes of shape (halves, pixels). Raises what UNMEASURABLE names."""
+    count = n.x.size
+    # As an image that every device has room for, the last direction repeated to fill it.
+    given = Vec3(*(np.pad(plane.reshape(-1), (0, -count % WIDTH), mode="edge") for plane in n))
+    ahead = Vec3(np.zeros_like(given.x), np.zeros_like(given.x), np.full_like(given.x, -1.0))
+    images = (rgba(planes, len(given.x) // WIDTH, WIDTH) for planes in (given, ahead))
+    with CodecPasses(device(), codec) as passes:
+        decoded = Vec3(*np.ascontiguousarray(passes.round_trip(*images).normals.reshape(-1, 3).T))
+    angles = angle_between(given, readable(given, decoded)[0])
+    return np.asarray(angles)[:count].reshape(n.x.shape)
+
+
 def file_name(encoding: str, storage: str, rounding: str) -> str:
     """What a codec's map is called."""
     return "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])]) + ".npz"
 
 
 def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
-    """A file for each codec. Raises UsageError where it cannot be written."""
+    """A file for each codec that can be measured. Raises UsageError where it cannot be written."""
     for codec in dict.fromkeys(codecs):
-        found = sphere_map(codec)
+        try:
+            found = sphere_map(codec)
+        except UNMEASURABLE:
+            continue
         path = folder / file_name(codec.encoding.name, codec.storage.name, codec.rounding)
         with whole_file(path) as partial, partial.open("wb") as file:
             np.savez_compressed(file, **found._asdict())

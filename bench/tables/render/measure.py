@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_ENCODINGS
-from ....gbuffer.frame.frame import Plan
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
@@ -21,15 +21,9 @@ from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.images import flip, squared_error
 from ...metrics.meter import Worst, psnr_db
+from .table import TABLE
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
-COLUMNS = (
-    *("pipeline", "layout", "encoding", "storage", "rounding", "normal_bits", "light_buffer", "light_targets"),
-    *("scene", "shadow", "scale", "size", "samples", "samples_asked", "lights", "objects", "frames", "bytes_per_pixel"),
-    *("mse", "psnr_db", "flip", "normal_psnr_db", "rank", "normal_rank", "invalid"),
-    *("ms_frame", "ms_frame_spread", *(f"ms_{stage}" for stage in STAGES)),
-    *("clock", "device", "seed", "exact", "skipped"),
-)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
 # Codecs are ranked among rows that agree in these.
@@ -71,7 +65,7 @@ class Case:
         exact = replace(
             self.plan,
             layout=LAYOUTS["fp32"],
-            light_buffer=LIGHT_ENCODINGS["rgba32f"],
+            light_buffer=LIGHT_BUFFERS["rgba32f"],
             light_targets=targets,
             scale=1.0,
         )
@@ -100,7 +94,7 @@ class Drawn:
 
 def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
     made.draw()
-    if not pipeline.has_gbuffer or made.frame.buffer_samples > 1:
+    if not pipeline.has_gbuffer or made.frame.plan.surface_samples > 1:
         return Drawn(made.image(), None, None)
     position, direction, *_ = made.gbuffer()
     kinds = np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
@@ -139,7 +133,7 @@ class Bench:
 
     def measure(self, case: Case) -> tuple[Row, Drawn | None]:
         """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`."""
-        row = dict.fromkeys(COLUMNS) | _described(case) | {"device": self._device.renderer}
+        row = TABLE.empty(STAGES) | _described(case) | {"device": self._device.renderer}
         times: Row = {}
         try:
             frames = self._frames(

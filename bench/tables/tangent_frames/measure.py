@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.frame_codec import FrameCodec
+from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.rotation import frame_of
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.frame_passes import FramePasses
@@ -23,15 +23,9 @@ from ....gbuffer.gl.shader import ShaderError
 from ...metrics.code_limits import is_measurable
 from .limits import frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
+from .table import TABLE
 
 WHAT = ("normal", "tangent", "rotation")
-COLUMNS = (
-    *("encoding", "storage", "frame_set", "backend", "bits", "count", "invalid", "hands_lost"),
-    *(f"{what}_{figure}_deg" for what in WHAT for figure in ("mean", "rms", "max")),
-    *("effective_bits", "codes", "limit_mean_deg", "limit_rms_deg", "limit_max_deg"),
-    *("reached_mean_percent", "reached_rms_percent", "reached_max_percent", "below_limit"),
-    *("device", "rounded_by", "seed", "skipped"),
-)
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
 WIDTH = 256
@@ -137,7 +131,7 @@ def _axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
 
 def measure(case: Case) -> Row:
     """One row; one that the device cannot give has its reason in `skipped` and no figures."""
-    row = dict.fromkeys(COLUMNS) | {
+    row = TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
         "frame_set": case.frame_set.name,
@@ -190,10 +184,3 @@ def _held(case: Case, total: Total) -> Row:
         "reached_max_percent": 100 * least.max_deg / largest,
         "below_limit": frames_broken(case.codec.codes, total.count, mean, rms),
     }
-
-
-def rows(chosen: Iterable[Case], tick: Callable[[str], None]) -> Iterator[Row]:
-    """The table, a row at a time."""
-    for case in chosen:
-        yield measure(case)
-        tick(case.name)

@@ -17,8 +17,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.codec import Codec
-from ....encodings.storage import FLOAT_ONE, MANTISSA
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.storage import FLOAT_ONE, MANTISSA
 from ....encodings.vec import Vec3, dot, maximum, minimum, select
 
 # By goal, the power of which the mean is least: what the smooth objective takes for a maximum is nearly one.

@@ -18,9 +18,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.codec import LEAST_BITS, Codec
-from ....encodings.encoding import Encoding
-from ....encodings.storage import Storage, across
+from ....encodings.codecs.codec import LEAST_BITS, Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import Storage, across
 from ....encodings.vec import Vec3, dot, maximum, minimum
 from ...metrics.meter import angle_between, readable
 from .expected_errors import Normals, moved_squares, smooth_objective

@@ -22,6 +22,7 @@ from normalbench.bench.gates.limits import limit
 from normalbench.bench.options.counts import checked_numbers
 from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.layouts.layout import LayoutError, read_layout
 
 TESTS = Path(__file__).parents[2]
@@ -184,7 +185,7 @@ def test_identical_images_are_infinitely_good(run):
     command = ("quality", "--encoding", "xyz", "--storage", "rgba32f", "--normals", "axes", "--backend", "jax")
     (row,) = json.loads(run(*command, "--format", "json")[1])
     assert row["psnr_db"] is None and row["exact"] is True
-    assert run(*command)[1].count(" inf ") == 2, "psnr_db and psnr_seed_db"
+    assert run(*command)[1].count(" inf ") == 2, "psnr_db and psnr_article_db"
 
 
 @pytest.mark.usefixtures("gl")
@@ -300,7 +301,8 @@ def test_damaged_toml_is_read_or_refused_and_nothing_else(tmp_path, monkeypatch,
     name, text, read, refused = TOMLS[kind]
     monkeypatch.chdir(tmp_path)
     # What is asked for is made up to the measurement itself; a shader is another test's.
-    monkeypatch.setattr(quality, "measure", lambda case: dict.fromkeys(quality.COLUMNS) | {"encoding": case.codec.name})
+    row = TABLES["quality"].empty()
+    monkeypatch.setattr(quality, "rows", lambda cases, _: (row | {"encoding": c.codec.name} for c in cases))
     path, counts = tmp_path / name, {True: 0, False: 0}
     np.save(tmp_path / "list.npy", some_normals()[0])
     path.write_text(text)

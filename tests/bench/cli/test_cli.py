@@ -16,12 +16,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench.metrics import published as seeds
-from normalbench.bench.suite.suite import COMMON
-from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.codecs import user_encodings
+from normalbench.bench.metrics import published
+from normalbench.bench.tables.quality.table import COMMON, TWO, WIDE
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.encoding import Encoding
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports import tables
 
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]
@@ -71,7 +73,7 @@ def test_json_is_a_list_of_flat_rows_with_nothing_that_json_lacks(run):
     )
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
     assert status == 0 and [row["backend"] for row in rows] == ["jax", "glsl"]
-    assert set(rows[0]) == set(quality.COLUMNS)
+    assert set(rows[0]) == set(TABLES["quality"].empty())
     assert all(row["psnr_db"] is None and row["exact"] is True for row in rows), "identical normals"
 
 
@@ -99,7 +101,7 @@ def test_the_pictures_show_the_scene(run, tmp_path):
     status, _, err = run("quality", "--encoding", "xy,xyz", "--images", str(tmp_path))
     assert status == 0, err
     names = {f"playground-{e}-rgba8-{k}.png" for e in ("xy", "xyz") for k in ("encoded", "decoded", "error", "power")}
-    assert {p.name for p in tmp_path.iterdir()} == names
+    assert {p.name for p in tmp_path.iterdir()} == names | {"playground-normals.png"}, "and the set itself"
     pictures = {name: np.asarray(pixels_of(tmp_path / name)).astype(int) for name in names}
     assert all(p.shape == (480, 640, 3) and p.std() > 3 for p in pictures.values())
     assert abs(pictures["playground-xyz-rgba8-decoded.png"] - pictures["playground-xyz-rgba8-encoded.png"]).max() <= 1
@@ -124,9 +126,9 @@ def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
     assert all(f"{row['angle_max_deg']:.4g}" in out and f"{row['psnr_db']:.4g}" in out for row in rows), out
 
 
-def test_run_prints_the_seeds_table_beside_their_own(results):
+def test_run_prints_the_articles_figures_beside_its_own(results):
     _, done = results
-    for name, figure in seeds.PSNR_DB.items():
+    for name, figure in published.PSNR_DB.items():
         table = done.stdout[done.stdout.index("playground, rgba8") :]
         line = next(line for line in table.splitlines() if line.startswith(f"{name} "))
         assert f"{figure:.2f}" in line, line
@@ -141,17 +143,18 @@ def test_run_leaves_a_results_folder(results):
     two = [
         name for name in COMMON if ENCODINGS[name].components == 2 and Codec(ENCODINGS[name], STORAGES["rg16f"]).fits
     ]
-    codecs = len(COMMON) + len(two)
-    assert len(rows) == codecs * 2 * 2, "in rgba8, and those of two components in rg16f"
+    assert tuple(two) == TWO
+    codecs = len(COMMON) + len(two) + 3 * len(WIDE)
+    assert len(rows) == codecs * 2 * 2, "in rgba8, rg16f, rgb10a2, rg16 and 12:12"
     assert {row["normals"] for row in rows} == {"playground", "hemisphere"}
     assert all(row["skipped"] is None and row["count"] for row in rows)
     assert len(list(csv.DictReader(io.StringIO((folder / "quality.csv").read_text())))) == len(rows)
     facts = json.loads((folder / "run.json").read_text())
     assert facts["machine"]["jax"] and facts["machine"]["GL"] and facts["finished"] and facts["sources"]
     assert facts["command"] == ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
-    assert len(list((folder / "images").iterdir())) == codecs * 4 + 1, "and the set itself"
+    assert len(list((folder / "images").iterdir())) == codecs * 4 + 2, "and the set itself, and the sheet"
     assert len(list((folder / "sphere").iterdir())) == codecs
-    with Image.open(folder / "playground-rgba8.png") as sheet:
+    with Image.open(folder / "images" / "playground-rgba8.png") as sheet:
         assert sheet.size == (4 * 320, 7 * (240 + 16))
 
 
@@ -219,7 +222,7 @@ def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
     )
     status, _, err = run(*QUICK, "--backend", "jax", "--format", "csv", "-o", str(path))
     assert status == 2 and "No space left" in err
-    assert [p.name for p in tmp_path.iterdir()] == ["rows.csv"] and path.read_text() == "precious"
+    assert {p.name for p in tmp_path.iterdir()} == {"rows.csv", ".rows.csv.rows"} and path.read_text() == "precious"
 
 
 def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
@@ -277,6 +280,11 @@ def test_no_command_is_help_and_no_error(run):
     assert status == 0 and "quality" in out and err == ""
 
 
+def measured_instead(monkeypatch, encoding: Encoding) -> None:
+    """From here on the encoding's name stands for it on the command line."""
+    monkeypatch.setattr(user_encodings, "ENCODINGS", {**ENCODINGS, encoding.name: encoding})
+
+
 def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
     """A Python half that raises or has another size; a GLSL half that does not compile loses its own rows only."""
 
@@ -288,7 +296,7 @@ def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
         ({"encode": raises}, ["xy.py", "ValueError", "what is this?"]),
         ({"components": 3}, ["xy.py", "encode gives 2 numbers"]),
     ):
-        monkeypatch.setitem(ENCODINGS, "xy", replace(original, **changed))
+        measured_instead(monkeypatch, replace(original, **changed))
         status, _, err = run("quality", "--encoding", "xy", "--normals", "axes")
         assert status == 2 and err.count("\n") == 1 and all(part in err for part in said), err
 
@@ -297,7 +305,7 @@ def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
 def test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone(run, monkeypatch, tmp_path):
     broken = tmp_path / "xy.glsl"
     broken.write_text(ENCODINGS["xy"].glsl.read_text().replace("n.xy", "n.xq"))
-    monkeypatch.setitem(ENCODINGS, "xy", replace(ENCODINGS["xy"], glsl=broken))
+    measured_instead(monkeypatch, replace(ENCODINGS["xy"], glsl=broken))
     arguments = ["quality", "--encoding", "xy,octahedral", "--normals", "axes", "--format", "json"]
     status, out, err = run(*arguments)
     rows = {(row["encoding"], row["backend"]): row for row in json.loads(out)}
@@ -315,10 +323,10 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
         n = original.decode(e, view)
         return n._replace(x=jnp.where(e.x > 0.9, jnp.nan, n.x))
 
-    monkeypatch.setitem(ENCODINGS, "xy", replace(original, decode=decode))
+    measured_instead(monkeypatch, replace(original, decode=decode))
     status, out, err = run("quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax", "--format", "json")
     assert status == 0 and json.loads(out)[0]["invalid"] == 64, "one axis of six, 64 directions around it"
-    assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are no number\n"
+    assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are NaN or infinite\n"
 
 
 @pytest.mark.parametrize(

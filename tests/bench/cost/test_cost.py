@@ -11,10 +11,11 @@ from costing import glsl
 
 from normalbench.bench.isa import isa
 from normalbench.bench.isa.disassembly import KINDS, issue_slots, kind, kinds, names
-from normalbench.bench.metrics import published as seeds
-from normalbench.bench.tables.cost import command as cost_command
+from normalbench.bench.metrics import published
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import sheets as cost_sheets
+from normalbench.bench.tables.cost import work
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines import kernels
 from normalbench.gbuffer.defines.kernels import STAGES
@@ -113,7 +114,7 @@ def test_every_encoding_stage_and_family_has_its_row(whole_table):
     wanted = itertools.product(ENCODINGS, [None], cost.OPERATIONS, STAGES, isa.FAMILIES)
     assert set(wanted) <= set(keys)
     for row, assembly in whole_table:
-        assert tuple(row) == cost.COLUMNS
+        assert tuple(row) == tuple(TABLES["cost"].empty())
         assert row["skipped"] is None and row["driver"].startswith("Mesa ") and row["instructions"] >= 0, row
         is_counted = row["encoding"] and not row["loops"] and not ENCODINGS[row["encoding"]].is_precise
         assert not is_counted or row["spirv_instructions"] >= 0, row
@@ -227,9 +228,9 @@ def test_the_far_plane_is_no_lanes_work(whole_table):
 def test_instructions_wait_for_no_import_of_jax_or_pandas():
     """From the cache the table is there in two seconds, of which JAX would take one more."""
     program = (
-        "import sys; from normalbench.bench.tables.cost.command import CostRequest, cost_command;"
-        "request = CostRequest(isa=True, encoding='spheremap', family='navi21', storage='rgba8');"
-        "cost_command(request, False, None, None, 'table', None);"
+        "import sys; from normalbench.bench.cli.app import main;"
+        "asked = '--isa --encoding spheremap --family navi21 --storage rgba8';"
+        "sys.argv = ['normalbench', 'cost', *asked.split()]; main();"
         "print({'jax', 'pandas', 'matplotlib'} & set(sys.modules) or 'light')"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
@@ -240,8 +241,8 @@ def test_instructions_wait_for_no_import_of_jax_or_pandas():
 def test_disassembly_and_plot_are_written(run, tmp_path):
     out, plot = tmp_path / "listings", tmp_path / "plot.svg"
     status, text, err = run(
-        *("cost", "--isa", "--seeds", "--encoding", "xy,octahedral", "--storage", "rgba8", "--family", "navi10,navi21"),
-        *("--normals", "axes"),
+        *("cost", "--isa", "--article", "--encoding", "xy,octahedral", "--storage", "rgba8"),
+        *("--family", "navi10,navi21", "--normals", "axes"),
         *("--disassembly", str(out), "--plot", str(plot)),
     )
     assert (status, err) == (0, "")
@@ -256,8 +257,8 @@ def test_disassembly_and_plot_are_written(run, tmp_path):
 
 def test_the_articles_figures_are_whole():
     rows = cost_sheets.article_rows(ENCODINGS, cost.OPERATIONS)
-    assert len(rows) == len(seeds.PSNR_DB) * 2 * (1 + len(seeds.GPUS))
-    assert set(seeds.SLOTS) == set(seeds.CYCLES) == set(itertools.product(seeds.PSNR_DB, cost.OPERATIONS))
+    assert len(rows) == len(published.PSNR_DB) * 2 * (1 + len(published.GPUS))
+    assert set(published.SLOTS) == set(published.CYCLES) == set(itertools.product(published.PSNR_DB, cost.OPERATIONS))
     slots = {(r["encoding"], r["operation"]): r["instructions"] for r in rows if not r["device"]}
     # The article's own summary table.
     names = ("xy", "spherical", "spheremap", "stereographic", "per_pixel_view")
@@ -344,7 +345,7 @@ def made(assembly: str, **statistics: float) -> isa.Compiled:
 def test_spills_are_of_both_sorts_of_registers():
     few = {"VGPRs": 8, "SGPRs": 16, "Spilled_VGPRs": 1, "Spilled_SGPRs": 2}
     many = few | {"Spilled_VGPRs": 4, "Spilled_SGPRs": 7, "VGPRs": 12}
-    row = dict.fromkeys(cost.COLUMNS) | {"family": "navi21"}
+    row = TABLES["cost"].empty() | {"family": "navi21"}
     text = "BB0:\n\tv_mov_b32 v0, v1\n\ts_endpgm\n"
     found, _ = cost._figures(row, made(text, **many), made(text, **few))
     assert (found["spills"], found["vgprs"], found["sgprs"], found["kernel_vgprs"]) == (8, 4, 0, 12)
@@ -363,7 +364,7 @@ def test_notes_say_which_change_places_and_what_their_listings_hold():
     only neighbours are compared, and the kernel's own mask is no guard."""
     listed = []
     for name, (count, line) in LISTINGS.items():
-        row = dict.fromkeys(cost.COLUMNS) | {"encoding": name, "operation": "encode", "instructions": count}
+        row = TABLES["cost"].empty() | {"encoding": name, "operation": "encode", "instructions": count}
         listed.append(
             (row | {"stage": "fragment", "family": "navi21", "transcendental": name.count("r")}, f"\t{line}\n")
         )
@@ -382,6 +383,6 @@ def test_notes_say_which_change_places_and_what_their_listings_hold():
 
 def test_no_runner_knows_an_encoding():
     """Whatever is in the catalogue is measured: nothing is listed by hand."""
-    for module in (cost, cost_command, isa, kernels):
+    for module in (cost, work, isa, kernels):
         text = Path(module.__file__).read_text()
         assert not [name for name in ENCODINGS if f'"{name}"' in text and name not in ("xy", "xyz")], module.__name__

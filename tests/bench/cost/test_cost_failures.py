@@ -13,12 +13,12 @@ from costing import glsl
 
 from normalbench.bench.isa import isa, radv, radv_files, spirv
 from normalbench.bench.isa import process as isa_process
-from normalbench.bench.options.command_options import SuiteOptions
+from normalbench.bench.machine import devices
 from normalbench.bench.options.option import fields_of
 from normalbench.bench.output import cache
-from normalbench.bench.suite.suite import SuiteRequest
+from normalbench.bench.suite.run import asked_of
+from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.cost import measure as cost
-from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.gl.device import NoDeviceError
 
@@ -362,7 +362,7 @@ def test_a_run_of_cost_alone_ends_without_compilers_and_another_leaves_it_out(
         status, out, err = run("run", "--tables", "cost", "-o", str(tmp_path / "run"))
         assert (status, out) == (3, "") and package in err and err.count("\n") == 1, err
         assert not (tmp_path / "run").exists()
-        assert {step.table for step in SuiteRequest(tables="cost,depth").steps()} == {"depth"}
+        assert {ask.table.name for ask in asked_of(RunOptions(tables="cost,depth"), tmp_path)} == {"depth"}
     finally:
         isa._loaded.cache_clear()
     said = capsys.readouterr().err
@@ -370,7 +370,7 @@ def test_a_run_of_cost_alone_ends_without_compilers_and_another_leaves_it_out(
 
 
 def test_the_help_of_run_names_cost():
-    assert "cost" in fields_of(SuiteOptions)["tables"].option.help
+    assert "cost" in fields_of(RunOptions)["tables"].option.help
 
 
 @pytest.mark.parametrize(
@@ -404,7 +404,7 @@ def test_without_a_gl_device_time_is_missing_and_the_rest_is_there(run, monkeypa
     def missing():
         raise NoDeviceError("no GL 4.3 device; install a GL driver")
 
-    monkeypatch.setattr(quality, "device", missing)
+    monkeypatch.setattr(devices, "device", missing)
     status, out, err = run(*SMALL, "--time")
     rows = json.loads(out)
     assert status == 3 and err == "normalbench: no GL 4.3 device; install a GL driver\n"

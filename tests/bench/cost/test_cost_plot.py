@@ -10,9 +10,10 @@ from normalbench.bench.normals.normal_sets import axes
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import plot as cost_plot
 from normalbench.bench.tables.cost.codec_costs import Costs, LeftOutError, Where
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import pareto
 from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
 
@@ -26,7 +27,7 @@ def row(what: str, operation: str, count: float | None, **more) -> dict:
     is_packing = operation in cost.PACKING_OPERATIONS.values()
     about = {"encoding": None, "storage": what} if is_packing else {"encoding": what, "storage": None}
     given = {"measure": "isa", "family": "navi21", "stage": "fragment", "operation": operation, "instructions": count}
-    return dict.fromkeys(cost.COLUMNS) | {"device": "a Radeon", "driver": "Mesa 1.2.3"} | given | about | more
+    return TABLES["cost"].empty() | {"device": "a Radeon", "driver": "Mesa 1.2.3"} | given | about | more
 
 
 ROWS = [

@@ -8,10 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from normalbench.bench.machine.devices import require_device
 from normalbench.bench.tables.cost import clocks as cost_clocks
 from normalbench.bench.tables.cost import jax_time as cost_jax
 from normalbench.bench.tables.cost.clocks import LEAST_TURNS, MOST_TURNS, Field, Pair, Passes, median_interval, summary
-from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import Vec3
 from normalbench.gbuffer.defines import kernels
@@ -139,4 +139,4 @@ def test_a_software_rasteriser_draws_one_tile(run):
     )
     assert status == 0
     for row in json.loads(out):
-        assert row["size"] == ("64x64" if quality.require_device().is_software else "1024x1024")
+        assert row["size"] == ("64x64" if require_device().is_software else "1024x1024")

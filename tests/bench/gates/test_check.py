@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from normalbench.bench.gates.gates import checked, read_gates
 from normalbench.bench.gates.limits import Limit
 from normalbench.bench.output.errors import MissingError, UsageError
-from normalbench.bench.results.runs import Step, opened
+from normalbench.bench.results.runs import opened
+from normalbench.bench.tables.table import Step
 
 PASSES = '[[gate]]\nencoding = "spheremap"\nstorage = "rgba8"\nnormals = "playground"\npsnr_db = "at least 47.5"\n'
 
@@ -48,18 +49,47 @@ def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
         '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
     )
     (row,) = json.loads(run("check", str(path), "--format", "json")[1])
-    assert row["row"].startswith("best_fit rgba8 nearest hybrid cryengine3"), row
+    assert row["row"].startswith("hybrid cryengine3 best_fit rgba8 nearest"), row
 
 
 def test_figures_may_come_from_a_run(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
-    rows = [{"code": "a", "distance": 10.0, "error": 0.5}, {"code": "b", "distance": 10.0, "error": float("inf")}]
+    rows = [{"depth": name, "distance": 10.0, "error_max": error} for name, error in (("a", 0.5), ("b", float("inf")))]
     with opened(folder, {}) as made:
-        made.rows(Step("depth", {}, lambda: rows))
-    gate = '[[gate]]\ntable = "depth"\ncode = "{}"\ndistance = 10\nerror = "at most 0.5"\n'
+        made.keep("depth", Step({}, None, ""), rows)
+    gate = '[[gate]]\ntable = "depth"\ndepth = "{}"\ndistance = 10\nerror_max = "at most 0.5"\n'
     path.write_text(gate.format("a") + gate.format("a, b"))
     status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
     assert status == 1 and [row["holds"] for row in json.loads(out)] == ["pass", "pass", "FAIL"]
+
+
+TABLES_GATED = {
+    "cost": 'encoding = "octahedral"\noperation = "encode"\ninstructions = "at most {}"',
+    "lights": 'light_buffer = "rgbm"\nexperiment = "random"\ncounts = "8"\nmodel_max = "at most {}"',
+    "depth": 'depth = "linear"\nstorage = "packed16"\nerror_max = "at most {}"',
+    "frames": 'encoding = "qtangent"\nstorage = "rgba8"\ncount = 4096\nrotation_max_deg = "at most {}"',
+    "tune": 'encoding = "stereographic"\nnormals = "hemisphere"\ncount = 4096\ntuned = "at most {}"',
+}
+
+
+@pytest.mark.usefixtures("gl", "radv")
+@pytest.mark.parametrize("table", TABLES_GATED)
+def test_every_table_may_be_a_gate(run, tmp_path, table):
+    path = tmp_path / "gates.toml"
+    for most, status, holds in ((1e6, 0, "pass"), (1e-9, 1, "FAIL")):
+        path.write_text(f'[[gate]]\ntable = "{table}"\n{TABLES_GATED[table].format(most)}\n')
+        found, out, err = run("check", str(path), "--format", "json")
+        assert found == status and {row["table"] for row in json.loads(out)} == {table}, err
+        assert holds in {row["holds"] for row in json.loads(out)}
+
+
+def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    with opened(folder, {}) as made:
+        made.keep("depth", Step({}, None, ""), [{"depth": "linear", "error_max": 1.0}])
+    path.write_text('[[gate]]\ntable = "depth"\ndepht = "linear"\nerror_max = "at most 2"\n')
+    status, out, err = run("check", str(path), "--run", str(folder))
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; they are named by depth" in err, err
 
 
 def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
@@ -76,20 +106,23 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("gate = []", "0 gates; from 1"),
         ("[[gate]]\n[other]", "gates are [[gate]] tables"),
         ("[[gate]", "cannot be read as gates"),
-        ('[[gate]]\nencoding = "xy"', "holds no column to anything"),
+        ('[[gate]]\nencoding = "xy"', "no limit given"),
         ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is no number"),
         ('[[gate]]\npsnr_db = "at least nan"', "nan is no number"),
         ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is no number"),
         ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
-        ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; true or false would do"),
+        ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; it must be true or false"),
         ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is no number"),
-        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; a text or a number"),
-        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; a whole number would do"),
-        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; a whole number would do"),
-        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: encoding"),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; it must be a text or a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; it must be a whole number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; it must be a whole number"),
+        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: "),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
-        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; there are encoding"),
-        ('[[gate]]\ntable = "depth"\nerror_max = "at most 1"', "'depth' is not measured here, only quality, render"),
+        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures are bits"),
+        ('[[gate]]\ntable = "depths"\nerror_max = "at most 1"', "unknown table 'depths'; known: quality, render"),
+        ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: quality, render"),
+        ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be a text or a number"),
+        ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),
     ],
 )
 def test_bad_gates_are_one_line_with_their_place(run, tmp_path, text, said):

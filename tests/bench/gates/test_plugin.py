@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.gates import baseline, measured
-from normalbench.bench.options.option import MEASURED, fields_of
+from normalbench.bench.machine import devices
+from normalbench.bench.options.option import fields_of
 from normalbench.bench.pytest_plugin import gate_files as pytest_gates
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""}
@@ -31,7 +33,7 @@ PASSES = f"""
 def loaded():
     """Everything that is imported on first use is: pytest inside pytest forgets what it imports itself."""
     assert pytest_gates and baseline
-    for one in measured.measured("quality", {"encoding": "xy", "normals": "sphere", "count": 4096}):
+    for one in measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096}):
         assert one.worst
 
 
@@ -53,7 +55,7 @@ def test_a_gate_that_holds_passes(inside):
 
 def test_one_that_does_not_says_value_limit_and_worst_normal(inside):
     """Of xy on the sphere a normal that faces away comes back with the other z; figures as the row has them."""
-    (one,) = measured.measured("quality", {"encoding": "xy", "normals": "sphere", "count": 4096})
+    (one,) = measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096})
     result = inside(
         test_a=f"""
         def test_it(normalbench):
@@ -73,7 +75,7 @@ def test_one_that_does_not_says_value_limit_and_worst_normal(inside):
     )
     assert one.worst.angle_deg == pytest.approx(one.row["angle_max_deg"], rel=1e-6)
     assert one.worst.normal[2] < -0.9 and one.worst.decoded[2] > 0.9
-    assert "pytest_session.py" not in result.stdout.str(), "the traceback is the test's own"
+    assert "session.py" not in result.stdout.str(), "the traceback is the test's own"
 
 
 def test_a_marker_holds_before_the_test(inside):
@@ -90,7 +92,7 @@ def test_a_marker_holds_before_the_test(inside):
         def test_by_position(): pass
         @pytest.mark.normalbench(encoding="xy")
         def test_no_limit(): pass
-        @pytest.mark.normalbench(table="cost", latency="at most 5")
+        @pytest.mark.normalbench(table="costs", latency="at most 5")
         def test_table(): pass
         @pytest.mark.normalbench(psnr="at least 5", **{SMALL})
         def test_column(): pass
@@ -103,9 +105,9 @@ def test_a_marker_holds_before_the_test(inside):
             "  worst normal: (*) comes back as (*), * degrees off",
             "unknown option 'encodin'; known: encoding, storage, rounding, normals, *",
             "the marker normalbench takes options and limits by name, not 'xy'",
-            'it holds no column to anything; say psnr_db = "at least 47.5"',
-            "table 'cost' is not measured; known: quality, render",
-            "no column 'psnr'; there are encoding, *",
+            'no limit given; add for example psnr_db = "at least 47.5"',
+            "unknown table 'costs'; known: quality, render, *",
+            "quality: no column 'psnr'; figures are bits, *",
         ]
     )
     assert "this is not run" not in result.stdout.str() and "Traceback" not in result.stdout.str()
@@ -114,11 +116,11 @@ def test_a_marker_holds_before_the_test(inside):
 MISUSE = {
     'quality(encoding="octahedron")': "unknown encoding 'octahedron'; known: all, xyz",
     "quality(count=0)": "--count 0: a count is 1 to",
-    'quality(count="many")': "count is 'many'; a whole number would do",
-    f"quality(**{SMALL}).assert_that()": 'no column is held to anything; say psnr_db="at least 47.5"',
+    'quality(count="many")': "count is 'many'; it must be a whole number",
+    f"quality(**{SMALL}).assert_that()": 'no limit given; add for example psnr_db="at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is no limit; say "at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is no number",
-    f"quality(**{SMALL}).assert_that(psnr='at least 5')": "no column 'psnr'; there are encoding",
+    f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
     f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; take one of .rows",
     f"quality(**{SMALL}).matches_baseline()": "--normalbench-baseline FILE names one",
 }
@@ -131,7 +133,7 @@ def test_misuse_is_one_line(inside):
     lines = [line for line in result.stdout.lines if line.startswith("E ")]
     for line, said in zip(lines, MISUSE.values(), strict=True):
         assert "UsageError" in line and said in line, line
-    assert "pytest_session.py" not in result.stdout.str(), "the traceback is the test's own"
+    assert "session.py" not in result.stdout.str(), "the traceback is the test's own"
 
 
 def test_a_row_is_measured_once_a_session(inside):
@@ -139,11 +141,15 @@ def test_a_row_is_measured_once_a_session(inside):
     counting = f"""
         import pytest
         from normalbench.bench.tables.quality import measure as quality
-        measure, cases = quality.measure, []
+        rows, cases = quality.rows, []
+        def counting(chosen, tick):
+            chosen = list(chosen)
+            cases.extend(chosen)
+            return rows(chosen, tick)
         @pytest.fixture(scope="session", autouse=True)
         def counted():
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(quality, "measure", lambda case: cases.append(case) or measure(case))
+                patch.setattr(quality, "rows", counting)
                 yield
             assert [case.normal_set.seed for case in cases] == [7, 8]
         @pytest.fixture
@@ -161,8 +167,8 @@ def test_a_row_is_measured_once_a_session(inside):
 
 def test_every_option_of_the_tables_is_an_option_of_the_plugin(pytester):
     shown = pytester.runpytest_inprocess("--help", *PLAIN).stdout.str()
-    for group in (group for groups in MEASURED.values() for group in groups):
-        for name, field in fields_of(group).items():
+    for table in TABLES.values():
+        for name, field in fields_of(table.options).items():
             assert f"--normalbench-{name.replace('_', '-')}" in shown
             assert field.option.help.split(";")[0].rstrip(".") in re.sub(r"\s+", " ", shown), name
 
@@ -195,7 +201,9 @@ def test_an_image_may_be_held_to_limits(inside):
         """
     )
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["E*octahedral rgba8 nearest hybrid fp32 gloss *: psnr_db is *, not at least 90"])
+    result.stdout.fnmatch_lines(
+        ["E*hybrid fp32 octahedral rgba8 nearest rgba32f 2 gloss *: psnr_db is *, not at least 90"]
+    )
     result.stdout.fnmatch_lines(["E*worst normal: (*) comes back as (*), 0.* degrees off"])
 
 
@@ -246,7 +254,8 @@ def test_where_it_is_required_they_fail(inside, monkeypatch):
     def missing():
         raise NoDeviceError("no GL 4.3 device: none is here")
 
-    monkeypatch.setattr(quality, "device", missing)
+    for module in (quality, devices):
+        monkeypatch.setattr(module, "device", missing)
     result = inside("--normalbench-require-gl", test_a=BOTH)
     result.assert_outcomes(passed=1, failed=4)
     result.stdout.fnmatch_lines(["no GL 4.3 device: none is here"])
@@ -357,11 +366,13 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
         def test_it():
             heavy = {"jax", "numpy", "moderngl", "typer", "rich", "pandas", "matplotlib", "PIL"}
             assert not heavy & set(sys.modules)
-            assert {m for m in sys.modules if m.startswith("normalbench.")} <= {
-                f"normalbench.bench{name}"
-                for name in ("", ".pytest_plugin", ".pytest_plugin.plugin", ".options", ".options.option",
-                             ".options.counts", ".output", ".output.errors")
+            named = [m.removeprefix("normalbench.bench") for m in sys.modules if m.startswith("normalbench.")]
+            rooms = ("", ".pytest_plugin", ".options", ".output", ".tables")
+            assert {m for m in named if not m.startswith(".tables.")} <= {
+                *rooms, ".pytest_plugin.plugin", ".pytest_plugin.own_options", ".options.option", ".options.counts",
+                ".output.errors"
             }
+            assert all(m.endswith((".table", ".registry")) or m.count(".") == 2 for m in named if ".tables." in m)
         """
     )
     pytester.runpytest_subprocess("--strict-markers", *PLAIN).assert_outcomes(passed=1)

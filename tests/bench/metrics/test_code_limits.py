@@ -14,8 +14,8 @@ from normalbench.bench.metrics.meter import compiled
 from normalbench.bench.normals.normal_sets import from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import dot
 
 COUNT = 2**18

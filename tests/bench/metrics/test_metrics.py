@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
+from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.machine.cores import cores, on_all_cores
 from normalbench.bench.metrics import meter as metrics
 from normalbench.bench.metrics.meter import Meter, angle_between, compiled, psnr_db, squared_errors
@@ -20,8 +21,8 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.throughput.numpy_baseline import angles, whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 
 AHEAD = np.float32([0, 0, -1])
 
@@ -74,10 +75,10 @@ def test_a_row_equals_numpys(count, degrees):
     spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
     other = turned(n, spread).astype(np.float32)
     got = measured(DECODED, from_arrays("", "", n, other, np.ones(count, bool)))
-    mse, seed_mse, mean, rms, p99, largest = whole_row(n, other)
+    mse, article_mse, mean, rms, p99, largest = whole_row(n, other)
     assert got.count == got.pixels == count
     assert got.mse == pytest.approx(mse, rel=1e-6)
-    assert got.seed_mse == pytest.approx(seed_mse, rel=1e-5, abs=1e-12)
+    assert got.article_mse == pytest.approx(article_mse, rel=1e-5, abs=1e-12)
     assert got.angle_mean_deg == pytest.approx(mean, rel=1e-6)
     assert got.angle_rms_deg == pytest.approx(rms, rel=1e-6)
     assert got.angle_max_deg == pytest.approx(largest, rel=1e-6)
@@ -88,7 +89,7 @@ def test_a_row_equals_numpys(count, degrees):
 DECODED = Meter(lambda block: block.view)
 
 
-def test_the_background_counts_for_the_seeds_measure_alone():
+def test_the_background_counts_for_the_articles_measure_alone():
     n = random_directions(1000)
     other = turned(n, np.full(1000, 2.0)).astype(np.float32)
     covered = np.arange(1000) < 500
@@ -96,7 +97,7 @@ def test_the_background_counts_for_the_seeds_measure_alone():
     only = measured(DECODED, from_arrays("", "", n[:500], other[:500], covered[:500]))
     assert half.count == 500 and half.pixels == 1000
     assert half.mse == pytest.approx(only.mse) and half.angle_mean_deg == pytest.approx(only.angle_mean_deg)
-    assert half.seed_mse == pytest.approx(only.seed_mse / 2)
+    assert half.article_mse == pytest.approx(only.article_mse / 2)
 
 
 def test_psnr_is_scikit_images():
@@ -169,7 +170,7 @@ def test_the_largest_count_can_be_addressed():
 
 def test_nothing_is_simplified_across_a_storage_that_rounds_nothing():
     """Encoding and decoding as one program are what they are as two: what is measured is float32's own error."""
-    (codec,) = quality.codecs_named("spherical:scale=0.3", "rgba32f", "nearest")
+    (codec,) = codecs_named("spherical:scale=0.3", "rgba32f", "nearest")
     chunk = hemisphere(CHUNK).chunk(0)
     one = jax.jit(codec.round_trip)(chunk.n, chunk.view)
     stored = jax.jit(codec.stored)(chunk.n, chunk.view)
@@ -225,7 +226,7 @@ def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
         monkeypatch.setattr(metrics, "LANES", lanes)
         monkeypatch.setattr(metrics, "_scan", compiled(lambda chunk: metrics._traced_scan(chunk)))
         for row, other in zip(usual, rows_of(normals), strict=True):
-            for name in ("mse", "psnr_db", "psnr_seed_db", "angle_mean_deg", "angle_rms_deg"):
+            for name in ("mse", "psnr_db", "psnr_article_db", "angle_mean_deg", "angle_rms_deg"):
                 assert other[name] == pytest.approx(row[name], rel=1e-13), (name, block)
             assert (other["angle_max_deg"], other["angle_p99_deg"]) == (row["angle_max_deg"], row["angle_p99_deg"])
 

@@ -18,8 +18,8 @@ from normalbench.bench.normals.normal_sets import NormalSet, playground
 from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.scenes.playground import CAMERA
 from normalbench.gbuffer.scenes.playground import playground as rendered
 

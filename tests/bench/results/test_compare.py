@@ -17,11 +17,11 @@ MACHINE = {"machine": {"GL": "one"}}
 
 
 def run_of(*rows: dict, facts=MACHINE) -> Done:
-    return Done(facts, [{"table": "t", "key": {"encoding": row["encoding"]}, "rows": [row]} for row in rows])
+    return Done(facts, [{"table": "sweep", "key": {"pipeline": row["pipeline"]}, "rows": [row]} for row in rows])
 
 
 def timed(name: str, times) -> dict:
-    return {"encoding": name, "ms_frame": float(np.median(times)), "ms_frame_each": " ".join(map(str, times))}
+    return {"pipeline": name, "ms_frame": float(np.median(times)), "ms_frame_each": " ".join(map(str, times))}
 
 
 def test_the_rank_test_is_exact():
@@ -39,16 +39,17 @@ def test_the_rank_test_is_exact():
 
 
 def test_figures_are_compared_exactly_and_nan_is_itself():
-    same = {"encoding": "a", "psnr_db": 1 / 3, "angle": float("nan"), "clock": "wall", "ms_frame": 1.0}
+    same = {"pipeline": "a", "triangles": 1 / 3, "triangles_lights": float("nan"), "clock": "wall", "ms_frame": 1.0}
     assert compared(run_of(same), run_of(same | {"ms_frame": 9.0, "clock": "query"})) == []
-    (change,) = compared(run_of(same), run_of(same | {"psnr_db": np.nextafter(1 / 3, 1)}))
-    assert (change["table"], change["row"], change["column"]) == ("t", "a", "psnr_db")
+    (change,) = compared(run_of(same), run_of(same | {"triangles": np.nextafter(1 / 3, 1)}))
+    assert (change["table"], change["row"], change["column"]) == ("sweep", "a", "triangles")
+    assert change["verdict"] == "worse"
 
 
 def test_steps_that_one_run_lacks_are_named():
-    a, b = {"encoding": "a", "x": 1}, {"encoding": "b", "x": 1}
+    a, b = {"pipeline": "a", "triangles": 1}, {"pipeline": "b", "triangles": 1}
     (change,) = compared(run_of(a, b), run_of(b))
-    assert (change["row"], change["before"], change["after"]) == ("a", True, False)
+    assert (change["row"], change["before"], change["after"], change["change"]) == ("a", True, False, "only before")
 
 
 def step_of(*rows: dict) -> Done:
@@ -59,12 +60,12 @@ def test_rows_of_one_step_are_paired_by_what_they_are():
     """A row that one run lacks is named, and moves no other; two rows of one name are paired in their order."""
     names = [("xyz", "encode"), ("xyz", "decode"), ("octahedral", "encode"), ("octahedral", "encode")]
     about = [
-        {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "x": x}
+        {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "instructions": x}
         for x, (e, o) in enumerate(names)
     ]
-    changes = compared(step_of(*about), step_of(about[0], about[2], about[3] | {"x": 9}))
+    changes = compared(step_of(*about), step_of(about[0], about[2], about[3] | {"instructions": 9}))
     lost, other = sorted(changes, key=lambda change: change["column"])
-    assert (lost["row"], lost["change"]) == ("xyz decode fragment navi31", "only one has it")
+    assert (lost["row"], lost["change"]) == ("xyz decode fragment navi31", "only before")
     assert (other["row"], other["before"], other["after"]) == ("octahedral encode fragment navi31", 3, 9)
 
 
@@ -84,6 +85,9 @@ def test_times_count_beyond_chance_and_a_least_effect_and_on_one_machine():
         assert bool(rows) == changed, (times, rows)
     elsewhere = run_of(timed("a", slow), facts={"machine": {"GL": "two"}})
     assert compared(run_of(timed("a", base)), elsewhere) == []
+
+
+HOWS = ("never", "worse", "change")
 
 
 def in_a_copy(folder: Path, name: str) -> None:
@@ -107,8 +111,12 @@ def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_it
     rows = json.loads(out)
     assert status == 0 and {row["row"].split()[0] for row in rows} == {"stereographic"}
     altered = {step["key"]["backend"] for step in read_run(tmp_path / "one").steps}
+    # On two sets, in each of its two storages.
     assert len({row["row"] for row in rows if row["column"] == "psnr_db"}) == 2 * 2 * len(altered)
-    assert "row" in run("compare", str(tmp_path / "one"), str(tmp_path / "altered"))[1]
+    said = run("compare", str(tmp_path / "one"), str(tmp_path / "altered"))[1]
+    assert "stereographic" in said and len(said.splitlines()) <= 22
+    status = [run("compare", str(tmp_path / "one"), str(tmp_path / "altered"), "--fail-on", how)[0] for how in HOWS]
+    assert status == [0, int(any(row["verdict"] == "worse" for row in rows)), 1]
 
 
 def test_what_is_no_run_is_one_line(run, tmp_path):

@@ -14,34 +14,39 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.isa import isa, spirv
-from normalbench.bench.output import journal
 from normalbench.bench.normals import normal_sets
-from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.suite import run_command, short
+from normalbench.bench.output import journal
 from normalbench.bench.output.errors import UsageError
-from normalbench.bench.results.runs import ROWS, Step, opened, read_run, same_work, sources, unfinished
-from normalbench.bench.suite.suite import TABLES, SuiteRequest
+from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, sources, unfinished
+from normalbench.bench.suite import run as run_command
+from normalbench.bench.suite.run_options import RunOptions
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Step
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports import tables
 
 FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
 
 
-def steps(count: int, measured: list[int]) -> list[Step]:
-    def measure(number: int) -> list[dict]:
-        measured.append(number)
-        return [{"number": number, "figure": number / 3, "nothing": None}]
+def kept(run: Run, count: int, measured: list[int]) -> list[list[dict]]:
+    """The rows of so many steps: those that are kept, or measured now."""
 
-    return [Step("table", {"number": n}, lambda n=n: measure(n)) for n in range(count)]
+    def measure(step: Step) -> list[dict]:
+        measured.append(step.case)
+        return run.keep("table", step, [{"number": step.case, "figure": step.case / 3, "nothing": None}])
+
+    steps = [Step({"number": number}, number, str(number)) for number in range(count)]
+    return [run.find("table", step) or measure(step) for step in steps]
 
 
 def test_a_finished_step_is_not_measured_twice(tmp_path):
     measured: list[int] = []
     for last in (3, 5):
         with opened(tmp_path / "run", FACTS) as run:
-            rows = [run.rows(step) for step in steps(last, measured)]
+            rows = kept(run, last, measured)
     assert measured == [0, 1, 2, 3, 4] and rows[1] == [{"number": 1, "figure": 1 / 3, "nothing": None}]
     assert [row["number"] for row in read_run(tmp_path / "run").tables["table"]] == [0, 1, 2, 3, 4]
 
@@ -50,16 +55,14 @@ def test_a_finished_step_is_not_measured_twice(tmp_path):
 def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
     folder, measured = tmp_path / "run", []
     with opened(folder, FACTS) as run:
-        for step in steps(3, measured):
-            run.rows(step)
+        kept(run, 3, measured)
     whole = (folder / ROWS).read_bytes()
     (folder / ROWS).write_bytes(whole[:-cut])
     assert len(read_run(folder).tables["table"]) == 2, "the cut line is not there"
     assert (folder / ROWS).read_bytes() == whole[:-cut], "reading does not write"
     measured.clear()
     with opened(folder, FACTS) as run:
-        for step in steps(3, measured):
-            run.rows(step)
+        kept(run, 3, measured)
     assert measured == [2] and (folder / ROWS).read_bytes() == whole
 
 
@@ -88,19 +91,30 @@ def test_two_processes_cannot_write_one_folder(tmp_path):
         opened(tmp_path / "run", FACTS).__enter__()
 
 
-def test_other_work_and_finished_runs_are_left_alone(tmp_path):
+def test_runs_of_other_sources_or_machines_are_left_alone(tmp_path):
     folder = tmp_path / "run"
     with opened(folder, FACTS) as run:
-        run.rows(steps(1, [])[0])
+        kept(run, 1, [])
     before = (folder / ROWS).read_bytes()
-    for name in ("request", "sources", "machine"):
-        with pytest.raises(UsageError, match="other options, sources or machine"), opened(folder, FACTS | {name: "x"}):
+    for name in ("sources", "machine"):
+        with pytest.raises(UsageError, match="other sources or another machine"), opened(folder, FACTS | {name: "x"}):
             pass
+    assert (folder / ROWS).read_bytes() == before
+
+
+def test_a_finished_run_is_extended_and_keeps_its_rows(tmp_path):
+    folder, measured = tmp_path / "run", []
     with opened(folder, FACTS) as run:
+        kept(run, 2, measured)
         run.finish()
-    with pytest.raises(UsageError, match="finished run"), opened(folder, FACTS):
-        pass
-    assert (folder / ROWS).read_bytes() == before and read_run(folder).finished
+    before = (folder / ROWS).read_bytes()
+    with opened(folder, FACTS | {"request": {"count": 2}}) as run:
+        kept(run, 3, measured)
+        assert not read_run(folder).finished, "it is not finished until its new rows are there"
+        run.finish()
+    assert measured == [0, 1, 2] and (folder / ROWS).read_bytes().startswith(before)
+    done = read_run(folder)
+    assert done.finished and [one["request"] for one in done.facts["before"]] == [{"count": 1}]
 
 
 def test_a_folder_with_something_else_is_not_touched(tmp_path):
@@ -115,7 +129,7 @@ def test_a_folder_with_something_else_is_not_touched(tmp_path):
 def test_a_full_disk_loses_no_finished_row(tmp_path, monkeypatch):
     folder, measured = tmp_path / "run", []
     with opened(folder, FACTS) as run:
-        run.rows(steps(1, measured)[0])
+        kept(run, 1, measured)
     before = (folder / ROWS).read_bytes()
 
     def full(_):
@@ -124,7 +138,7 @@ def test_a_full_disk_loses_no_finished_row(tmp_path, monkeypatch):
     with opened(folder, FACTS) as run:
         monkeypatch.setattr(journal.os, "fsync", full)
         with pytest.raises(UsageError, match="No space left on device; 1 finished steps are kept"):
-            run.rows(steps(2, measured)[1])
+            kept(run, 2, measured)
     assert (folder / ROWS).read_bytes() == before
 
 
@@ -197,13 +211,13 @@ def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, 
 
 
 @pytest.mark.usefixtures("gl")
-def test_every_table_has_steps_and_its_short_form():
-    assert set(TABLES) == set(short.SHORT)
-    found = SuiteRequest(count=4096).steps()
+def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
+    asks = run_command.asked_of(RunOptions(count=4096), tmp_path)
     compilers = not isa.missing() and spirv.version(spirv.COMPILER)
-    assert {step.table for step in found} == set(TABLES) - (set() if compilers else {"cost"})
-    keys = [json.dumps([step.table, step.key], sort_keys=True) for step in found]
-    assert len(set(keys)) == len(keys), "no two steps share a key"
+    usual = {table.name for table in TABLES.values() if table.in_all}
+    assert {ask.table.name for ask in asks} == usual - (set() if compilers else {"cost"})
+    keys = [json.dumps([ask.table.name, step.key], sort_keys=True) for ask in asks for step in ask.steps]
+    assert len(set(keys)) == len(keys) and all(ask.steps for ask in asks)
 
 
 def test_an_unknown_table_is_one_line(run, tmp_path):

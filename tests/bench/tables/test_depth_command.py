@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from normalbench.bench.machine import devices
 from normalbench.bench.tables.depth import measure as depth
-from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--count", "500", "--backend", "jax"]
@@ -17,7 +18,7 @@ def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
     status, out, err = run(*QUICK, "--distance", "5,50", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
     assert status == 0 and err == ""
-    assert all(tuple(row) == depth.COLUMNS for row in rows)
+    assert all(tuple(row) == tuple(TABLES["depth"].empty()) for row in rows)
     linear = [row for row in rows if (row["depth"], row["storage"]) == ("linear", "packed16")]
     assert [row["distance"] for row in linear] == [5, 50, None]
     for row in rows:
@@ -138,7 +139,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
     def no_device():
         raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
 
-    for module in (depth, quality):
+    for module in (depth, devices):
         monkeypatch.setattr(module, "device", no_device)
     status, out, err = run(*QUICK[:-2], "--format", "json", "--plot", str(tmp_path / "plot.png"))
     rows = json.loads(out)

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from written import as_document
 
+from normalbench.bench.machine import devices
 from normalbench.bench.metrics.code_limits import SCATTER
-from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
 from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, frames_from, rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
-from normalbench.encodings.frame_codec import FrameCodec
-from normalbench.encodings.storage import FRAME_STORAGES
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -111,7 +112,7 @@ def test_every_code_keeps_its_hand_and_its_limit(request, backend):
         for storage in encoding.storages:
             codec = FrameCodec(encoding, FRAME_STORAGES[storage])
             row = frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
-            assert tuple(row) == frames.COLUMNS
+            assert tuple(row) == tuple(TABLES["frames"].empty())
             assert row["skipped"] is None and row["hands_lost"] == row["invalid"] == 0, row
             assert not row["below_limit"] and row["reached_rms_percent"] < 90, row
             assert row["effective_bits"] < row["bits"], row
@@ -132,7 +133,7 @@ def test_json_is_flat_rows_the_best_first(run):
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
     assert (status, err) == (0, "") and len(rows) == 4
     assert [row["rotation_rms_deg"] for row in rows] == sorted(row["rotation_rms_deg"] for row in rows)
-    assert all(tuple(row) == frames.COLUMNS and row["count"] == 4096 for row in rows)
+    assert all(tuple(row) == tuple(TABLES["frames"].empty()) and row["count"] == 4096 for row in rows)
 
 
 @pytest.mark.usefixtures("gl")
@@ -197,7 +198,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     def no_device():
         raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
 
-    for module in (frames, quality):
+    for module in (frames, devices):
         monkeypatch.setattr(module, "device", no_device)
     command = ["frames", "--count", "100", "--encoding", "qtangent", "--storage", "rgba8", "--format", "json"]
     status, out, err = run(*command)

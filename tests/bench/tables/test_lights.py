@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from drawing import FP32, scene_of
 
+from normalbench.bench.machine import devices
 from normalbench.bench.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.lights.images import Lit, Resolves, Shot, targets_of, with_power
@@ -23,22 +24,22 @@ from normalbench.bench.tables.lights.sums import (
     random_lights,
     steps_apart,
 )
-from normalbench.bench.tables.quality import measure as quality
-from normalbench.encodings.catalogue import LIGHT_ENCODINGS
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import displayed, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
-EVERY = sorted(LIGHT_ENCODINGS)
+EVERY = sorted(LIGHT_BUFFERS)
 (LINEAR_1,) = light_buffers_named("linear:1")
 LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
 
 
 def by_model(name: str) -> Adder:
-    return Adder(LIGHT_ENCODINGS[name], None)
+    return Adder(LIGHT_BUFFERS[name], None)
 
 
 # Known figures: N equal lights that sum to S, stored with rounding at every blend; to the digits given.
@@ -64,7 +65,7 @@ def test_the_model_gives_the_accumulation_table(name, channels, total, count, va
 @pytest.mark.parametrize("name", EVERY)
 def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
     """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         rounding = adder.rounding
         assert rounding
@@ -83,7 +84,7 @@ def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
 @pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
 def test_random_lights_add_up_to_the_same_texels(gl, name):
     """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
-    encoding = LIGHT_ENCODINGS[name]
+    encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         light = coloured_lights(256, 1.0, 0)
         model = adder.model(light, None, ROUNDINGS[adder.rounding.name])
@@ -140,7 +141,7 @@ def bands(name: str, peak: float) -> dict[str, dict]:
 
 
 def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
-    """Seed 003, two targets: less banding in dim light, smooth falloff to the edge; one: the highlight's stays."""
+    """J. Ols, 2010: two targets: less banding in dim light, smooth falloff to the edge; one: the highlight's stays."""
     for peak in (0.1, 1.0):
         linear, srgb = bands("linear", peak), bands("srgb", peak)
         assert srgb["r"]["shown_step"] < linear["r"]["shown_step"] / 8, (peak, srgb["r"], linear["r"])
@@ -149,7 +150,7 @@ def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
 
 
 def test_log_light_holds_more_and_is_coarser_at_its_end():
-    """Seed 003: extended range; a single lamp of 3 is cut off by linear and not by log, whose steps grow with light."""
+    """J. Ols, 2010: extended range; linear cuts off a lamp of 3, log does not, and its steps grow with light."""
     peak = gradient(3.0)
     linear, log = (by_model(name).model(peak[None]).light[:, 0] for name in ("linear", "log"))
     assert linear.max() == 2.0 and abs(log.max() - 3.0) < 0.05
@@ -157,7 +158,7 @@ def test_log_light_holds_more_and_is_coarser_at_its_end():
 
 
 def test_log_light_is_coarser_in_the_dark_than_rgba8_that_holds_no_more_than_1():
-    """Seed 003, whose plain RGBA8 held [0, 1]: slightly worse on dim lights. Steps of 1/(255 ln 2) to 1/255."""
+    """J. Ols, 2010: whose plain RGBA8 held [0, 1]: slightly worse on dim lights. Steps of 1/(255 ln 2) to 1/255."""
     plain, log = Adder(LINEAR_1, None), by_model("log")
     steps = [next(iter(banding(adder, [0.1])))["largest_step"] for adder in (plain, log)]
     assert abs(steps[0] * 255 - 1) < 1e-3 and 1.4 < steps[1] / steps[0] < 1.6, steps
@@ -179,7 +180,7 @@ def test_a_range_may_be_given_and_both_languages_know_it(gl):
 def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
     """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
     expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
-    for name, encoding in LIGHT_ENCODINGS.items():
+    for name, encoding in LIGHT_BUFFERS.items():
         with Adder(encoding, gl) as adder:
             for row in chromaticity(adder) if encoding.has_alpha else ():
                 for prefix in ("", "gl_"):
@@ -191,7 +192,7 @@ def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
 
 
 def plan(name: str, targets: int, samples: int = 1) -> Plan:
-    return Plan((160, 120), samples, FP32, LIGHT_ENCODINGS[name], targets, True, 1.0)
+    return Plan((160, 120), samples, FP32, LIGHT_BUFFERS[name], targets, True, 1.0)
 
 
 def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
@@ -208,7 +209,7 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
     most = max(PIPELINES[pipeline].light_targets)
     reference = displayed(frame(gl, pipeline, plan("rgba32f", most, samples)))
     several = ("r11g11b10f", "srgb", "log", "nao32")  # of each blending
-    for encoding in LIGHT_ENCODINGS.values() if samples == 1 else map(LIGHT_ENCODINGS.get, several):
+    for encoding in LIGHT_BUFFERS.values() if samples == 1 else map(LIGHT_BUFFERS.get, several):
         for targets in targets_of(PIPELINES[pipeline], encoding, [1, 2]):
             image = frame(gl, pipeline, plan(encoding.name, targets, samples))
             assert np.isfinite(image).all(), f"{encoding.name}x{targets}"
@@ -218,16 +219,16 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
 
 @pytest.fixture(scope="module")
 def few_lights():
-    """`gloss` under six lights, as in seed 003."""
+    """`gloss` under six lights, as Ols has it."""
     return SCENES["gloss"].make(Setting(lights=6))
 
 
 @pytest.mark.parametrize("power", [1.0, 47.0, 256.0])
 def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, few_lights, power):
-    """Seed 003's pictures as figures: below the range, of the image, at specular powers 1, 47 and 256."""
+    """Ols's pictures as figures: below the range, of the image, at specular powers 1, 47 and 256."""
     lit = Lit(gl, PIPELINES["prepass"], with_power(Shot("gloss", few_lights, (320, 240), 0), power))
     held = {
-        (name, targets): lit.measure(LIGHT_ENCODINGS[name], targets)[0]["held_psnr_db"]
+        (name, targets): lit.measure(LIGHT_BUFFERS[name], targets)[0]["held_psnr_db"]
         for name in ("linear", "srgb")
         for targets in (1, 2)
     }
@@ -238,13 +239,13 @@ def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, f
 @pytest.fixture(scope="module")
 def resolves(gl):
     shot = Shot("objects", SCENES["objects"].make(Setting(objects=60)), (160, 120), 0)
-    return {n: Resolves(gl, shot, list(LIGHT_ENCODINGS.values()), n) for n in {1, gl.given_samples(4)}}
+    return {n: Resolves(gl, shot, list(LIGHT_BUFFERS.values()), n) for n in {1, gl.given_samples(4)}}
 
 
 @pytest.mark.parametrize("name", EVERY)
 def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
     """The hardware averages texels: the model of that gives its picture, where the device stores as the model does."""
-    encoding, samples = LIGHT_ENCODINGS[name], gl.given_samples(4)
+    encoding, samples = LIGHT_BUFFERS[name], gl.given_samples(4)
     made, single = resolves[samples], resolves[1]
     found = made.compared(made.device(encoding), single.device(encoding))
     model = made.compared(made.model(encoding), single.model(encoding))
@@ -258,11 +259,11 @@ def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
 
 
 def test_codes_that_do_not_average_show_it_at_edges(gl, resolves):
-    """Seed 003: NAO32 and RGBM gain colour artefacts under antialiasing; linear and float codes do not."""
+    """J. Ols, 2010: NAO32 and RGBM gain colour artefacts under antialiasing; linear and float codes do not."""
     made = resolves[gl.given_samples(4)]
     wrong = {
         name: made.compared(made.device(encoding), resolves[1].device(encoding))["wrong_percent"]
-        for name, encoding in LIGHT_ENCODINGS.items()
+        for name, encoding in LIGHT_BUFFERS.items()
     }
     assert wrong["nao32"] > wrong["rgbm"] > wrong["srgb"] and wrong["rgba16f"] == 0, wrong
     assert wrong["rgb9e5"] > wrong["nao32"], wrong
@@ -277,7 +278,7 @@ def test_rows_say_everything_once(run, gl):
     )
     rows = json.loads(out)
     assert (status, err) == (0, "")
-    assert all(tuple(row) == lights.COLUMNS for row in rows)
+    assert all(tuple(row) == tuple(TABLES["lights"].empty()) for row in rows)
     assert list(dict.fromkeys(row["experiment"] for row in rows)) == list(lights.EXPERIMENTS)
     assert {row["device"] for row in rows} == {gl.renderer} and not any(row["skipped"] for row in rows)
     resolve = [(r["samples"], r["samples_asked"]) for r in rows if r["experiment"] == "resolve"]
@@ -302,7 +303,7 @@ def test_tables_are_one_for_each_experiment(run):
     status, out, _ = run(
         "lights", *QUICK, "--light-buffer", "linear", "--experiment", "equal,banding", "--format", "csv"
     )
-    assert tuple(next(csv.reader(out.splitlines()))) == lights.COLUMNS
+    assert tuple(next(csv.reader(out.splitlines()))) == tuple(TABLES["lights"].empty())
 
 
 def test_pictures_and_plot_are_written(run, tmp_path):
@@ -326,7 +327,7 @@ def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
     def missing():
         raise NoDeviceError("no GL 4.3 device: none; install a GL driver")
 
-    monkeypatch.setattr(quality, "device", missing)
+    monkeypatch.setattr(devices, "device", missing)
     status, out, err = run("lights", "--light-buffer", "log", "--counts", "8", "--format", "json")
     rows = json.loads(out)
     assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err

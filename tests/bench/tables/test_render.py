@@ -9,11 +9,15 @@ import pytest
 from PIL import Image
 
 from normalbench.bench.metrics import images as image_metrics
+from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render import measure as rendering
-from normalbench.encodings.catalogue import ENCODINGS, LIGHT_ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
-from normalbench.gbuffer.frame.frame import Plan
+from normalbench.bench.tables.render.measure import STAGES
+from normalbench.bench.tables.render.table import RenderOptions
+from normalbench.bench.tables.render.work import cases
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import WALL, displayed
@@ -41,7 +45,7 @@ CODECS = [codec for codec in CODECS if codec.fits and codec.storage.name != "rgb
 def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     status, out, _ = run(*QUICK, "--pipeline", "deferred,forward")
     rows = json.loads(out)
-    assert status == 0 and all(tuple(row) == rendering.COLUMNS for row in rows)
+    assert status == 0 and all(tuple(row) == tuple(TABLES["render"].empty(STAGES)) for row in rows)
     octahedral, xy, forward = rows
     assert (octahedral["pipeline"], octahedral["encoding"], octahedral["storage"]) == (
         "deferred",
@@ -54,6 +58,44 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     assert forward["layout"] is None and forward["exact"] and forward["psnr_db"] is None
     assert octahedral["ms_frame"] > 0 and octahedral["ms_lights"] > 0 and octahedral["ms_forward"] is None
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
+
+
+def test_what_does_not_fit_says_why(run):
+    """Precise rounding needs fixed point; three components need three channels."""
+    codecs = ["--encoding", "octahedral_precise,xyz,octahedral", "--storage", "rg16f", "--pipeline", "deferred"]
+    status, out, err = run("render", *SMALL, *codecs, "--format", "json")
+    precise, xyz = err.splitlines()
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
+    assert "octahedral_precise/rg16f: RG16F is of floats, and precise rounding is for fixed point" in precise
+    assert "xyz/rg16f: 3 components, but RG16F has 2 channels" in xyz
+
+
+def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
+    """Two tables in files of one name, in one command: the published one, and one that leaves a third of the codes."""
+    published = ENCODINGS["best_fit"].tables()["best_fit_scale"]
+    paths = [tmp_path / folder / "table.npy" for folder in ("one", "other")]
+    for path, table in zip(paths, (published, np.full_like(published, 1 / 3)), strict=True):
+        path.parent.mkdir()
+        np.save(path, table)
+    names = ["best_fit", *(f"best_fit:table={path}" for path in paths)]
+    arguments = [*SMALL, "--scene", "room", "--pipeline", "deferred", "--encoding", ",".join(names)]
+    status, out, _ = run("render", *arguments, "--format", "json")
+    best_fit, one, other = json.loads(out)
+    assert status == 0 and one["encoding"] == other["encoding"] == "best_fit:table=table.npy"
+    assert one["normal_psnr_db"] == best_fit["normal_psnr_db"] > other["normal_psnr_db"] + 3, (one, other)
+
+
+def test_two_layouts_with_two_encoders_of_one_name_are_measured_each(gl):
+    """Each row is that of the encoder its layout holds, whichever came before."""
+    encodings = [ENCODINGS["xyz"], ENCODINGS["octahedral"]]
+    encodings += [replace(encoding, name="mine", functions=encoding.prefix) for encoding in encodings]
+    (case,) = cases(RenderOptions(size="64x48", lights=4, scene="room", pipeline="deferred", encoding="xy"), gl)
+    layouts = [LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rgba8"])) for encoding in encodings]
+    bench = rendering.Bench(gl, 0, False)
+    rows = [bench.measure(replace(case, plan=replace(case.plan, layout=layout)))[0] for layout in layouts]
+    assert [row["encoding"] for row in rows] == ["xyz", "octahedral", "mine", "mine"]
+    xyz, octahedral, *mine = (row["normal_psnr_db"] for row in rows)
+    assert mine == [xyz, octahedral] and xyz != octahedral
 
 
 def test_flip_is_measured_where_it_is_asked_for(run):
@@ -154,7 +196,7 @@ def test_samples_smooth_edges(gl, pipeline):
     """At 4 samples the picture is nearer to one of 4 times the pixels than at 1 sample."""
     chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
     targets = max(chosen.light_targets, default=1)
-    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], targets, False, 1.0)
+    plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], targets, False, 1.0)
 
     def image(plan: Plan) -> np.ndarray:
         with render(gl, chosen, scene, plan) as made:
@@ -173,7 +215,7 @@ def test_every_codec_gives_a_finite_image(gl, pipeline):
     """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""
     scene = SCENES["room"].make(Setting(lights=2))
     chosen = PIPELINES[pipeline]
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], max(chosen.light_targets), False, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(chosen.light_targets), False, 1.0)
     worst = {}
     with render(gl, chosen, scene, plan) as made:
         made.draw()
@@ -217,7 +259,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--lights", "-1"], "--lights -1: from 0"),
         (["--objects", "0"], "--objects 0: from 1"),
         (["--frames", "-1"], "--frames -1"),
-        (["--repeats", "0"], "--repeats 0"),
+        (["--repeats", "-1"], "--repeats -1"),
         (["--seed", "-1"], "--seed -1"),
         (["--pipeline", "raytraced"], "unknown pipeline 'raytraced'; known: all, forward"),
         (["--layout", "mine"], "unknown layout 'mine'; known: all, fp32"),
@@ -231,7 +273,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--scene", "sponza"], "unknown scene 'sponza'; known: all, playground"),
         (["--shadow", "yes"], "unknown shadow 'yes'; known: all, on, off"),
         (["--encoding", "cubemap"], "unknown encoding 'cubemap'"),
-        (["--encoding", "xyz", "--storage", "rg8"], "more components"),
+        (["--encoding", "xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
         (["--images", "/proc/none"], "cannot write to /proc/none"),
         (["-o", "/proc/none/rows.csv"], "cannot write"),
     ],
@@ -249,7 +291,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
 
 def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
     """Values through a float target come back as they were, after a frame that blends and tests depth."""
-    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_ENCODINGS["rgba32f"], 2, True, 1.0)
+    plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
     with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
         made.draw()
     values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)

@@ -12,6 +12,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from normalbench.bench.results.measuring import beside
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.render.measure import STAGES
 from normalbench.bench.tables.sweep import measure as sweep
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
@@ -26,7 +29,7 @@ def test_a_sweep_counts_what_each_pass_draws(run):
     """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
     status, out, _ = run(*SWEEP, "--format", "json")
     rows = json.loads(out)
-    assert status == 0 and all(tuple(row) == sweep.COLUMNS for row in rows)
+    assert status == 0 and all(tuple(row) == tuple(TABLES["sweep"].empty(STAGES)) for row in rows)
     assert [(r["shadow"], r["objects"], r["pipeline"]) for r in rows] == [
         (shadow, objects, pipeline)
         for shadow in (True, False)
@@ -67,14 +70,15 @@ def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
 
     monkeypatch.setattr(sweep, "measure", stopping)
     status, out, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert (status, out) == (130, "") and "3 of 8 rows are kept; the same command goes on" in err
+    assert (status, out) == (130, "") and "3 of 8 steps are kept; the same command goes on" in err
     journal = tmp_path / ".rows.json.rows"
-    kept = [json.loads(line) for line in journal.read_text().splitlines()]
+    _, *lines = [json.loads(line) for line in journal.read_text().splitlines()]
+    kept = [row for line in lines for row in line["rows"]]
     with journal.open("a") as file:
         file.write('{"pipeline": "pre')
     monkeypatch.setattr(sweep, "measure", lambda device, point: measured.append(point) or measure(device, point))
     status, _, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert status == 0 and "3 of 8 rows were measured before" in err and len(measured) == 8
+    assert status == 0 and "3 of 8 steps were measured before" in err and len(measured) == 8
     rows = json.loads(output.read_text())
     assert rows[:3] == kept and len(rows) == 8 and not journal.exists()
 
@@ -111,7 +115,7 @@ def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, 
     kept = journal.read_text()
     (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
     status, _, err = run(*command)
-    assert status == 2 and "keeps 1 rows of another sweep" in err and journal.read_text() == kept
+    assert status == 2 and "keeps 1 steps of another sweep" in err and journal.read_text() == kept
     (tmp_path / "mine.toml").write_text(layout.format("rg8"))
     monkeypatch.setattr(sweep, "measure", measure)
     assert run(*command)[0] == 0 and not journal.exists()
@@ -128,7 +132,7 @@ def test_a_sweep_goes_through_a_pipe(run, tmp_path):
 
 
 def test_two_sweeps_do_not_share_an_output(run, tmp_path):
-    with sweep.journal_beside(tmp_path / "rows.csv"):
+    with beside(tmp_path / "rows.csv", {}):
         status, _, err = run(*SWEEP, "-o", str(tmp_path / "rows.csv"))
     assert status == 2 and "another process writes" in err and err.count("\n") == 1
 
@@ -144,7 +148,7 @@ def test_an_interrupted_process_leaves_its_journal(tmp_path):
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     # Python ends itself by the signal where that came in the middle of an import; to a shell that is 130 as well.
-    assert process.returncode in (130, -signal.SIGINT) and "rows are kept" in err and "Traceback" not in err
+    assert process.returncode in (130, -signal.SIGINT) and "steps are kept" in err and "Traceback" not in err
     assert not output.exists()
 
 
@@ -188,4 +192,4 @@ def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
     command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode in (130, -signal.SIGINT), done.stderr
-    assert "rows are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr
+    assert "steps are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr

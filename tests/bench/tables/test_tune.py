@@ -9,15 +9,16 @@ import jax
 import numpy as np
 import pytest
 
+from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.normals.normal_sets import NormalSet, axes, from_arrays, hemisphere, playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.tune.expected_errors import Normals, smooth_objective
 from normalbench.bench.tables.tune.halves import halves_of
 from normalbench.bench.tables.tune.tuning import Measure, Tuned, fitted, spreads, wanted_bits
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
+from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals import best_fit
-from normalbench.encodings.storage import STORAGES, storage_of
+from normalbench.encodings.storages.storage import STORAGES, storage_of
 
 FINE = "rgb8_12_12"
 
@@ -195,7 +196,7 @@ def test_the_gain_is_of_the_held_out_half(run):
     held = halves_of(playground(), 5, by_tiles=False).held_out
     assert held.count == rows["psnr_db"]["held_out"]
     for side, encoding, storage in (("published", "encoding", "storage"), ("tuned", "tuned_encoding", "tuned_storage")):
-        (codec,) = quality.codecs_named(rows["psnr_db"][encoding], rows["psnr_db"][storage], "nearest")
+        (codec,) = codecs_named(rows["psnr_db"][encoding], rows["psnr_db"][storage], "nearest")
         row = quality.measure(quality.Case(codec, held, "jax"))
         for figure in ("psnr_db", "angle_mean_deg", "angle_max_deg"):
             assert rows[figure][side] == pytest.approx(row[figure], rel=1e-9), (figure, side)
@@ -247,7 +248,7 @@ def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
     rows, err = rows_of(run, "best_fit", "--storage", "rgba8_snorm", "--table", str(path))
     assert rows["psnr_db"]["gain"] > 5, rows["psnr_db"]
     assert rows["texels_changed"]["tuned"] > 10**5
-    (codec,) = quality.codecs_named(f"best_fit:table={path}", "rgba8_snorm", "nearest")
+    (codec,) = codecs_named(f"best_fit:table={path}", "rgba8_snorm", "nearest")
     held = halves_of(playground(), 0, by_tiles=True).held_out
     assert quality.measure(quality.Case(codec, held, "jax"))["psnr_db"] == pytest.approx(rows["psnr_db"]["tuned"])
     assert f"best_fit:table={path}" in err
@@ -257,7 +258,7 @@ def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
 def test_tuned_encodings_are_the_same_in_both_languages(tmp_path):
     np.save(tmp_path / "scales.npy", np.sqrt(best_fit.centres()))
     names = f"spherical:bias=0.35:scale=0.7,stereographic:scale=1.31,best_fit:table={tmp_path}/scales.npy"
-    for codec in quality.codecs_named(names, "rgba8,rg8_7_9,rgb8_13_11_snorm", "nearest"):
+    for codec in codecs_named(names, "rgba8,rg8_7_9,rgb8_13_11_snorm", "nearest"):
         if codec.fits:
             db = {b: quality.measure(quality.Case(codec, playground(), b))["psnr_db"] for b in ("jax", "glsl")}
             plain = replace(codec, encoding=ENCODINGS[codec.encoding.prefix])

@@ -9,8 +9,8 @@ from exact_codes import fibonacci, nearest_of, storage
 
 from normalbench.bench.worst_case.odd_codes import odd_codes
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import R11G11B10F, STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import R11G11B10F, STORAGES
 
 
 def test_the_octahedrons_border_is_there_twice():
@@ -73,7 +73,7 @@ def test_a_storages_numbers_are_what_it_gives_back(storage):
     import jax
     import jax.numpy as jnp
 
-    from normalbench.encodings.storage import store_number
+    from normalbench.encodings.storages.rounding import store_number
 
     for channel in range(storage.channels):
         if storage.bits[channel] == 32:

@@ -12,8 +12,8 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, degrees
 from normalbench.bench.worst_case.search import spread, worst_case
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codec import Codec
-from normalbench.encodings.storage import STORAGES
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
 
 
 def codec_of(encoding: str, where: str, rounding: str = "nearest") -> Codec:

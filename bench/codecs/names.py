@@ -1,0 +1,71 @@
+"""Codecs as they are named on the command line, checked before anything is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import jax
+import jax.numpy as jnp
+
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ...encodings.vec import Vec3
+from ..options.words import given_in
+from ..output.errors import UsageError, pick
+from .user_encodings import NoTwinError, encodings_named
+
+
+def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
+    """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
+    chosen = encodings_named(encodings)
+    return [
+        Codec(encoding, storage, rounding)
+        for storage in storages_named(storages)
+        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for encoding in chosen
+    ]
+
+
+def storages_named(names: str) -> list[Storage]:
+    """The storages of comma-separated names, also of numbers laid across channels by their bits. Raises UsageError."""
+    try:
+        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+    named = {name: storage for name, storage in made.items() if storage}
+    return pick("storage", names, {**STORAGES, **named, **given_in(names)})
+
+
+def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
+    """The codecs whose storage has room for their components, and a line for each that is left out.
+
+    Raises:
+        UsageError: none is left.
+    """
+    codecs = list(codecs)
+    fit = [codec for codec in codecs if codec.fits]
+    left_out = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
+    if not fit:
+        raise UsageError(left_out[0] if left_out else "nothing to measure")
+    return fit, left_out
+
+
+def check_twin(encoding: Encoding) -> None:
+    """Traces an encoding's Python half on one normal.
+
+    Raises:
+        UsageError: it raises, or its code has another size than it says; one line with its file.
+    """
+    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
+    where = encoding.glsl.with_suffix(".py")
+    try:
+        code = jax.eval_shape(encoding.encode, n, n)
+        size = encoding.components + encoding.sign_bits
+        if len(code) != size:
+            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
+        jax.eval_shape(encoding.decode, code, n)
+    except NoTwinError:
+        return
+    except Exception as error:  # whatever a user's own code raises
+        raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error

@@ -1,0 +1,118 @@
+"""What there is to choose from. Imports nothing heavy."""
+
+from __future__ import annotations
+
+from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
+from ...encodings.storages.depth_storage import DEPTH_STORAGES
+from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
+from ...gbuffer.layouts.presets import LAYOUTS
+from ...gbuffer.pipelines import PIPELINES
+from ...gbuffer.scenes.catalogue import SCENES
+from ..output.errors import pick
+
+# Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
+NORMAL_SETS = {
+    "sphere": "directions spread evenly over the sphere, seeded",
+    "hemisphere": "directions spread evenly over z >= 0, seeded",
+    "axes": "axis-aligned, both zeros, and a few units in the last place around",
+    "playground": "the scene of Pranckevicius' article rendered at 640 x 480, without its four lamp arms",
+}
+
+FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
+
+HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
+COLUMNS = ("kind", "name", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
+Row = dict[str, object]
+
+
+def _row(kind: str, name: str, title: str, **more: object) -> Row:
+    return dict.fromkeys(COLUMNS) | {"kind": kind, "name": name, "title": title} | more
+
+
+def _encodings() -> list[Row]:
+    return [
+        _row("encoding", e.name, e.title, domain=e.domain)
+        | {"components": f"{e.components}" + (" + sign" if e.sign_bits else ""), "from": e.citation}
+        for e in ENCODINGS.values()
+    ]
+
+
+def _storages() -> list[Row]:
+    return [
+        _row("storage", s.name, f"{s.title}, {s.kind}", components=str(s.channels))
+        | {"holds": f"{':'.join(map(str, s.bits))} bits"}
+        for s in STORAGES.values()
+    ]
+
+
+def _depths() -> list[Row]:
+    return [
+        *(
+            _row("depth", d.name, d.title, holds=f"usually in {', '.join(d.storages)}") | {"from": d.citation}
+            for d in DEPTH_ENCODINGS.values()
+        ),
+        *(_row("depth storage", s.name, s.title, holds=f"{s.bits} bits") for s in DEPTH_STORAGES.values()),
+    ]
+
+
+def _frames() -> list[Row]:
+    return [
+        *(
+            _row("frame", f.name, f.title, holds=f"usually in {', '.join(f.storages)}") | {"from": f.citation}
+            for f in FRAME_ENCODINGS.values()
+        ),
+        *(
+            _row("frame storage", s.name, f"{s.title}, {s.kind}", holds=f"{':'.join(map(str, s.bits))} bits")
+            for s in FRAME_STORAGES.values()
+        ),
+        *(_row("frame set", name, title) for name, title in FRAME_SETS.items()),
+    ]
+
+
+def _normal_sets() -> list[Row]:
+    return [_row("normals", name, title) for name, title in NORMAL_SETS.items()]
+
+
+def _layouts() -> list[Row]:
+    return [
+        _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
+        | {"holds": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets), "from": layout.source}
+        for layout in LAYOUTS.values()
+    ]
+
+
+def _pipelines() -> list[Row]:
+    return [
+        _row("pipeline", p.name, p.title, holds=", ".join(stage.name for stage in p.stages)) | {"from": p.source}
+        for p in PIPELINES.values()
+    ]
+
+
+def _scenes() -> list[Row]:
+    return [_row("scene", scene.name, scene.title) for scene in SCENES.values()]
+
+
+def _light_buffers() -> list[Row]:
+    return [
+        _row("light buffer", light.name, light.title, bytes_per_pixel=light.bytes_per_pixel)
+        | {"holds": f"up to {light.limit:.6g}, by {HOW[light.blend]}", "from": light.encoding.citation}
+        for light in LIGHT_BUFFERS.values()
+    ]
+
+
+KINDS = {
+    "encodings": _encodings,
+    "storages": _storages,
+    "depths": _depths,
+    "frames": _frames,
+    "normals": _normal_sets,
+    "layouts": _layouts,
+    "pipelines": _pipelines,
+    "scenes": _scenes,
+    "lights": _light_buffers,
+}
+
+
+def listing(what: str) -> list[Row]:
+    """Rows for some of KINDS (comma-separated) or "all". Raises UsageError."""
+    return [row for rows in pick("list", what, KINDS) for row in rows()]

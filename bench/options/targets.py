@@ -1,0 +1,61 @@
+"""Render targets and scenes as they are asked for: sizes, samples and counts, checked against the device."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TypeVar
+
+from ...gbuffer.gl.device import Device
+from ...gbuffer.scenes.setting import Setting
+from ..output.errors import UsageError
+from .counts import check_seed, checked_sides, in_range
+
+# A pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
+MAX_SAMPLES = 2**25
+MAX_OBJECTS, MAX_LIGHTS = 100_000, 10_000
+TARGETS = {"1": 1, "2": 2}
+SHADOWS = {"on": True, "off": False}
+
+T = TypeVar("T")
+
+
+def check_scale(scale: float) -> None:
+    """Raises UsageError for what is no share of a size."""
+    if not 0.05 <= scale <= 1:
+        raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
+
+
+def checked_setting(objects: int, lights: int, seed: int) -> Setting:
+    """The scenes' setting. Raises UsageError for counts that no scene has."""
+    in_range("--objects", objects, 1, MAX_OBJECTS)
+    in_range("--lights", lights, 0, MAX_LIGHTS)
+    check_seed(seed)
+    return Setting(objects, lights, seed)
+
+
+def checked_target(size: str, samples: int, frames: int, device: Device) -> tuple[tuple[int, int], int]:
+    """The size, and the samples a pixel that the device gives. Raises UsageError for what is beyond it."""
+    in_range("--samples", samples, 1, 64)
+    sides, given = checked_sides(size, device.max_size, f"on {device.renderer}"), device.given_samples(samples)
+    _check_budget(sides, given * frames)
+    return sides, given
+
+
+def _check_budget(size: tuple[int, int], samples: int) -> None:
+    """Raises UsageError where frames of this size, with all their samples, are too large to be held."""
+    if math.prod(size) * samples > MAX_SAMPLES:
+        raise UsageError(
+            f"--size {size[0]}x{size[1]}: with samples and frames {math.prod(size) * samples} in all; "
+            f"the most is {MAX_SAMPLES} (2^25)"
+        )
+
+
+def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
+    """What could be made; the rest is named on standard error. Raises UsageError where nothing is left."""
+    reasons = list(dict.fromkeys(complaints))
+    if not made:
+        raise UsageError(reasons[0] if reasons else "nothing to measure")
+    for reason in reasons:
+        print(f"normalbench: left out: {reason}", file=sys.stderr)
+    return made

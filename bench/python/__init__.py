@@ -1,0 +1,1 @@
+"""What `import normalbench` offers: tables as functions, and codecs on arrays."""

@@ -1,0 +1,1 @@
+"""Results folders, and what changed between two of them."""

@@ -1,0 +1,79 @@
+"""What this machine has, which every results folder records."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import version
+from pathlib import Path
+
+import jax
+
+from ...encodings.storages.storage import STORAGES
+from ...gbuffer.gl.device import NoDeviceError, device
+from ..isa import isa, spirv
+
+ROUNDS = {
+    "nearest": "nearest",
+    "truncate": "truncate (nearest is rounded in the shader)",
+    "other": "neither nearest nor truncate (both are rounded in the shader)",
+}
+PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan")
+
+
+def _cpu() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+        return names[0] if names else platform.processor()
+    except OSError:
+        return platform.processor() or platform.machine()
+
+
+def machine() -> dict[str, str]:
+    """What a result depends on: versions, processor, JAX's devices and the GL device, by name."""
+    facts = {
+        "python": platform.python_version(),
+        "system": platform.platform(),
+        "processor": f"{_cpu()}, {os.cpu_count()} cores",
+        **{package: version(package) for package in PACKAGES},
+        "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
+    }
+    return facts | _gl() | _compilers()
+
+
+def _gl() -> dict[str, str]:
+    try:
+        gl = device()
+    except NoDeviceError as error:
+        return {"GL": str(error)}
+    return {
+        "GL": gl.renderer,
+        "GL version": gl.version,
+        "GL is software": "yes" if gl.is_software else "no",
+        "GL largest texture": str(gl.max_size),
+        "GL targets at once": str(gl.max_targets),
+        "GL samples a pixel": str(gl.max_samples),
+        **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
+    }
+
+
+def _compilers() -> dict[str, str]:
+    """What `cost` counts instructions by."""
+    glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
+    return {
+        "RADV": isa.driver_version(),
+        "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
+        "SPIR-V optimiser": optimiser.splitlines()[0] if optimiser else spirv.NO_OPTIMISER,
+    }
+
+
+def lacks_compilers() -> bool:
+    """Whether there is something that `cost --isa` would have to do without."""
+    return any("install" in value for value in _compilers().values())
+
+
+def examine() -> list[dict[str, str]]:
+    """Rows of name and value. "GL rounds ..." is the device's own conversion; where it is not what a codec asks for,
+    the shader rounds before the write."""
+    return [{"name": name, "value": value} for name, value in machine().items()]

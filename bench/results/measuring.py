@@ -1,0 +1,160 @@
+"""From options to finished rows: what is asked for, which of it is kept from before, and what is measured now."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+from ..options.option import fields_of
+from ..output.errors import UsageError
+from ..output.journal import Journal, journal
+from ..output.progress import progress
+from ..output.writing import is_special
+from ..tables.table import Measured, Row, Step, Table
+from .plain import key_text, plain
+
+# Beside a file of one of these, files that it refers to are read too.
+COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A table and what is asked of it, checked; nothing is measured yet."""
+
+    table: Table
+    options: Any
+    outputs: Any
+    steps: Sequence[Step]
+
+
+class Kept(Protocol):
+    """Rows that were measured before, and where new ones are kept."""
+
+    def find(self, table: str, step: Step) -> list[Row] | None:
+        """The rows of a step; None where they are not kept."""
+        ...
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
+        """Keep the rows of a step for good, and give them as they are read back. Raises UsageError."""
+        ...
+
+
+class Nothing:
+    """Nothing is kept."""
+
+    def find(self, table: str, step: Step) -> list[Row] | None:  # noqa: ARG002 # as of every Kept
+        return None
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:  # noqa: ARG002
+        return list(rows)
+
+
+def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
+    """What a table's options and outputs ask for.
+
+    Raises:
+        UsageError: an option that cannot be.
+        MissingError: this machine lacks what the table needs.
+    """
+    outputs = table.outputs() if outputs is None else outputs
+    steps = table.work.steps(options, outputs)
+    # Files are fingerprinted once they were read, which refuses what is too large.
+    found = files_of(options)
+    return Asked(table, options, outputs, [replace(step, key=step.key | found) for step in steps])
+
+
+def measured(ask: Asked, kept: Kept) -> Measured:
+    """The finished rows: those that are kept, and the others measured now and kept as they come."""
+    rows = [row for rows in measured_steps(ask, kept) for row in rows]
+    return Measured(ask.options, ask.outputs, ask.steps, ask.table.work.finish(rows))
+
+
+def measured_steps(ask: Asked, kept: Kept) -> list[list[Row]]:
+    """The rows of each step, not finished yet."""
+    name, work = ask.table.name, ask.table.work
+    found = {id(step): kept.find(name, step) for step in ask.steps}
+    missing = [step for step in ask.steps if found[id(step)] is None]
+    with progress(sum(step.ticks for step in missing)) as tick:
+        for step, rows in zip(missing, work.measure(missing, tick), strict=True):
+            found[id(step)] = kept.keep(name, step, rows)
+    return [found[id(step)] or [] for step in ask.steps]
+
+
+def files_of(options: Any) -> Row:
+    """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
+    words = [
+        word.strip()
+        for field in fields(options)
+        if fields_of(type(options))[field.name].option.files
+        for word in str(getattr(options, field.name) or "").split(",")
+    ]
+    found = {word: digest for word in words if word and (digest := _fingerprint(Path(word)))}
+    return {"files": found} if found else {}
+
+
+def _fingerprint(path: Path) -> str:
+    """Of a file and its companions: files of the same stem, and those that its kind refers to. Empty for no file."""
+    try:
+        if not path.is_file():
+            return ""
+        patterns = COMPANIONS.get(path.suffix.lower(), ())
+        beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
+        beside |= {other for other in (path.with_suffix(".py"),) if path.suffix == ".glsl" and other.is_file()}
+        digests = [_digest(one) for one in (path, *sorted(beside))]
+        return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
+    except (OSError, ValueError):
+        return ""
+
+
+def _digest(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").digest()
+
+
+class Beside:
+    """Rows kept in a journal beside an output file."""
+
+    def __init__(self, kept: Journal):
+        self.path, self._journal = kept.path, kept
+        self._rows = {line["step"]: line["rows"] for line in kept.lines if {"step", "rows"} <= set(line)}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def find(self, table: str, step: Step) -> list[Row] | None:
+        return self._rows.get(key_text(table, step.key))
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
+        text, kept = key_text(table, step.key), plain(rows)
+        self._journal.add({"step": text, "rows": kept})
+        self._rows[text] = kept
+        return kept
+
+
+@contextmanager
+def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
+    """Rows kept beside an output file while a command runs; they go once the block ends well. None where there is no
+    file to keep them beside.
+
+    Args:
+        work: sources and machine, by which rows may be kept.
+
+    Raises:
+        UsageError: another process writes the same output, it cannot be written, or it keeps other work's rows.
+    """
+    if output is None or is_special(output):
+        yield None
+        return
+    output = output.resolve()
+    with journal(output.with_name(f".{output.name}.rows")) as kept:
+        header = {"work": plain([work])[0]}
+        if not kept.lines:
+            kept.add(header)
+        elif kept.lines[0] != header:
+            raise UsageError(f"{kept.path} keeps rows of another version or machine; delete it, or name another file")
+        yield Beside(kept)
+        kept.path.unlink(missing_ok=True)

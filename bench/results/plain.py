@@ -1,0 +1,18 @@
+"""Rows and keys as JSON gives them back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from ..tables.table import Row
+
+
+def plain(rows: Sequence[Row]) -> list[Row]:
+    """Rows as JSON gives them back: NumPy's numbers are Python's."""
+    return json.loads(json.dumps(rows, default=lambda number: number.item()))
+
+
+def key_text(table: str, key: Row) -> str:
+    """What a table's step is known by."""
+    return json.dumps([table, key], sort_keys=True, default=lambda number: number.item())

@@ -1,0 +1,302 @@
+"""What `report` does: a run's page, its charts as files, or a text for a pull request."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.storage import STORAGES
+from ...reports.charts import drawings
+from ...reports.charts.pareto import Panel, Point, decibels
+from ...reports.page import embedded, markdown, page
+from ...reports.page.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
+from ...reports.page.sections import Section, Sheet, whole
+from ...reports.page.verdict import LEADING, is_count, is_number
+from ...reports.tables import LARGEST_WHOLE
+from ..metrics import published
+from ..output.writing import check_folder, check_writable, say, whole_file
+from ..results.runs import Done, Row, read_run, sources
+from ..tables.cost.codec_costs import Costs, LeftOutError, Where
+from ..tables.cost.measure import OPERATIONS, listing
+from ..tables.cost.sheets import article_rows, order_notes
+from ..tables.quality import sphere_maps
+from ..tables.registry import TABLES, table_of_run
+from ..tables.table import Role, Table
+
+PAGE, CHARTS, IMAGES, MAPS, LISTINGS = "report.html", "charts", "images", "sphere", "disassembly"
+KINDS = ("encoded", "decoded", "error", "power")
+# The article's methods, and the one that most people use today.
+PREFERRED = (*published.PSNR_DB, "octahedral")
+# Of disassemblies: which kernels, and how many bytes of them a page holds.
+STAGE, LISTED = "fragment", 2**20
+# Rows that another version wrote, or somebody's hand.
+UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
+
+
+def report_command(folder: Path, as_markdown: bool, output: Path | None) -> None:
+    """Write a run's page and charts, or a text for a pull request; the run's own files stay as they are."""
+    done = read_run(folder)
+    if not as_markdown:
+        say(f"{write_report(folder, done, output or folder / PAGE)}\n")
+        return
+    if output:
+        check_writable(output)
+    text = markdown.markdown(gathered(folder, done))
+    if not output:
+        say(text)
+        return
+    with whole_file(output) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def write_report(folder: Path, done: Done, target: Path, charts: str | None = CHARTS) -> Path:
+    """The page, and beside it a folder of its charts unless `charts` is None.
+
+    Returns:
+        the page's path.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    check_writable(target)
+    with tempfile.TemporaryDirectory(prefix="normalbench-") as other:
+        beside = target.parent / charts if charts else Path(other)
+        check_folder(beside)
+        run = gathered(folder, done)
+        # Pictures are packed while charts are drawn; either takes a core for seconds.
+        with ThreadPoolExecutor(1) as pool:
+            packing = pool.submit(embedded.gallery, run)
+            svgs, failed = _drawn(run, beside)
+            gallery = packing.result()
+    with whole_file(target) as partial:
+        partial.write_text(page.html(run.with_remarks(failed), svgs, gallery), encoding="utf-8")
+    return target
+
+
+def _drawn(run: Found, folder: Path) -> tuple[dict[str, str], list[str]]:
+    """Every chart's SVG by name, and a sentence for each that cannot be drawn."""
+    svgs, failed = {}, []
+    for drawing in page.drawings(run):
+        try:
+            svgs[drawing.name] = _written(drawing, folder)
+        except UNEXPECTED as error:
+            failed.append(f"The chart {drawing.name!r} cannot be drawn from these rows: {type(error).__name__}.")
+    return svgs, failed
+
+
+def _written(drawing: drawings.Drawing, folder: Path) -> str:
+    """A chart as files of either format; gives the SVG."""
+    svg, png = (folder / f"{drawing.name}.{ending}" for ending in ("svg", "png"))
+    with whole_file(svg) as vectors, whole_file(png) as pixels:
+        drawings.write(drawing, (vectors, "svg"), (pixels, "png"))
+    return svg.read_text(encoding="utf-8")
+
+
+def gathered(folder: Path, done: Done) -> Found:
+    """Everything that a page shows of a run; nothing is measured."""
+    tables = {str(plain_text(name)): _clean(rows) for name, rows in done.tables.items()}
+    facts = plain_text(done.facts)
+    remarks: list[str] = []
+    unknown = [name for name in tables if name not in TABLES]
+    if unknown:
+        remarks.append(f"This version does not know these tables, which are in the run's folder: {', '.join(unknown)}.")
+    if facts.get("sources") != sources():
+        remarks.append("Other sources measured this run than draw it: what columns mean may have changed since.")
+    quality = tables.get("quality", [])
+    found = Found(
+        name=str(plain_text(folder.resolve().name)),
+        facts=facts,
+        tables=tables,
+        steps=len(done.steps),
+        domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
+        preferred=[CodecKey(name, published.STORAGE, "nearest") for name in PREFERRED],
+        pictures=list(_pictures(folder / IMAGES, quality)),
+        originals=_originals(folder / IMAGES, quality),
+        maps=list(_maps(folder / MAPS, quality)),
+        fronts=list(_fronts(tables, remarks)),
+        listings=_listings(folder / LISTINGS, tables.get("cost", [])),
+        order=_order(folder / LISTINGS, tables.get("cost", [])),
+        remarks=remarks,
+    )
+    asked = _asked(facts)
+    shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
+    return replace(found, sections=[_section(found, table, table.name in asked, remarks) for table in shown])
+
+
+def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Section:
+    """A table as the page shows it."""
+    said, rows = table.section, found.tables.get(table.name, ())
+    return Section(
+        key=table.name,
+        title=said.title,
+        short=said.short,
+        intro=said.intro,
+        method=said.method,
+        parts=said.parts,
+        extras=said.extras,
+        rows=rows,
+        summary=_summary(table, rows, remarks),
+        conditions=tuple(column.name for column in table.of_role(Role.KEY, Role.HOW)),
+        not_shown=tuple(column.name for column in table.of_role(Role.RAW) if column.name != "skipped"),
+        says=lambda name: _definition(table, name),
+        drawings=_drawings(found, table, rows, remarks),
+        asked=asked,
+    )
+
+
+def _definition(table: Table, name: str) -> str:
+    column = table.column(name)
+    return f"{column.says} Unit: {column.unit}." if column and column.unit else column.says if column else ""
+
+
+def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Sheet]:
+    """A table in short; nothing where its rows are not what this version writes."""
+    try:
+        finished = table.work.finish([dict(row) for row in rows]) if rows else []
+        return [Sheet(sheet.title, sheet.rows) for sheet in table.work.summary(finished) if sheet.rows]
+    except UNEXPECTED:
+        remarks.append(f"The rows of {table.name} are not those of this version; they are shown as they are.")
+        return []
+
+
+def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[drawings.Drawing]:
+    try:
+        return list(table.work.drawings(found, whole(rows)))
+    except UNEXPECTED as error:
+        remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
+        return []
+
+
+def _clean(rows: Sequence[Row]) -> list[Row]:
+    """Flat rows of plain text and numbers, whatever they hold."""
+    return [{column: _flat(value) for column, value in plain_text(row).items()} for row in rows]
+
+
+def _flat(value: Any) -> Any:
+    is_odd = isinstance(value, list | dict) or (is_count(value) and abs(value) >= LARGEST_WHOLE)
+    return str(value) if is_odd else value
+
+
+def _asked(facts: Row) -> set[str]:
+    """The tables that a run was asked for, at any time."""
+    before = facts.get("before")
+    requests = [facts.get("request"), *(one.get("request") for one in before or () if isinstance(one, dict))]
+    named = [str(request.get("tables")) for request in requests if isinstance(request, dict)]
+    words = {word.strip() for text in named for word in text.split(",")}
+    found = {table.name for word in words if (table := table_of_run(word))}
+    return found | ({table.name for table in TABLES.values() if table.in_all} if "all" in words else set())
+
+
+def _files(folder: Path) -> Mapping[str, Path]:
+    """A folder's own files by name; none where there is no folder."""
+    try:
+        return {path.name: path for path in folder.iterdir() if path.is_file() and not path.is_symlink()}
+    except OSError:
+        return {}
+
+
+def _pictures(folder: Path, rows: Sequence[Row]) -> Iterator[PictureSet]:
+    """The pictures of each codec of the rows. A name is looked up, so that none leads out of the folder."""
+    there = _files(folder)
+    for normals, key in dict.fromkeys((str(row.get("normals")), CodecKey.of(row)) for row in rows):
+        stem = f"{normals}-{key.encoding}-{key.storage}" + ("" if key.rounding == "nearest" else f"-{key.rounding}")
+        files = {kind: there[name] for kind in KINDS if (name := f"{stem}-{kind}.png") in there}
+        if files:
+            yield PictureSet(key, normals, files)
+
+
+def _originals(folder: Path, rows: Sequence[Row]) -> dict[str, Path]:
+    there, sets = _files(folder), dict.fromkeys(str(row.get("normals")) for row in rows)
+    return {name: there[f"{name}-normals.png"] for name in sets if f"{name}-normals.png" in there}
+
+
+def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
+    there = _files(folder)
+    bits = {CodecKey.of(row): row["bits"] for row in rows if is_count(row.get("bits"))}
+    for key, count in bits.items():
+        path = there.get(sphere_maps.file_name(*key))
+        kept = sphere_maps.read_map(path) if path else None
+        if kept:
+            yield SphereMap(key, count, kept.mean_deg, kept.max_deg, kept.directions)
+
+
+def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
+    """Instructions of the last GPU family against errors of normals, of the first set, and of images; which codecs have
+    no place among them is added to the remarks."""
+    costs = [row for row in tables.get("cost", ()) if row.get("stage") == STAGE and is_number(row.get("instructions"))]
+    costs = drawings.for_drawing([row for row in costs if row.get("family") == costs[-1].get("family")])
+    lost: dict[str, dict[str, None]] = {}
+    for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
+        rows = [
+            row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
+        ]
+        where = str(rows[0].get(by)) if rows else ""
+        errors = {codec: row[LEADING] for row in rows if str(row.get(by)) == where and (codec := _codec(row))}
+        points = {o: list(_points(costs, o, errors, lost)) for o in OPERATIONS} if costs else {}
+        family = f"instructions for {costs[-1].get('family')}, fragment shaders" if costs else ""
+        unit = "instructions to {}, with its storage's"
+        panels = [Panel(f"{o}: {family}", unit.format(o), part) for o, part in points.items() if part]
+        if panels:
+            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
+    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _points(
+    costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
+) -> Iterator[Point]:
+    """Each codec whose cost is known; the others by the reason why not."""
+    known, where = Costs(costs), Where("isa", costs[-1].get("family"), STAGE)
+    for codec, error in errors.items():
+        try:
+            total = known.of(codec, where, operation, "instructions")
+        except LeftOutError as reason:
+            lost.setdefault(str(reason), {})[codec.name] = None
+            continue
+        if math.isfinite(error):
+            yield Point(codec.encoding.name, total.cost, error, codec.bits, is_starred=total.branches)
+
+
+def _codec(row: Row) -> Codec | None:
+    encoding, storage = ENCODINGS.get(str(row.get("encoding"))), STORAGES.get(str(row.get("storage")))
+    return Codec(encoding, storage, str(row.get("rounding"))) if encoding and storage else None
+
+
+def _last_family(folder: Path, rows: Sequence[Row]) -> tuple[str, Mapping[str, Path]]:
+    """The last GPU family of the rows, and the files that hold its kernels, by name."""
+    families = [str(row["family"]) for row in rows if row.get("family")]
+    known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
+    return (families[-1], _files(known[families[-1]])) if families and families[-1] in known else ("", {})
+
+
+def _order(folder: Path, rows: Sequence[Row]) -> list[str]:
+    """Where the last GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
+    family, there = _last_family(folder, rows)
+    try:
+        chosen = [row for row in rows if (row["family"], row["stage"]) == (family, STAGE) and row["encoding"]]
+        paths = [(row, there.get(listing(row, "")[0].name)) for row in chosen]
+        listed = [(row, path.read_text(encoding="utf-8", errors="replace")) for row, path in paths if path]
+        return order_notes(listed, article_rows(ENCODINGS, OPERATIONS))
+    except UNEXPECTED:
+        return []
+
+
+def _listings(folder: Path, rows: Sequence[Row]) -> dict[str, str]:
+    """The last GPU family's kernels, as far as a page holds them."""
+    family, there = _last_family(folder, rows)
+    listed, size = {}, 0
+    for name, path in sorted(there.items()):
+        if not name.startswith(STAGE):
+            continue
+        text = path.read_text(encoding="utf-8", errors="replace")
+        size += len(text)
+        if size > LISTED:
+            break
+        listed[f"{family}, {plain_text(path.stem)}"] = "\n".join(map(plain_text, text.expandtabs().splitlines()))
+    return listed

@@ -1,0 +1,31 @@
+"""The options of `run`: the tables, and what several of them take. Imports nothing heavy."""
+
+from __future__ import annotations
+
+from dataclasses import field, make_dataclass
+from typing import Annotated, Any
+
+from ..options.option import Field, Option, fields_of
+from ..tables.registry import TABLES
+
+
+def _shared() -> dict[str, Field]:
+    """The options that `run` takes, by their names in Python; of several tables' the first says what they are."""
+    found: dict[str, Field] = {}
+    for table in TABLES.values():
+        for name, one in fields_of(table.options).items():
+            if one.option.in_run:
+                found.setdefault(name, one)
+    return found
+
+
+def _made() -> type:
+    names = ", ".join(TABLES)
+    tables = Annotated[str, Option("--tables", f"{names}; comma-separated, or all.")]
+    typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default="all"))]
+    for name, one in _shared().items():
+        typed.append((name, Annotated[one.type | None, one.option], field(default=None)))
+    return make_dataclass("RunOptions", typed, frozen=True, kw_only=True)
+
+
+RunOptions = _made()

@@ -1,0 +1,96 @@
+"""A measured table as it is shown: for people on the terminal, for programs, and what is to be said of its rows."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from ...reports import tables
+from ..output.errors import UsageError
+from ..output.writing import check_writable, say, whole_file
+from ..tables.table import Measured, Role, Row, Sheet, Table
+
+FOR_PEOPLE = ("table", "markdown")
+# How wide a table in a file may be.
+FILE_WIDTH = 200
+
+
+def show(table: Table, done: Measured, format: str, output: Path | None) -> None:
+    """Write the rows to a file, or to standard output. Raises UsageError where they cannot be written."""
+    if output is None:
+        width = shutil.get_terminal_size((120, 40)).columns
+        say(written(table, done, format, width))
+        return
+    check_writable(output)
+    with whole_file(output) as partial:
+        partial.write_text(written(table, done, format, FILE_WIDTH, spares=False), encoding="utf-8")
+
+
+def written(table: Table, done: Measured, format: str, width: int, spares: bool = True) -> str:
+    """The rows as text; `spares` leaves out columns where the width does not do."""
+    if format not in FOR_PEOPLE:
+        return tables.written(done.rows, format)
+    return "\n".join(_sheet(sheet, format, width, spares) for sheet in sheets(table, done))
+
+
+def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
+    """The finished rows for people."""
+    if table.work.shown:
+        yield from table.work.shown(done)
+        return
+    groups: dict[object, list[Row]] = {}
+    for row in table.without_hidden(done.rows):
+        groups.setdefault(row[table.by] if table.by else None, []).append(row)
+    for rows in groups.values():
+        yield Sheet("", rows, table.drops(rows))
+
+
+def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
+    title = f"{sheet.title}\n\n" if sheet.title else ""
+    rows = tables.written(sheet.rows, format, width, sheet.drops if spares else ()) if sheet.rows else ""
+    return title + rows + "".join(f"{note}\n" for note in sheet.notes)
+
+
+def show_summary(table: Table, rows: Sequence[Row]) -> None:
+    """What people look at first, to standard output; every row of a table that has no summary."""
+    width = shutil.get_terminal_size((120, 40)).columns
+    for sheet in summary(table, rows):
+        say(f"\n{sheet.title}\n\n{tables.written(sheet.rows, 'table', width, sheet.drops)}")
+
+
+def summary(table: Table, rows: Sequence[Row]) -> list[Sheet]:
+    """A table's summary; the rows themselves where it has none."""
+    found = [sheet for sheet in table.work.summary(rows) if sheet.rows]
+    shown = table.without_hidden(rows)
+    return found or ([Sheet(table.section.title, shown, table.drops(shown))] if shown else [])
+
+
+def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) -> None:
+    """Why rows have no figures, each reason once, to standard error; not the `known` ones.
+
+    Raises:
+        UsageError: no row has any.
+    """
+    reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
+    told = [reason for reason in reasons if not any(one in reason for one in known)]
+    if told and not table.partial and all(row.get("skipped") for row in rows):
+        raise UsageError(told[0])
+    for reason in told:
+        rest = any(_has_figures(table, row) for row in rows if row.get("skipped") == reason)
+        what = "some of their figures" if rest else "figures"
+        print(f"normalbench: rows without {what}: {' '.join(reason.split())}", file=sys.stderr)
+
+
+def _has_figures(table: Table, row: Row) -> bool:
+    """Whether a row of a table that may have some figures has any."""
+    return table.partial and any(row.get(c.name) is not None for c in table.of_role(Role.FIGURE, Role.TIME))
+
+
+def say_lines(lines: Iterable[str]) -> bool:
+    """Lines to standard error; whether there are any."""
+    said = [" ".join(line.split()) for line in lines]
+    for line in said:
+        print(f"normalbench: {line}", file=sys.stderr)
+    return bool(said)

@@ -1,0 +1,101 @@
+"""What the command of a table does: measure, show the rows, write what else was asked for."""
+
+from __future__ import annotations
+
+import platform
+import sys
+import tempfile
+import time
+from contextlib import nullcontext
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from ..output.errors import MissingError, UsageError
+from ..output.writing import check_writable, say
+from ..results.measuring import Asked, Beside, Nothing, asked, beside, measured
+from ..results.plain import plain
+from ..results.runs import Done, facts_of, sources
+from ..tables.table import Measured, Row, Table
+from .showing import say_lines, say_skipped, show
+
+
+def table_command(
+    table: Table, options: Any, outputs: Any, format: str, output: Path | None, report: Path | None
+) -> int:
+    """Measure a table and write it. With -o a command that was stopped goes on where it was.
+
+    Returns:
+        the exit status: 1 where a row fails.
+
+    Raises:
+        UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
+    """
+    for path in filter(None, (output, report)):
+        check_writable(path)
+    with tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("") as folder:
+        ask = asked(table, options, in_folder(table, outputs, Path(folder)) if report else outputs)
+        table.work.check(outputs, ask.steps)
+        # Kept rows go once everything is written.
+        with beside(output, _work(table) if output else {}) as kept:
+            done = _measured(ask, kept)
+            failed = _show(table, done, format, output)
+            if report:
+                _write_page(table, done, Path(folder), report)
+    if lacking := list(table.work.lacking(done)):
+        raise MissingError("; ".join(lacking))
+    return int(failed)
+
+
+def in_folder(table: Table, outputs: Any, folder: Path) -> Any:
+    """Outputs with those that a run keeps in folders of its own, unless they are to be elsewhere."""
+    known = {field.name for field in fields(outputs)}
+    places = {name: folder / place for name, place in table.files.items() if name in known}
+    return replace(outputs, **{name: place for name, place in places.items() if getattr(outputs, name) is None})
+
+
+def _work(table: Table) -> Row:
+    """What kept rows must agree in to be taken again."""
+    return {"table": table.name, "sources": sources(), "machine": platform.platform()}
+
+
+def _measured(ask: Asked, kept: Beside | None) -> Measured:
+    if kept:
+        found = sum(kept.find(ask.table.name, step) is not None for step in ask.steps)
+        if found < len(kept):
+            other = f"{kept.path} keeps {len(kept)} steps of another {ask.table.name}"
+            raise UsageError(f"{other}; run that one, delete it, or name another file")
+        print(f"normalbench: {found} of {len(ask.steps)} steps were measured before", file=sys.stderr)
+    try:
+        return measured(ask, Nothing() if kept is None else kept)
+    except (KeyboardInterrupt, SystemExit):
+        _say_how_to_go_on(kept, len(ask.steps))
+        raise
+
+
+def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
+    if kept is not None:
+        print(f"normalbench: {len(kept)} of {total} steps are kept; the same command goes on", file=sys.stderr)
+    else:
+        print("normalbench: nothing is kept; with -o FILE a stopped command goes on", file=sys.stderr)
+
+
+def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:
+    """Write the rows and what goes with them; whether a row fails."""
+    work = table.work
+    say_skipped(table, done.rows, work.lacking(done))
+    say_lines(work.warnings(done.rows))
+    failed = say_lines(work.failures(done.rows))
+    show(table, done, format, output)
+    work.write(done, lambda _: None)
+    return failed
+
+
+def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> None:
+    from .report import write_report
+
+    rows = plain(list(done.rows))
+    facts = facts_of(sys.argv[1:]) | {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": True}
+    facts |= {"request": {"tables": table.name}}
+    steps = [{"table": table.name, "key": {}, "rows": rows}]
+    say(f"\nThe page: {write_report(folder, Done(facts, steps), target, charts=None)}\n")

@@ -1,0 +1,26 @@
+"""Rows as charts can draw them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ...reports.charts.drawings import for_drawing
+from ...reports.page.verdict import BACKENDS, is_number
+from .table import Row
+
+# Text that a chart reads and does not show.
+NOT_SHOWN = ("angle_counts", "ms_frame_each")
+
+
+def having(rows: Sequence[Row], *columns: str) -> list[Row]:
+    """Rows with a finite figure in each of the columns, for drawing."""
+    usable = [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
+    return for_drawing(usable, NOT_SHOWN)
+
+
+def one_backend(rows: Sequence[Row]) -> list[Row]:
+    """The rows of one back end: JAX's where it has some."""
+    backends = list(dict.fromkeys(row.get("backend") for row in rows))
+    chosen = next((b for b in backends if b in BACKENDS), backends[0] if backends else None)
+    return [row for row in rows if row.get("backend") == chosen]

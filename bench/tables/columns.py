@@ -1,0 +1,38 @@
+"""What the columns of tables mean, as a table."""
+
+from __future__ import annotations
+
+from ..output.errors import pick
+from .registry import TABLES
+from .table import Column, Row, Table
+
+
+def columns(names: str) -> list[Row]:
+    """A row for each column of the tables that comma-separated names stand for. Raises UsageError."""
+    return [_row(table, column) for table in pick("table", names, TABLES) for column in table.columns]
+
+
+def _row(table: Table, column: Column) -> Row:
+    return {
+        "table": table.name,
+        "column": column.name,
+        "role": str(column.role),
+        "unit": column.unit or None,
+        "better": column.better or None,
+        "option": f"--{column.option.replace('_', '-')}" if column.option else None,
+        "says": column.says,
+    }
+
+
+def explained(name: str) -> str:
+    """A table's columns for the manual, in Markdown: a line for each, with what it means."""
+    return "| column | meaning |\n|---|---|\n" + "".join(map(_line, TABLES[name].columns))
+
+
+def _line(column: Column) -> str:
+    ends = [f"Unit: {column.unit}." if column.unit else "", WAYS.get(column.better, "")]
+    ends.append(f"Needs `--{column.option.replace('_', '-')}`." if column.option else "")
+    return f"| `{column.name}` | {' '.join(filter(None, (column.says, *ends)))} |\n"
+
+
+WAYS = {"more": "More is better.", "less": "Less is better."}

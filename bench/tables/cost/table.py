@@ -1,0 +1,172 @@
+"""The cost table: what encoding and decoding cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from ...options.option import Encodings, Option, Plot, Seed
+from ..quality.table import COMMON
+from ..table import Column, Role, Section, Table
+
+KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
+
+
+@dataclass(frozen=True, kw_only=True)
+class CostOptions:
+    """What `cost` measures. Names are comma-separated."""
+
+    encoding: Encodings = "all"
+    isa: Annotated[bool, Option("--isa", "Instructions that compilers make of the GLSL; needs no GPU.")] = False
+    time: Annotated[bool, Option("--time", "Nanoseconds a megapixel on the GL device.")] = False
+    jax: Annotated[bool, Option("--jax", "Million normals a second in JAX.")] = False
+    article: Annotated[bool, Option("--article", "The figures of Pranckevicius' article next to them.")] = False
+    family: Annotated[
+        str,
+        Option("--family", "GPUs: polaris10, vega10, navi10, navi21, navi31; comma-separated, or all.", in_run=True),
+    ] = "all"
+    stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
+    operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
+    storage: Annotated[
+        str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True)
+    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
+    size: Annotated[
+        str | None,
+        Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),
+    ] = None
+    repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
+    count: Annotated[int, Option("--count", "Normals, for JAX and in uniform sets.")] = 2**20
+    seed: Seed = 0
+    normals: Annotated[
+        str, Option("--normals", "--plot: normal sets, comma-separated, or all; `normalbench list` shows them.")
+    ] = "playground"
+    error: Annotated[str, Option("--error", "--plot: psnr, mean or max, the largest angle.")] = "psnr"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CostOutputs:
+    """What `cost` writes beside its rows."""
+
+    disassembly: Annotated[
+        Path | None, Option("--disassembly", "Write what each family's compiler made into this folder.")
+    ] = None
+    plot: Plot = None
+
+
+def _count(name: str, says: str, drops: int = 0) -> Column:
+    return Column(name, says, better="less", drops=drops)
+
+
+COLUMNS = (
+    Column("measure", "isa: instructions; time: on the GL device; jax: in JAX; article: published figures.", KEY),
+    Column("encoding", "How a normal becomes a few numbers; empty in the rows of storages.", KEY),
+    Column("storage", "A storage's packing of bit fields into channels; empty in the rows of encodings.", KEY),
+    Column("operation", "encode or decode; pack or unpack.", KEY),
+    Column("stage", "The kind of shader.", KEY),
+    Column("family", "The GPU family that it was compiled for.", KEY),
+    _count(
+        "instructions",
+        "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
+        "conversion, quarter_rate, transcendental, scalar, memory and waiting add up to it where there is a "
+        "disassembly.",
+    ),
+    _count(
+        "issue_slots",
+        "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
+        "transcendental one issues once and runs beside.",
+    ),
+    _count("full_rate", "Instructions at the full rate.", 17),
+    _count("conversion", "Between floats and integers: at a quarter of the rate on Polaris and Vega.", 13),
+    _count(
+        "quarter_rate", "Products of 32-bit integers, and on Polaris fused multiply-adds, at a quarter of the rate.", 11
+    ),
+    _count(
+        "transcendental", "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside."
+    ),
+    _count("scalar", "Instructions once for all lanes.", 14),
+    _count("memory", "Loads, stores, interpolation, export.", 15),
+    _count("waiting", "Waits and hints about order.", 10),
+    _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
+    _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
+    _count(
+        "spirv_instructions",
+        "SPIR-V instructions after spirv-opt, loops unrolled: portable, and of vectors; they depend on the spelling. "
+        "Empty where a loop is left.",
+    ),
+    _count("vgprs", "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once.", 16),
+    _count("sgprs", "Scalar registers, more than the empty kernel's.", 8),
+    _count("spills", "Registers spilled to memory, more than the empty kernel's.", 9),
+    _count("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
+    Column("kernel_vgprs", "All vector registers of the kernel.", HOW, drops=6),
+    Column("kernel_sgprs", "All scalar registers of the kernel.", HOW, drops=5),
+    Column(
+        "kernel_latency",
+        "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts.",
+        HOW,
+        drops=3,
+    ),
+    Column(
+        "kernel_inverse_throughput",
+        "Cycles of the whole kernel by the driver's own model where much runs at once.",
+        HOW,
+        drops=4,
+    ),
+    Column("cycles", "Cycles a pixel that the article gives.", HOW),
+    Column(
+        "ns_per_megapixel",
+        "On the GL device: median of the differences to the empty pass, the operation `turns` times in the shader.",
+        TIME,
+        "ns",
+        "less",
+    ),
+    Column("millions_per_second", "Million normals a second, in JAX on all cores.", TIME, "", "more"),
+    Column("ceiling", "What adding up the input alone reaches, in the same unit.", TIME),
+    Column("spread", "Width of the median's 95 % interval.", TIME),
+    Column("turns", "How often the operation runs in the timed shader.", HOW),
+    Column("size", "Width and height of the target in pixels.", HOW),
+    Column("repeats", "Repetitions that the median is of.", HOW),
+    Column("software", "Whether the GL device is a software rasteriser.", HOW),
+    Column("clock", "What timed it.", HOW, drops=15),
+    Column("device", "What it was measured on.", HOW, drops=2),
+    Column("driver", "The compiler of the counts.", HOW, drops=1),
+    Column("compiler", "What made SPIR-V of the GLSL.", HOW, drops=1),
+    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+)
+ALSO = (
+    Column("what", "An encoding, or a storage's packing of bit fields into channels.", KEY),
+    Column("article", "The article's instruction slots: ps_3_0, up to four numbers each, scale and bias included."),
+    Column("spirv", "SPIR-V instructions after spirv-opt."),
+    Column("polaris*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
+    Column("vega*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
+    Column("navi*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
+    Column("slots", "The article's instruction slots: ps_3_0, up to four numbers each."),
+    Column("GeForce*", "The article's cycles on that GPU.", drops=18),
+    Column("Radeon*", "The article's cycles on that GPU.", drops=18),
+)
+PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
+
+TABLE = Table(
+    name="cost",
+    package=__package__ or "",
+    help="What encoding and decoding cost: instructions on five GPU families, and time; all of it by default.\n\n"
+    "Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.",
+    options=CostOptions,
+    outputs=CostOutputs,
+    columns=COLUMNS,
+    also=ALSO,
+    usual=({"isa": True, "encoding": ",".join(COMMON), "storage": PACKED},),
+    single={"isa": True, "encoding": "octahedral", "family": "navi21", "stage": "fragment", "storage": "rgba8"},
+    files={"disassembly": "disassembly"},
+    by="measure",
+    partial=True,
+    section=Section(
+        title="What it costs",
+        short="Cost",
+        intro="What a current compiler makes of each encoder and decoder, and whether it is worth it.",
+        method="A kernel around the encoding's own GLSL is compiled by Mesa's RADV for GPUs that need not be there, "
+        "less "
+        "an empty kernel that moves the same numbers, so that doing nothing costs exactly 0. Counts hold for one Mesa.",
+        extras=("disassembly",),
+    ),
+)

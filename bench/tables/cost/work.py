@@ -1,0 +1,279 @@
+"""How the cost table is measured and shown.
+
+JAX is imported only for what needs it: instructions from the cache are there sooner than it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import STORAGES, Storage, storage_of
+from ....gbuffer.defines.kernels import STAGES
+from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
+from ....reports.charts import pareto
+from ....reports.charts.drawings import Drawing
+from ...codecs.user_encodings import encodings_named
+from ...isa import isa, spirv
+from ...options import listing
+from ...options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
+from ...output.errors import MissingError, UsageError, pick
+from ...output.writing import check_folder, check_plot, whole_file
+from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from . import measure, sheets
+from .table import TABLE, CostOptions, CostOutputs
+
+MEASURES = ("isa", "time", "jax")
+
+
+def measures(options: CostOptions) -> list[str]:
+    """The measures asked for by name, or all of them."""
+    asked = [name for name in MEASURES if getattr(options, name)]
+    return asked or list(MEASURES)
+
+
+def packings(names: str) -> list[Packing]:
+    """What `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
+    try:
+        made = {word: storage_of(word) for word in map(str.strip, names.split(",")) if word not in PACKINGS}
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+    known = {**PACKINGS, **{word: packings_of(storage) for word, storage in made.items() if storage}}
+    return list(dict.fromkeys(packing for several in pick("storage", names, known) for packing in several))
+
+
+@dataclass
+class Costing:
+    """What is asked for, as values, and what this machine turns out to lack."""
+
+    options: CostOptions
+    encodings: list[Encoding]
+    packings: list[Packing]
+    operations: list[str]
+    stages: list[str]
+    families: list[str]
+    listed: list[tuple[Row, str]] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+    @property
+    def cases(self) -> list[measure.Case]:
+        """What is compiled or timed: encodings, and what packings add."""
+        return measure.cases(self.encodings, self.packings, self.operations)
+
+    @property
+    def drawn_storages(self) -> list[Storage]:
+        """The storages whose error can be measured. Raises UsageError where none is."""
+        found = dict.fromkeys(packing.storage for packing in self.packings if packing.storage)
+        if not found:
+            raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
+        return list(found)
+
+
+def costing(options: CostOptions) -> Costing:
+    """What the options name. Raises UsageError for what is unknown or out of range."""
+    in_range("--repeats", options.repeats, 2, MAX_REPEATS)
+    checked_count(options.count)
+    if "jax" in measures(options) and options.count > MAX_TIMED_COUNT:
+        raise UsageError(f"--count {options.count}: in JAX a count is at most {MAX_TIMED_COUNT} (2^28)")
+    check_seed(options.seed)
+    pick("error", options.error, pareto.ERRORS)
+    pick("normal set", options.normals, listing.NORMAL_SETS)
+    made = Costing(
+        options,
+        encodings_named(options.encoding),
+        packings(options.storage),
+        pick("operation", options.operation, {name: name for name in measure.OPERATIONS}),
+        pick("stage", options.stage, {name: name for name in STAGES}),
+        pick("family", options.family, {name: name for name in isa.FAMILIES}),
+    )
+    if measures(options) != ["isa"]:
+        from ...codecs.names import check_twin
+
+        for encoding in made.encodings:
+            check_twin(encoding)
+    return made
+
+
+def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
+    asked = costing(options)
+    _check(asked, outputs)
+    key: Row = {"encodings": [e.name for e in asked.encodings], "operations": asked.operations}
+    key |= {"packings": [packing.name for packing in asked.packings]}
+    keys = {
+        "isa": key | {"stages": asked.stages, "families": asked.families},
+        "time": key | {"size": options.size, "repeats": options.repeats},
+        "jax": key | {"count": options.count, "repeats": options.repeats},
+    }
+    made = [Step({"measure": name} | keys[name], Part(asked, name, MEASURED[name]), name) for name in measures(options)]
+    article = [Step({"measure": "article"} | key, Part(asked, "article", _article), "article")]
+    return made + (article if options.article else [])
+
+
+def _check(asked: Costing, outputs: CostOutputs) -> None:
+    """Raises UsageError for what cannot be written, before anything is measured."""
+    chosen = measures(asked.options)
+    check_plot(outputs.plot)
+    if outputs.disassembly:
+        check_folder(outputs.disassembly)
+        if "isa" not in chosen:
+            raise UsageError("--disassembly is of what compilers make; ask for --isa")
+    if outputs.plot:
+        if set(chosen) == {"jax"}:
+            raise UsageError("--plot draws instructions or time; ask for --isa or --time")
+        _ = asked.drawn_storages
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One measure of what is asked for."""
+
+    asked: Costing
+    name: str
+    rows: Callable[[Costing], Iterable[Row]]
+
+    def measured(self) -> list[Row]:
+        """Its rows; one with the reason where this machine lacks what it needs."""
+        try:
+            return list(self.rows(self.asked))
+        except MissingError as error:
+            self.asked.missing.append(str(error))
+            return [TABLE.empty() | {"measure": self.name, "skipped": str(error)}]
+
+
+def _nobody(_: str) -> None:
+    """For ticks that no bar shows."""
+
+
+def _isa(asked: Costing) -> list[Row]:
+    asked.listed = list(_listings(asked, asked.missing))
+    return [row for row, _ in asked.listed]
+
+
+def _listings(asked: Costing, missing: list[str]) -> Iterator[tuple[Row, str]]:
+    """Rows with their disassembly; from the cache once they were measured."""
+    return measure.isa_rows(asked.cases, asked.stages, asked.families, missing, _nobody)
+
+
+def _time(asked: Costing) -> Iterable[Row]:
+    from ...machine.devices import require_device
+    from ...options.targets import checked_target
+    from . import clocks
+
+    device = require_device()
+    usual = clocks.SOFTWARE_SIZE if device.is_software else clocks.SIZE
+    size, _ = checked_target(asked.options.size or usual, 1, 1, device)
+    return clocks.time_rows(device, asked.cases, size, asked.options.repeats, _nobody)
+
+
+def _jax(asked: Costing) -> Iterable[Row]:
+    from ...machine.devices import require_jax
+    from .jax_time import jax_rows
+
+    require_jax()
+    chosen = measure.cases(asked.encodings, (), asked.operations)
+    return jax_rows(chosen, asked.options.count, asked.options.repeats, _nobody)
+
+
+def _article(asked: Costing) -> list[Row]:
+    return sheets.article_rows((encoding.name for encoding in asked.encodings), asked.operations)
+
+
+MEASURED: dict[str, Callable[[Costing], Iterable[Row]]] = {"isa": _isa, "time": _time, "jax": _jax}
+
+
+def _warnings(rows: Sequence[Row]) -> list[str]:
+    return measure.static_notes(rows)
+
+
+def _lacking(done: Measured) -> list[str]:
+    return list(dict.fromkeys(reason for step in done.steps for reason in step.case.asked.missing))
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    """Families side by side where there are several."""
+    by_measure = {
+        name: [r for r in done.rows if r["measure"] == name and r["operation"]] for name in (*MEASURES, "article")
+    }
+    article = by_measure.pop("article")
+    listed = by_measure["isa"]
+    families = {row["family"] for row in listed}
+    for stage in dict.fromkeys(row["stage"] for row in listed):
+        part = [row for row in listed if row["stage"] == stage]
+        rows = sheets.isa_sheet(part, article) if len(families) > 1 else TABLE.without_hidden(part)
+        yield Sheet("", rows, TABLE.drops(rows))
+    if families and article:
+        yield Sheet("", (), notes=tuple(sheets.order_notes(_texts(done), article)))
+    for rows in (by_measure["time"], by_measure["jax"], sheets.article_sheet(article)):
+        if rows:
+            shown = TABLE.without_hidden(rows)
+            yield Sheet("", shown, TABLE.drops(shown))
+
+
+def _texts(done: Measured) -> list[tuple[Row, str]]:
+    """The disassembly of the rows, from the cache where they were measured before."""
+    asked = next((step.case.asked for step in done.steps if step.case.name == "isa"), None)
+    return [] if not asked else asked.listed or list(_listings(asked, []))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    first = next((row for row in rows if row["stage"]), None)
+    if first:
+        chosen = [row for row in rows if row["stage"] == first["stage"] and row["encoding"]]
+        names = dict.fromkeys(row["encoding"] for row in chosen)
+        sheet = sheets.isa_sheet(chosen, sheets.article_rows(names, measure.OPERATIONS))
+        yield Sheet(f"instructions, {first['stage']}, {first['driver']}; the article's are of ps_3_0", sheet)
+
+
+def _write(done: Measured, _: Tick) -> None:
+    if done.outputs.disassembly:
+        write_listings(done.outputs.disassembly, _texts(done))
+    if done.outputs.plot and not _plot(done) and not _lacking(done):
+        raise UsageError("--plot: there is nothing to draw; see why above")
+
+
+def _plot(done: Measured) -> bool:
+    from ...normals.normal_sets import NORMAL_SETS
+    from .plot import draw
+
+    options, asked = done.options, done.steps[0].case.asked
+    sets = [make(options.count, options.seed) for make in pick("normal set", options.normals, NORMAL_SETS)]
+    return draw(done.rows, asked.encodings, asked.drawn_storages, sets, options.error, done.outputs.plot)
+
+
+def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
+    """Each row's disassembly as a file, what it costs at its head, in a folder for each family."""
+    for path, text in (measure.listing(row, text) for row, text in listed if text):
+        with whole_file(folder / path) as partial:
+            partial.write_text(text, encoding="utf-8")
+
+
+def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
+    for at, front in enumerate(found.fronts):
+        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
+        said = (
+            "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
+        )
+        said += "another is no dearer, no worse and takes no more bits. The figures are in the tables."
+        yield Drawing(f"cost-{at}", title, said, partial(pareto.pareto_figure, front.panels, front.error))
+
+
+def _missing() -> str:
+    """Why `run` leaves the table out on this machine; empty where it does not."""
+    return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(lambda part: part.measured()),
+    shown=_shown,
+    summary=_summary,
+    warnings=_warnings,
+    write=_write,
+    drawings=_drawings,
+    lacking=_lacking,
+    missing=_missing,
+)

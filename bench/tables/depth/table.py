@@ -1,0 +1,98 @@
+"""The depth table: how far off a position is that was rebuilt from a stored depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import Backends, Images, Names, Option, Plot, Seed
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthOptions:
+    """What `depth` measures. Names and numbers are comma-separated; None stands for what is usual."""
+
+    depth: Annotated[str, Option("--depth", f"Depth codes, {Names}.")] = "all"
+    storage: Annotated[str | None, Option("--storage", f"Depth storages, {Names}. Default: each code's usual.")] = None
+    rebuild: Annotated[
+        str | None,
+        Option("--rebuild", "inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual."),
+    ] = None
+    near: Annotated[str, Option("--near", "Near planes, comma-separated.")] = "0.1,1"
+    far: Annotated[str, Option("--far", "Far planes, comma-separated.")] = "1000"
+    distance: Annotated[
+        str | None, Option("--distance", "Distances, comma-separated. Default: every power of ten.")
+    ] = None
+    fov: Annotated[float, Option("--fov", "Vertical field of view in degrees, of a 16:9 image.")] = 60.0
+    backend: Backends = "jax,glsl"
+    count: Annotated[int, Option("--count", "Points at each distance.")] = 2**14
+    seed: Seed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthOutputs:
+    """What `depth` writes beside its rows."""
+
+    images: Images = None
+    plot: Plot = None
+
+
+COLUMNS = (
+    Column("depth", "How a distance becomes a number.", KEY),
+    Column("storage", "The format that the number is stored in.", KEY),
+    Column("bits", "Bits of the stored depth.", drops=4),
+    Column("rebuilt", "How the position is found: along the eye's ray, or by the inverse projection.", KEY, drops=6),
+    Column("backend", "jax emulates the storage; glsl goes through the real target or depth buffer.", KEY),
+    Column("near", "The near plane.", KEY),
+    Column("far", "The far plane.", KEY, drops=7),
+    Column("ratio", "Far over near.", HOW),
+    Column("fov", "Vertical field of view.", HOW, "degrees"),
+    Column("distance", "Depths within a sixteenth of it; empty: spread evenly over the range.", KEY),
+    Column("count", "How many points were measured.", HOW),
+    Column(
+        "error_mean", "Mean distance between true and rebuilt position, in the unit of near and far.", better="less"
+    ),
+    Column("error_max", "The largest distance between true and rebuilt position.", better="less"),
+    Column("half_step", "How far half a step of the storage moves the position at worst.", HOW),
+    Column("bound", "How far half a step and float32 arithmetic can move the position at worst.", HOW),
+    Column("signs_lost", "Signs stored with the depth that came back wrong.", better="less", drops=3),
+    Column("device", "What it was measured on.", HOW, drops=1),
+    Column(
+        "rounded_by",
+        "emulation, the device's own conversion, or the shader where the device rounds otherwise.",
+        HOW,
+        drops=2,
+    ),
+    Column("seed", "The random seed.", HOW),
+    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+)
+ALSO = (
+    Column("at_*", "The largest position error at that distance.", better="less"),
+    Column("max_even", "The largest position error over points spread evenly over the range.", better="less"),
+    Column("mean_even", "The mean position error over the same points.", better="less", drops=5),
+    Column("max_*", "The largest position error at that distance.", better="less"),
+)
+
+TABLE = Table(
+    name="depth",
+    package=__package__ or "",
+    help="How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.\n\n"
+    "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "
+    "depths up to a sixteenth of it nearer or farther.",
+    options=DepthOptions,
+    outputs=DepthOutputs,
+    columns=COLUMNS,
+    also=ALSO,
+    usual=({"near": "0.1"},),
+    single={"depth": "linear", "backend": "jax", "near": "0.1"},
+    section=Section(
+        title="What depth loses",
+        short="Depth",
+        intro="A view-space position is rebuilt from the stored depth: how far off is it, at which distance?",
+        method="Points anywhere on the screen at each distance, within a sixteenth of it, and spread evenly over the "
+        "range. Errors are distances in the unit of the planes. z/w and reversed z/w go through real depth buffers.",
+    ),
+)

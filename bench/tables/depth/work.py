@@ -1,0 +1,295 @@
+"""How the depth table is measured and shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
+from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
+from ....encodings.position import Camera
+from ....encodings.storages.depth_storage import DEPTH_STORAGES
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import rendering
+from ....gbuffer.scenes.catalogue import SCENES
+from ....gbuffer.scenes.setting import Setting
+from ....reports.charts import pictures, plots
+from ....reports.charts.drawings import Drawing
+from ...machine.devices import require_device, require_jax
+from ...options.counts import check_seed, checked_numbers, in_range
+from ...options.targets import what_is_left
+from ...output.errors import UsageError, pick
+from ...output.writing import check_folder, check_plot, save_plot, whole_file
+from ..charts import having, one_backend
+from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from . import measure
+from .table import TABLE, DepthOptions, DepthOutputs
+
+# Nothing nearer or farther; float32 has room on both sides.
+NEAREST, FARTHEST = 1e-6, 1e9
+# Planes closer to each other than that leave nothing to measure between them.
+LEAST_RATIO = 1.01
+# Points of one code at all its distances: held at once, at some 200 bytes each.
+MAX_POINTS = 2**22
+CURVE, CURVE_COUNT = 33, 2**11
+SCENE, SIZE = SCENES["room"], (640, 480)
+
+
+def cases(options: DepthOptions) -> list[measure.Case]:
+    """One case for each code, way to the position, near and far plane, and back end.
+
+    Raises:
+        UsageError: unknown names, or numbers beyond what is possible.
+        MissingError: only GLSL is asked for and there is no GL device.
+    """
+    check_seed(options.seed)
+    if not 1 <= options.fov <= 170:
+        raise UsageError(f"--fov {options.fov:g}: degrees from 1 to 170")
+    cameras = [Camera(near, far, options.fov, measure.ASPECT) for near, far in _ranges(options)]
+    distances = {camera: _distances(options, camera) for camera in cameras}
+    in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
+    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    chosen = codecs(options)
+    require_jax()
+    if backends == ["glsl"]:
+        require_device()
+    return [
+        measure.Case(codec, way, backend, camera, distances[camera], options.count, options.seed)
+        for camera in cameras
+        for codec, way in chosen
+        for backend in backends
+    ]
+
+
+def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
+    """Codecs with the ways to their positions; those that cannot be are named on standard error."""
+    made: list[tuple[DepthCodec, str]] = []
+    complaints: list[str] = []
+    asked = None if options.rebuild is None else pick("rebuild", options.rebuild, {name: name for name in REBUILDS})
+    for encoding in pick("depth", options.depth, DEPTH_ENCODINGS):
+        names = ",".join(encoding.storages) if options.storage is None else options.storage
+        for storage in pick("depth storage", names, DEPTH_STORAGES):
+            codec = DepthCodec(encoding, storage)
+            if codec.misfit:
+                complaints.append(f"{codec.name}: {codec.misfit}")
+                continue
+            known = measure.ways(codec)
+            chosen = known[:1] if asked is None else [way for way in asked if way in known]
+            made += [(codec, way) for way in chosen]
+            if not chosen:
+                complaints.append(f"{codec.name}: inverse_projection works only for codes stored in a depth buffer")
+    return what_is_left(made, complaints)
+
+
+def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
+    """Every near plane with every far plane. Raises UsageError where they do not go together."""
+    nears, fars = _numbers("--near", options.near), _numbers("--far", options.far)
+    for far in fars:
+        for near in nears:
+            if far < LEAST_RATIO * near:
+                raise UsageError(f"--near {near:g} --far {far:g}: far is at least {LEAST_RATIO:g} times near")
+    return [(near, far) for far in fars for near in nears]
+
+
+def _distances(options: DepthOptions, camera: Camera) -> tuple[float | None, ...]:
+    """The distances asked for, or every power of ten; and None, the whole range."""
+    if options.distance is None:
+        powers = range(math.ceil(math.log10(camera.near) - 1e-9), math.floor(math.log10(camera.far) + 1e-9) + 1)
+        return (*(10.0**power for power in powers), None)
+    found = _numbers("--distance", options.distance)
+    for distance in found:
+        if not camera.near <= distance <= camera.far:
+            raise UsageError(f"--distance {distance:g}: not between near {camera.near:g} and far {camera.far:g}")
+    return (*found, None)
+
+
+def _numbers(option: str, text: str) -> tuple[float, ...]:
+    return checked_numbers(option, text, float, NEAREST, FARTHEST)
+
+
+def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
+    made = cases(options)
+    check_plot(outputs.plot)
+    if outputs.images:
+        _scene(outputs.images, made)
+    return [Step(_key(case), case, case.name) for case in made]
+
+
+def _key(case: measure.Case) -> Row:
+    key: Row = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "seed": case.seed}
+    key |= {"near": case.camera.near, "far": case.camera.far, "fov": case.camera.fov, "count": case.count}
+    return key | {"distances": list(case.distances)}
+
+
+def _write(done: Measured, tick: Tick) -> None:
+    """The pictures and the plot, where they were asked for."""
+    made = [step.case for step in done.steps]
+    chosen, outputs = _for_drawing(made), done.outputs
+    if outputs.images:
+        _write_pictures(chosen, _scene(outputs.images, made), outputs.images, tick)
+    if outputs.plot:
+        save_plot(outputs.plot, plots.depth_figure([row for case in chosen for row in _curve(case, tick)]))
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    rows = _beside(done.rows)
+    yield Sheet("", rows, TABLE.drops(rows))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    ranges = list(dict.fromkeys((row["near"], row["far"]) for row in rows))
+    for near, far in ranges:
+        lines: dict[tuple[Any, ...], Row] = {}
+        for row in rows:
+            if _is_at(row, near, far) and row["backend"] == rows[0]["backend"]:
+                line = {"depth": row["depth"], "storage": row["storage"]}
+                at = lines.setdefault((row["depth"], row["storage"], row["rebuilt"]), line)
+                at[f"at_{row['distance']:g}"] = row["error_max"]
+        if lines:
+            yield Sheet(f"the worst position error, near {near:g}, far {far:g}", list(lines.values()))
+
+
+def _is_at(row: Row, near: float, far: float) -> bool:
+    return (row["near"], row["far"]) == (near, far) and row["distance"] is not None and row["error_max"] is not None
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = one_backend(having(rows, "distance", "error_max", "near", "far", "fov"))
+    if usable:
+        said = "The largest distance between true and rebuilt position over the distance from the eye, both on "
+        said += "logarithmic scales, a line for each depth code in its storage. The figures are in the table."
+        yield Drawing("depth", "Position error over distance", said, partial(plots.depth_figure, usable))
+
+
+def _beside(rows: Sequence[Row]) -> list[Row]:
+    """A line for each code, camera, way and back end: the worst error at each distance, and of points spread evenly the
+    worst and the mean."""
+    lines: dict[tuple[object, ...], Row] = {}
+    names = ("depth", "storage", "bits", "rebuilt", "backend", "near", "far", "fov")
+    for row in rows:
+        line = lines.setdefault(tuple(row[name] for name in names), {name: _said(row[name]) for name in names})
+        if row["distance"] is not None:
+            line[f"max_{row['distance']:g}"] = row["error_max"]
+        else:
+            line |= {"max_even": row["error_max"], "mean_even": row["error_mean"], "signs_lost": row["signs_lost"]}
+            line |= {"count": row["count"], "rounded_by": row["rounded_by"], "device": row["device"]}
+    distances = sorted({row["distance"] for row in rows if row["distance"] is not None})
+    last = ("max_even", "mean_even", "signs_lost", "count", "rounded_by", "device")
+    columns = (*names, *(f"max_{distance:g}" for distance in distances), *last)
+    return [{column: line.get(column) for column in columns} for line in lines.values()]
+
+
+def _said(value: object) -> object:
+    """What was asked for as it was typed, where a figure would have its digits."""
+    return f"{value:g}" if isinstance(value, float) else value
+
+
+def _for_drawing(cases: Iterable[measure.Case]) -> list[measure.Case]:
+    """One case for each code, camera and way to the position: by GLSL where that was asked for."""
+    chosen = {(c.codec, c.camera, c.rebuilt): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
+    return [case for case in cases if case in chosen.values()]
+
+
+def _curve(case: measure.Case, tick: Callable[[str], None]) -> list[Row]:
+    """A case's rows at many distances, close to each other; by JAX where the device cannot."""
+    distances = np.geomspace(case.camera.near, case.camera.far, CURVE).tolist()
+    fine = replace(case, distances=tuple(distances), count=CURVE_COUNT)
+    rows = measure.measure(fine)
+    tick(case.name)
+    return measure.measure(replace(fine, backend="jax")) if rows[0]["skipped"] else rows
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A scene's depths.
+
+    Attributes:
+        depths: view depth, float32 of shape (height, width), row 0 on top; 0 where there is nothing.
+        fov: the camera's vertical field of view in degrees.
+    """
+
+    depths: np.ndarray
+    fov: float
+
+    def within(self, camera: Camera) -> np.ndarray:
+        """Which pixels lie between near and far, bool of shape (height, width)."""
+        return (self.depths >= np.float32(camera.near)) & (self.depths <= np.float32(camera.far))
+
+    def points(self, camera: Camera) -> measure.Points:
+        """The pixels' middles at the depths of what is seen there; what is not within the range is at its far end."""
+        height, width = self.depths.shape
+        x, y = (np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2
+        places = np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
+        depths = np.where(self.within(camera), self.depths, np.float32(camera.far))
+        return measure.Points(places, depths.ravel().astype(np.float32))
+
+
+def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
+    """What the pictures show, rendered in 32-bit floats.
+
+    Raises:
+        MissingError: there is no GL device.
+        UsageError: the folder cannot be written to, or a range leaves nothing to see.
+    """
+    device = require_device()
+    check_folder(folder)
+    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
+    scene = SCENE.make(Setting())
+    with rendering(device, PIPELINES["prepass"], scene, plan) as made:
+        made.draw()
+        seen = Seen(-made.gbuffer()[0][..., 2], scene.view.fov)
+    there = seen.depths[seen.depths > 0]
+    for camera in dict.fromkeys(case.camera for case in cases):
+        if not seen.within(camera).any():
+            raise UsageError(
+                f"--near {camera.near:g} --far {camera.far:g}: nothing of the pictures' scene, {SCENE.name}, lies "
+                f"there; its depths are {there.min():.3g} to {there.max():.3g}"
+            )
+    return seen
+
+
+def _write_pictures(cases: Iterable[measure.Case], scene: Seen, folder: Path, tick: Callable[[str], None]) -> None:
+    """Two pictures of each case, and for each range a sheet of them all."""
+    sheets: dict[str, dict[str, dict[str, np.ndarray]]] = {}
+    for case in cases:
+        camera = replace(case.camera, fov=scene.fov, aspect=SIZE[0] / SIZE[1])
+        points, covered = scene.points(camera), scene.within(camera)
+        found = _through(replace(case, camera=camera), points)
+        errors, positions = found.errors.reshape(covered.shape), found.positions.reshape(*covered.shape, 3)
+        two = pictures.depth_pictures(errors, positions, covered)
+        where = f"{SCENE.name}-{camera.near:g}-{camera.far:g}"
+        for kind, pixels in two.items():
+            name = f"{where}-{case.codec.name.replace('/', '-')}-{case.rebuilt}-{kind}.png"
+            with whole_file(folder / name) as partial:
+                pictures.write_png(partial, pixels)
+        caption = f"{case.codec.name} by {case.rebuilt}, {errors[covered].max():.1g}".replace("_", " ")
+        sheets.setdefault(where, {})[caption] = two
+        tick(case.name)
+    for where, rows in sheets.items():
+        with whole_file(folder / f"{where}.png") as partial:
+            pictures.write_png(partial, pictures.contact_sheet(rows, columns=2))
+
+
+def _through(case: measure.Case, points: measure.Points) -> measure.Measured:
+    try:
+        return measure.through(case, points)
+    except measure.UNMEASURABLE:
+        return measure.through(replace(case, backend="jax"), points)
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(measure.measure),
+    shown=_shown,
+    summary=_summary,
+    write=_write,
+    drawings=_drawings,
+)

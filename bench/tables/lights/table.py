@@ -1,0 +1,149 @@
+"""The lights table: what light buffers lose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import (
+    Images,
+    LightBuffers,
+    Lights,
+    LightTargets,
+    Objects,
+    Option,
+    Pipelines,
+    Plot,
+    Scenes,
+    Seed,
+    Size,
+)
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class LightsOptions:
+    """What `lights` measures. Names and numbers are comma-separated."""
+
+    experiment: Annotated[
+        str, Option("--experiment", "equal, random, banding, chromaticity, resolve, image; or all.")
+    ] = "all"
+    light_buffer: LightBuffers = "all"
+    light_targets: LightTargets = "all"
+    sums: Annotated[str, Option("--sum", "equal: what the lights sum to; random: the least.")] = "1,4"
+    counts: Annotated[str, Option("--counts", "equal, random: numbers of lights.")] = "8,64,256"
+    peaks: Annotated[str, Option("--peak", "banding: the light at a lamp's centre.")] = "0.1,1,2,3"
+    samples: Annotated[str, Option("--samples", "resolve: samples per pixel.")] = "1,2,4,8"
+    pipeline: Pipelines = "prepass"
+    scene: Scenes = "objects,gloss"
+    power: Annotated[str, Option("--power", "image: specular powers.")] = "1,47,256"
+    size: Size = "320x240"
+    objects: Objects = 200
+    lights: Lights = 64
+    seed: Seed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class LightsOutputs:
+    """What `lights` writes beside its rows."""
+
+    images: Images = None
+    plot: Plot = None
+
+
+COLUMNS = (
+    Column("experiment", "What was added up or drawn.", KEY),
+    Column("light_buffer", "The code that light is added up in.", KEY),
+    Column("light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", KEY),
+    Column("pipeline", "The order of passes that rendered it.", KEY),
+    Column("scene", "What was rendered.", KEY),
+    Column("power", "Specular power of every material.", KEY),
+    Column("size", "Width and height in pixels.", HOW, drops=3),
+    Column("samples", "Samples per pixel that the device gave.", KEY),
+    Column("samples_asked", "Samples per pixel that were asked for.", HOW),
+    Column("backend", "model: JAX; gl: the GL device.", KEY),
+    Column("sum", "What the lights add up to.", KEY),
+    Column("lights", "How many lights.", KEY),
+    Column("channel", "The channels of the light's colour that the row is of.", KEY),
+    Column("order", "In which order lights are added.", KEY),
+    Column("peak", "The light at a lamp's centre.", KEY),
+    Column("colour", "The lamp's colour.", KEY),
+    Column("model", "What is left of the sum by the model in JAX."),
+    Column("gl", "What is left of the sum on the GL device."),
+    Column("error", "What the model has too much or too little."),
+    Column("gl_error", "What the device has too much or too little."),
+    Column("model_rms", "Error over the pixels by the model, root mean square.", better="less"),
+    Column("gl_rms", "Error over the pixels on the device, root mean square.", better="less"),
+    Column("model_max", "Largest error over the pixels by the model.", better="less"),
+    Column("gl_max", "Largest error over the pixels on the device.", better="less"),
+    Column("bound", "What the error can be at most.", HOW),
+    Column("levels", "Different levels of a falloff that are left, by the model.", better="more"),
+    Column("gl_levels", "Different levels of a falloff that are left on the device.", better="more"),
+    Column("exact_step", "The largest step of the falloff itself.", HOW, drops=5),
+    Column("largest_step", "The largest step that is left, by the model.", better="less"),
+    Column("gl_largest_step", "The largest step that is left on the device.", better="less"),
+    Column("shown_step", "The largest step as displayed, by the model.", unit="1/255", better="less"),
+    Column("gl_shown_step", "The largest step as displayed, on the device.", unit="1/255", better="less"),
+    Column("stored_error", "Error of what was stored, by the model.", better="less"),
+    Column("gl_stored_error", "Error of what was stored, on the device.", better="less", drops=4),
+    Column(
+        "amplification",
+        "How far the error of a rebuilt highlight exceeds that of what was stored, by the model.",
+        better="less",
+    ),
+    Column("gl_amplification", "The same on the device.", better="less"),
+    Column("psnr_db", "The displayed image against 32-bit floats, every pixel, peak 1.", unit="dB", better="more"),
+    Column("held_psnr_db", "PSNR over pixels whose light the code can hold.", unit="dB", better="more"),
+    Column("beyond_percent", "Pixels whose light the code cannot hold.", unit="%", better="less"),
+    Column("mse", "Mean squared error of the displayed image.", better="less", drops=2),
+    Column("invalid", "Pixels that are NaN or infinite.", better="less", shown=False),
+    Column(
+        "code_psnr_db", "Antialiasing averaged by the hardware, against the right resolve.", unit="dB", better="more"
+    ),
+    Column("light_psnr_db", "Antialiasing after decoding, against the right resolve.", unit="dB", better="more"),
+    Column("aliased_psnr_db", "One sample, against the right resolve.", unit="dB", drops=6),
+    Column("wrong_percent", "Pixels that are off by more than 8/255.", unit="%", better="less"),
+    Column("rounds", "How this device rounds when it blends.", HOW),
+    Column("agree_percent", "Pixels that equal the model that rounds so.", HOW, "%", drops=7),
+    Column("device", "What it was measured on.", HOW, drops=1),
+    Column("seed", "The random seed.", HOW, drops=8),
+    Column("skipped", "Why the device's figures are missing.", Role.RAW, shown=False),
+)
+ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
+
+TABLE = Table(
+    name="lights",
+    package=__package__ or "",
+    help="What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.\n\n"
+    "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",
+    options=LightsOptions,
+    outputs=LightsOutputs,
+    columns=COLUMNS,
+    also=ALSO,
+    # A scene under few lights, at one specular power.
+    usual=(
+        {
+            "experiment": "equal,random,banding,chromaticity,image",
+            "peaks": "0.1,1",
+            "samples": "1",
+            "scene": "gloss",
+            "power": "47",
+            "lights": 6,
+        },
+    ),
+    single={"experiment": "equal", "light_buffer": "linear", "sums": "1", "counts": "64"},
+    by="experiment",
+    partial=True,
+    section=Section(
+        title="What a light buffer loses",
+        short="Light",
+        intro="Lights are added up one by one, and every sum is rounded: what is left of them in each light buffer?",
+        method="The model, in JAX, stands next to what the GL device does when it blends. equal: N equal lights of a "
+        "known "
+        "sum. random: coloured lights with falloff in three orders. banding: one lamp's falloff. chromaticity: a "
+        "highlight's colour rebuilt from one target. image: a frame against 32-bit floats.",
+        parts="experiment",
+    ),
+)

@@ -1,0 +1,227 @@
+"""The quality table: what each codec loses of the normals of a set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from ...options.counts import DEFAULT_COUNT
+from ...options.option import (
+    Backends,
+    Count,
+    Encodings,
+    Images,
+    Normals,
+    Option,
+    Reading,
+    Roundings,
+    Seed,
+    StorageNames,
+)
+from ..table import Column, Role, Section, Table
+
+KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
+
+
+@dataclass(frozen=True, kw_only=True)
+class QualityOptions(Reading):
+    """What `quality` measures. Names are comma-separated."""
+
+    encoding: Encodings = "all"
+    storage: StorageNames = "rgba8"
+    rounding: Roundings = "nearest"
+    normals: Normals = "playground"
+    backend: Backends = "jax,glsl"
+    count: Count = DEFAULT_COUNT
+    seed: Seed = 0
+    worst_case: Annotated[
+        bool, Option("--worst-case", "The true supremum and where it is, in float64; seconds a codec.", in_run=True)
+    ] = False
+    codes: Annotated[
+        bool,
+        Option("--codes", "Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.", in_run=True),
+    ] = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class QualityOutputs:
+    """What `quality` writes beside its rows."""
+
+    images: Images = None
+    maps: Annotated[
+        Path | None, Option("--maps", "Write the angle in each direction, an array for each codec, into this folder.")
+    ] = None
+
+
+def _supremum(name: str, says: str, role: Role = Role.FIGURE, unit: str = "", drops: int = 0) -> Column:
+    return Column(name, says, role, unit, "less" if name == "angle_sup_deg" else "", drops, option="worst_case")
+
+
+def _angle(name: str, says: str, drops: int = 0) -> Column:
+    return Column(name, says, unit="degrees", better="less", drops=drops)
+
+
+COLUMNS = (
+    Column("encoding", "How a normal becomes a few numbers.", KEY),
+    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    Column("rounding", "How the storage rounds.", KEY),
+    Column("normals", "The set of normals that was measured on.", KEY),
+    Column(
+        "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", KEY
+    ),
+    Column("bits", "Bits that the code occupies in its texel."),
+    Column("count", "How many normals were measured.", HOW, drops=13),
+    Column("background", "Pixels without a surface; they do not count.", HOW, drops=3),
+    Column("not_finite", "Normals of the set that were NaN or infinite; they do not count.", HOW, drops=4),
+    Column(
+        "invalid",
+        "Decodes that were NaN or infinite; each counts as the opposite direction.",
+        better="less",
+        shown=False,
+    ),
+    Column("mse", "Mean squared error of a normal's three components.", better="less", drops=8),
+    Column(
+        "psnr_db",
+        "Peak signal-to-noise ratio, peak 1, over covered pixels; decodes are compared as they come, not renormalised.",
+        unit="dB",
+        better="more",
+    ),
+    Column(
+        "psnr_article_db",
+        "PSNR as the article measures it: the difference rounded to 8 bits, background included.",
+        unit="dB",
+        better="more",
+    ),
+    _angle("angle_mean_deg", "Mean angle between normal and decode."),
+    _angle("angle_rms_deg", "Root of the mean squared angle.", drops=12),
+    _angle("angle_p99_deg", "99 % of the angles are below it.", drops=14),
+    _angle("angle_max_deg", "The largest angle that was met; the supremum is angle_sup_deg."),
+    _supremum(
+        "angle_sup_deg",
+        "The supremum: the largest angle of exact arithmetic, searched for in float64. Of a finite set it is the set's "
+        "maximum; it is empty where the set is larger than `domain`. float32's own error is in angle_max_deg only.",
+        unit="degrees",
+    ),
+    _supremum("sup_x", "The normal at the supremum, x.", RAW, drops=11),
+    _supremum("sup_y", "The normal at the supremum, y.", RAW, drops=10),
+    _supremum("sup_z", "The normal at the supremum, z.", RAW, drops=9),
+    _supremum(
+        "sup_found_by",
+        "How the supremum was found: `all corners` of all cells, `corners` of cells climbed over where there are more "
+        "than 2^24, `nearest codes` between points that are looked up, or `climbing` from the worst of many "
+        "directions.",
+        HOW,
+    ),
+    _supremum("sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"),
+    Column("angle_counts", "A histogram of the angles, `from:count`, eight bins an octave.", RAW, shown=False),
+    Column(
+        "effective_bits",
+        "log2 of the number of ideally placed codes that have this RMS angle; uniform sets only.",
+        unit="bits",
+        better="more",
+    ),
+    Column(
+        "domain",
+        "What bounds and suprema are over: sphere, or hemisphere (z >= 0); empty where the set is not uniform.",
+        HOW,
+        drops=7,
+    ),
+    Column("codes", "How many codes there are: every value that the stored numbers can take.", HOW),
+    Column("limit_mean_deg", "The least mean angle that this many codes can have.", HOW, "degrees"),
+    Column("limit_rms_deg", "The least RMS angle that this many codes can have.", HOW, "degrees"),
+    Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees"),
+    Column("reached_mean_percent", "The bound's share of the mean; 100 is ideal.", unit="%", better="more", drops=5),
+    Column("reached_rms_percent", "The bound's share of the RMS; 100 is ideal.", unit="%", better="more"),
+    Column("reached_max_percent", "The bound's share of the maximum; 100 is ideal.", unit="%", better="more", drops=6),
+    Column(
+        "below_limit",
+        "Set when the error is below the theoretical minimum, which means the measurement is wrong.",
+        Role.RAW,
+    ),
+    Column(
+        "codes_unused",
+        "Codes that no normal of `domain` is given, as far as was tried: the middle, edges and corners of each cell, "
+        "and "
+        "64 directions per code (4 for 24 bits, where three numbers and look-ups make it an upper bound).",
+        better="less",
+        option="codes",
+    ),
+    Column(
+        "codes_duplicate",
+        "All codes, used or not, less the distinct directions they decode to: how many could be saved.",
+        better="less",
+        option="codes",
+    ),
+    Column(
+        "codes_unstable",
+        "Used codes whose decoded normal, in float32, has another code.",
+        better="less",
+        option="codes",
+    ),
+    Column("exact", "Whether no error is left at all.", Role.RAW, shown=False),
+    Column("device", "What it was measured on.", HOW, drops=1),
+    Column(
+        "rounded_by",
+        "emulation; device, where the GL device rounds as asked; shader, where it does not and the shader rounds "
+        "first.",
+        HOW,
+        drops=2,
+    ),
+    Column("seed", "The random seed.", HOW),
+    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+)
+ALSO = (
+    Column(
+        "article_db",
+        "The article's figure: A. Pranckevicius, Compact Normal Storage for Small G-Buffers, 2010.",
+        unit="dB",
+    ),
+    Column("psnr_article_db_*", "PSNR as the article measures it, by that back end.", unit="dB", better="more"),
+    Column("psnr_db_*", "PSNR over covered pixels, peak 1, by that back end.", unit="dB", better="more"),
+    Column("mean", "Mean angle between normal and decode.", unit="degrees", better="less"),
+    Column("p99", "99 % of the angles are below it.", unit="degrees", better="less"),
+    Column("max", "The largest angle that was met; not the supremum.", unit="degrees", better="less"),
+)
+# The article's methods and what engines ship.
+COMMON = (
+    *("xyz", "xyz_renormalised", "xy", "xy_sign", "spherical", "spherical_lut", "spheremap", "spheremap_classic"),
+    *("cryengine3", "stereographic", "per_pixel_view", "octahedral", "octahedral_precise", "best_fit"),
+)
+# Of these, the ones with two numbers.
+TWO = (
+    *("xy", "xy_sign", "spherical", "spherical_lut", "spheremap", "spheremap_classic", "cryengine3"),
+    *("stereographic", "per_pixel_view", "octahedral"),
+)
+# Of these, what is worth more than 16 bits.
+WIDE = ("octahedral", "octahedral_precise", "spheremap", "spherical")
+SETS = "playground,hemisphere"
+
+TABLE = Table(
+    name="quality",
+    package=__package__ or "",
+    help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
+    "A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).",
+    options=QualityOptions,
+    outputs=QualityOutputs,
+    columns=COLUMNS,
+    also=ALSO,
+    usual=(
+        {"encoding": ",".join(COMMON), "normals": SETS, "storage": "rgba8"},
+        {"encoding": ",".join(TWO), "normals": SETS, "storage": "rg16f"},
+        {"encoding": ",".join(WIDE), "normals": SETS, "storage": "rgb10a2,rg16,rgb8_12_12"},
+    ),
+    single={"encoding": "octahedral", "backend": "jax"},
+    files={"images": "images", "maps": "sphere"},
+    renamed={"psnr_seed_db": "psnr_article_db"},
+    section=Section(
+        title="What normals lose",
+        short="Normals",
+        intro="Every encoding in its storage, on a scene and on uniform directions: how far is the decoded normal from "
+        "the one that went in?",
+        method="Each normal is encoded, stored as the render target stores it, decoded, and compared with itself. JAX "
+        "emulates the storage bit for bit; GLSL encodes in a fragment shader into the real target and decodes from it. "
+        "Sums are in 64 bits; an angle is atan2 of cross and dot product. Decodes are not renormalised for the PSNR.",
+        extras=("pictures", "angles", "sphere"),
+    ),
+)

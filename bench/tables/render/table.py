@@ -1,0 +1,140 @@
+"""The render table: what a codec, a layout or a light buffer does to the final image of a pipeline."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import (
+    Images,
+    Layouts,
+    LightBuffers,
+    Lights,
+    LightTargets,
+    Objects,
+    Option,
+    Pipelines,
+    Repeats,
+    Samples,
+    Scale,
+    Scenes,
+    Seed,
+    Shadow,
+    Size,
+)
+from ..quality.table import COMMON
+from ..table import Column, Role, Section, Table
+
+KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
+
+
+@dataclass(frozen=True, kw_only=True)
+class RenderOptions:
+    """What `render` measures. Names are comma-separated."""
+
+    pipeline: Pipelines = "hybrid"
+    layout: Layouts = None
+    encoding: Annotated[
+        str | None,
+        Option("--encoding", "Encodings or files to put into each layout, comma-separated, or all.", True, True),
+    ] = None
+    storage: Annotated[str | None, Option("--storage", "And their storages. Default: rgba8.", in_run=True)] = None
+    rounding: Annotated[str | None, Option("--rounding", "And how those round. Default: nearest.", in_run=True)] = None
+    light_buffer: LightBuffers = "rgba32f"
+    light_targets: LightTargets = "2"
+    scene: Scenes = "gloss"
+    shadow: Shadow = "on"
+    size: Size = "640x480"
+    samples: Samples = 1
+    scale: Scale = 1.0
+    objects: Objects = 200
+    lights: Lights = 64
+    frames: Annotated[int, Option("--frames", "Moments to average over. 0: as the scene has it.")] = 0
+    repeats: Repeats = 3
+    seed: Seed = 0
+    flip: Annotated[bool, Option("--flip", "FLIP as well, a perceptual difference; a second a row.", in_run=True)] = (
+        False
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RenderOutputs:
+    """What `render` writes beside its rows."""
+
+    images: Images = None
+
+
+COLUMNS = (
+    Column("pipeline", "The order of passes that rendered it.", KEY),
+    Column("layout", "Which bits of which targets hold what.", KEY),
+    Column("encoding", "How a normal becomes a few numbers.", KEY),
+    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    Column("rounding", "How the storage rounds.", KEY, drops=4),
+    Column("normal_bits", "Bits of the normal's code.", drops=9),
+    Column("light_buffer", "The code that light is added up in.", KEY),
+    Column("light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", KEY),
+    Column("scene", "What was rendered.", KEY),
+    Column("shadow", "Whether the sun's shadow map was drawn.", KEY),
+    Column("scale", "Size of inferred's buffers relative to the image's.", KEY),
+    Column("size", "Width and height in pixels.", HOW),
+    Column("samples", "Samples per pixel that the device gave, which may be more than asked for.", HOW),
+    Column("samples_asked", "Samples per pixel that were asked for.", HOW),
+    Column("lights", "Point lights.", HOW),
+    Column("objects", "Objects in the scene.", HOW),
+    Column("frames", "Moments that figures are averaged over.", HOW),
+    Column(
+        "bytes_per_pixel",
+        "G-buffer, light buffer (both copies of one that is read), depth and stencil (5 bytes), and 4 for linear depth "
+        "resolved from it where the layout keeps none; times the samples.",
+        unit="bytes",
+        better="less",
+    ),
+    Column("mse", "Mean squared error of the displayed image.", better="less", drops=8),
+    Column(
+        "psnr_db",
+        "The displayed image (clipped, sRGB, before 8 bits) against the same pipeline in 32-bit floats; every pixel, "
+        "peak 1.",
+        unit="dB",
+        better="more",
+    ),
+    Column("flip", "NVIDIA FLIP, a perceptual difference.", better="less", option="flip"),
+    Column(
+        "normal_psnr_db",
+        "PSNR of the normals that the G-buffer gives back, before anything is lit; covered pixels.",
+        unit="dB",
+        better="more",
+    ),
+    Column("rank", "Place by the image, among rows of one pipeline, scene, light buffer and shadow.", better="less"),
+    Column("normal_rank", "Place by the normals, among the same rows.", better="less"),
+    Column("invalid", "Pixels that are NaN or infinite; each counts as wrong as can be.", better="less", shown=False),
+    Column("ms_frame", "Milliseconds a frame, median over the repeats.", TIME, "ms", "less"),
+    Column("ms_frame_spread", "Distance of the frame times' quartiles.", TIME, "ms", drops=17),
+    Column("ms_*", "Milliseconds of that pass, median.", TIME, "ms", "less"),
+    Column("clock", "What timed it. A software rasteriser's times compare passes and are not a GPU's.", HOW, drops=2),
+    Column("device", "What it was measured on.", HOW, drops=1),
+    Column("seed", "The random seed of the scene.", HOW),
+    Column("exact", "Whether no error is left at all.", Role.RAW, shown=False),
+    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+)
+
+TABLE = Table(
+    name="render",
+    package=__package__ or "",
+    help="What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.\n\n"
+    "Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of "
+    "--encoding, --storage and --rounding the layouts are measured as they are.",
+    options=RenderOptions,
+    outputs=RenderOutputs,
+    columns=COLUMNS,
+    usual=({"encoding": ",".join(COMMON), "repeats": 0},),
+    single={"encoding": "octahedral"},
+    section=Section(
+        title="What the image says",
+        short="Image",
+        intro="The same codes in the G-buffer of a renderer that is exact otherwise: how far is the final image, as "
+        "displayed, from one in 32-bit floats?",
+        method="Each codec's image against that of the same pipeline with every target in 32-bit floats, clipped and "
+        "in "
+        "sRGB before 8 bits, every pixel, averaged over the moments of the scene.",
+    ),
+)

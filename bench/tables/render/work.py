@@ -1,0 +1,221 @@
+"""How the render table is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES, Pipeline
+from ....gbuffer.render import check
+from ....reports.charts import charts, pictures
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import check_twin, codecs_named
+from ...machine.devices import require_device, require_jax
+from ...metrics.images import require_flip
+from ...options.counts import MAX_REPEATS, in_range
+from ...options.layout_names import layouts_named
+from ...options.light_names import light_buffers_named
+from ...options.scene_names import scenes_named
+from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
+from ...output.errors import pick
+from ...output.writing import check_folder, whole_file, without
+from ..charts import having
+from ..table import Measured, Row, Sheet, Step, Tick, Work
+from .measure import Bench, Case, Drawn, described, ranked
+from .table import TABLE, RenderOptions, RenderOutputs
+
+MAX_FRAMES = 1000
+
+T = TypeVar("T")
+
+
+def layouts(options: RenderOptions) -> list[Layout]:
+    """The layouts asked for, each with every codec asked for in it; without codecs as they are.
+
+    Raises:
+        UsageError: an unknown name, a layout that cannot be, or nothing left.
+    """
+    chosen = layouts_named("fp32" if options.layout is None else options.layout)
+    if options.layout is not None and options.encoding is options.storage is options.rounding is None:
+        return chosen
+    # Half a codec is completed by what is usual.
+    codecs = codecs_named(
+        "all" if options.encoding is None else options.encoding,
+        "rgba8" if options.storage is None else options.storage,
+        "nearest" if options.rounding is None else options.rounding,
+    )
+    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
+        check_twin(encoding)
+    made: list[Layout] = []
+    complaints = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
+    for layout in chosen:
+        for codec in (codec for codec in codecs if codec.fits):
+            _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
+    return what_is_left(made, complaints)
+
+
+def cases(options: RenderOptions, device: Device) -> list[Case]:
+    """One case for each row; combinations that cannot be are named on standard error.
+
+    Raises:
+        UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+    """
+    in_range("--frames", options.frames, 0, MAX_FRAMES)
+    size, samples = checked_target(options.size, options.samples, max(options.frames, 1), device)
+    setting = checked_setting(options.objects, options.lights, options.seed)
+    in_range("--repeats", options.repeats, 0, MAX_REPEATS)
+    check_scale(options.scale)
+    plans = [
+        Plan(size, samples, layout, light, targets, shadows, options.scale)
+        for layout in layouts(options)
+        for light in light_buffers_named(options.light_buffer)
+        for targets in pick("number of light targets", options.light_targets, TARGETS)
+        for shadows in pick("shadow", options.shadow, SHADOWS)
+    ]
+    made: list[Case] = []
+    complaints: list[str] = []
+    for maker in scenes_named(options.scene):
+        for pipeline in pick("pipeline", options.pipeline, PIPELINES):
+            for plan in suited(device, pipeline, plans, complaints):
+                made.append(Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples))
+    return what_is_left(made, complaints)
+
+
+def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
+    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`."""
+    made: dict[Plan, None] = {}
+    for plan in plans:
+        own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
+        if not pipeline.has_gbuffer:
+            # Neither layouts nor light buffers reach it: one row for all of them.
+            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
+        elif len(pipeline.light_targets) == 1:
+            own = replace(own, light_targets=pipeline.light_targets[0])
+        try:
+            check(device, pipeline, own)
+        except LayoutError as error:
+            complaints.append(str(error))
+        else:
+            made[own] = None
+    return list(made)
+
+
+def _attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
+    try:
+        made.append(make())
+    except LayoutError as error:
+        complaints.append(str(error))
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A case, what measures it, and the folder for its pictures, if any."""
+
+    bench: Bench
+    case: Case
+    images: Path | None
+
+
+def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
+    require_jax()
+    device = require_device()
+    if options.flip:
+        require_flip()
+    made = cases(options, device)
+    if outputs.images:
+        check_folder(outputs.images)
+    bench = Bench(device, options.repeats, options.flip)
+    return [Step(_key(case, options), Shot(bench, case, outputs.images), case.name) for case in made]
+
+
+def _key(case: Case, options: RenderOptions) -> Row:
+    key = described(case.pipeline, case.plan, case.setting, case.asked)
+    key |= {"scene": case.maker.name, "codec": case.plan.layout.codec.name, "frames": case.frames}
+    return key | {"repeats": options.repeats, "flip": options.flip}
+
+
+def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+    for step in steps:
+        shot = step.case
+        row, drawn = shot.bench.measure(shot.case)
+        if shot.images and drawn:
+            _write_pictures(shot.images, shot.case, drawn, shot.bench.reference(shot.case)[0])
+        tick(step.name)
+        yield [row]
+
+
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["invalid"]:
+            what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
+            yield f"{what} on {row['scene']}: {row['invalid']} pixels are NaN or infinite"
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    as_asked = all(row["samples"] == row["samples_asked"] for row in done.rows)
+    rows = without(TABLE.without_hidden(done.rows), ("samples_asked",) if as_asked else ())
+    yield Sheet("", rows, TABLE.drops(rows))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    names = ("encoding", "storage", "psnr_db", "rank", "normal_psnr_db", "normal_rank")
+    groups: dict[tuple, list[Row]] = {}
+    for row in rows:
+        if row["psnr_db"] is not None:
+            groups.setdefault((row["scene"], row["pipeline"], row["layout"]), []).append(row)
+    for (scene, pipeline, layout), part in groups.items():
+        order = sorted(part, key=lambda row: -row["psnr_db"])
+        where = f"{scene} by {pipeline}" + (f" in layout {layout}" if layout not in (None, "fp32") else "")
+        shown = [{name: row[name] for name in names} for row in order]
+        yield Sheet(f"the image: {where}, dB as displayed", shown)
+
+
+def _write_pictures(folder: Path, case: Case, drawn: Drawn, reference: Drawn) -> None:
+    """The first frame, its reference and 16 times their difference."""
+    plan = case.plan
+    words = [case.maker.name, case.pipeline.name]
+    if case.pipeline.has_gbuffer:
+        words += [plan.layout.name, plan.layout.codec.name.replace("/", "-")]
+        words += [f"{plan.light_buffer.name}x{plan.light_targets}"]
+    words += [] if plan.shadows else ["unshadowed"]
+    for kind, pixels in pictures.render_pictures(drawn.shown, reference.shown).items():
+        with whole_file(folder / f"{'-'.join([*words, kind])}.png") as partial:
+            pictures.write_png(partial, pixels)
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = having(rows, "psnr_db", "normal_psnr_db")
+    for at, scene in enumerate(dict.fromkeys(row.get("scene") for row in usable)):
+        part = [row for row in usable if row.get("scene") == scene]
+        said = "PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The figures "
+        said += "are in the table below."
+        title = f"The image of {scene} and the normals it was lit by"
+        yield Drawing(f"image-{at}", title, said, partial(charts.image_chart, part))
+
+
+def _finish(rows: Sequence[Row]) -> list[Row]:
+    return ranked(list(rows))
+
+
+def _worst(step: Step) -> Any:
+    return step.case.bench.worst(step.case.case)
+
+
+WORK = Work(
+    steps=_steps,
+    measure=_measure,
+    finish=_finish,
+    shown=_shown,
+    summary=_summary,
+    warnings=_warnings,
+    drawings=_drawings,
+    worst=_worst,
+)

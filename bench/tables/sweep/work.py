@@ -1,0 +1,108 @@
+"""How the sweep is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.pipelines import PIPELINES
+from ....reports.charts import charts, plots
+from ....reports.charts.drawings import Drawing
+from ...machine.devices import require_device, require_jax
+from ...options.counts import MAX_REPEATS, checked_numbers, in_range
+from ...options.layout_names import layouts_named
+from ...options.light_names import light_buffers_named
+from ...options.targets import (
+    MAX_OBJECTS,
+    SHADOWS,
+    TARGETS,
+    check_scale,
+    checked_setting,
+    checked_target,
+    what_is_left,
+)
+from ...output.errors import pick
+from ...output.writing import check_plot, save_plot, without
+from ..charts import having
+from ..render.work import suited
+from ..table import Measured, Row, Sheet, Step, Tick, Work
+from . import measure
+from .measure import Point
+from .table import TABLE, SweepOptions, SweepOutputs
+
+SIZE, SOFTWARE_SIZE = "640x480", "320x240"
+
+
+def points(options: SweepOptions, device: Device) -> list[Point]:
+    """One point for each row; what does not suit a pipeline is named on standard error.
+
+    Raises:
+        UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+    """
+    auto = SOFTWARE_SIZE if device.is_software else SIZE
+    size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)
+    check_scale(options.scale)
+    in_range("--repeats", options.repeats, 1, MAX_REPEATS)
+    made: list[Point] = []
+    complaints: list[str] = []
+    for shadows in pick("shadow", options.shadow, SHADOWS):
+        for count in checked_numbers("--objects", options.objects, int, 1, MAX_OBJECTS):
+            setting = checked_setting(count, options.lights, options.seed)
+            for pipeline in pick("pipeline", options.pipeline, PIPELINES):
+                plans = [
+                    Plan(size, samples, layout, light, targets, shadows, options.scale)
+                    for layout in layouts_named(pipeline.usual_layout if options.layout is None else options.layout)
+                    for light in light_buffers_named(options.light_buffer)
+                    for targets in pick("number of light targets", options.light_targets, TARGETS)
+                ]
+                for plan in suited(device, pipeline, plans, complaints):
+                    made.append(Point(pipeline, plan, setting, options.repeats, options.samples))
+    return what_is_left(made, complaints)
+
+
+def _steps(options: SweepOptions, outputs: SweepOutputs) -> list[Step]:
+    require_jax()
+    device = require_device()
+    made = points(options, device)
+    check_plot(outputs.plot)
+    return [Step(point.key(device), (device, point), point.name) for point in made]
+
+
+def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+    for step in steps:
+        tick(step.name)
+        yield [measure.measure(*step.case)]
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    """Of the spreads only the whole frame's; no triangles of passes that draw the screen."""
+    rows = TABLE.without_hidden(done.rows)
+    hidden = {c for c in rows[0] if c.endswith("_spread") and c != "ms_frame_spread"}
+    rows = without(rows, hidden | {"triangles_linear_depth", "triangles_screen"})
+    yield Sheet("", rows, TABLE.drops(rows))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    names = ("pipeline", "layout", "objects", "shadow", "ms_frame", "ms_frame_spread", "triangles")
+    shown = [{name: row[name] for name in names} for row in rows]
+    yield Sheet(f"a frame of {rows[0]['objects']} objects, milliseconds by {rows[0]['clock']}", shown, ("layout",))
+
+
+def _write(done: Measured, _: Tick) -> None:
+    if done.outputs.plot:
+        save_plot(done.outputs.plot, plots.sweep_figure(done.rows))
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = [row for row in having(rows, charts.FRAME) if charts.passes_of(row)]
+    for at, objects in enumerate(dict.fromkeys(row.get("objects") for row in usable)):
+        part = [row for row in usable if row.get("objects") == objects]
+        said = "A bar for each pipeline, divided by pass: milliseconds a frame, medians. The figures are in the table."
+        title = f"What the milliseconds of a frame of {objects} objects go into"
+        yield Drawing(f"passes-{at}", title, said, partial(charts.passes_chart, part))
+
+
+WORK = Work(steps=_steps, measure=_measure, shown=_shown, summary=_summary, write=_write, drawings=_drawings)

@@ -1,0 +1,269 @@
+"""What a table is: everything that is a fact of it, stated once. Imports nothing heavy.
+
+A table is a folder with two files, and one line of `registry.py`:
+
+    table.py    TABLE, a Table: name, options, columns, page section. Every start of the program imports it.
+    work.py     WORK, a Work: how the rows are measured and shown. Only imported when the table is measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fnmatch import fnmatchcase
+from importlib import import_module
+from typing import Any
+
+Row = dict[str, Any]
+# Called once for each part of a step that is done.
+Tick = Callable[[str], None]
+
+
+class Role(StrEnum):
+    """What a column is for."""
+
+    KEY = "key"  # names the row
+    FIGURE = "figure"  # what was measured; gates and comparisons hold these
+    TIME = "time"  # what a clock says, which two runs never agree on
+    HOW = "how"  # under what conditions it was measured
+    RAW = "raw"  # what only a program reads
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Attributes:
+        name: what rows call it; `*` stands for a name that is only known when it is measured.
+        says: its definition, in one sentence, for the page, the manual and `normalbench columns`.
+        role: what it is for.
+        unit: of its values; empty for none.
+        better: "more" or "less"; empty where neither is better.
+        drops: in which order a narrow terminal leaves it out, from 1; 0 where it stays.
+        option: the option without which it is not measured.
+        shown: whether tables for people have it.
+    """
+
+    name: str
+    says: str
+    role: Role = Role.FIGURE
+    unit: str = ""
+    better: str = ""
+    drops: int = 0
+    option: str = ""
+    shown: bool = True
+
+    def is_called(self, name: str) -> bool:
+        """Whether a row's column is this one."""
+        return fnmatchcase(name, self.name)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table's part of the page.
+
+    Attributes:
+        title: its heading.
+        short: what the navigation calls it.
+        intro: the question that it answers.
+        method: how it is measured, in sentences.
+        parts: a column; rows that differ in it are shown as tables of their own.
+        extras: what the page's template shows beside the tables.
+    """
+
+    title: str
+    short: str
+    intro: str
+    method: str
+    parts: str = ""
+    extras: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoOutputs:
+    """A table that writes nothing but its rows."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is measured, kept and resumed at once: a row, or several.
+
+    Attributes:
+        key: everything that determines the rows except the machine and the sources; plain values.
+        case: what the table's own code measures.
+        name: what a progress bar says.
+        ticks: how many parts it has.
+    """
+
+    key: Row
+    case: Any
+    name: str
+    ticks: int = 1
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Rows for people to read, all with the same columns.
+
+    Attributes:
+        title: empty where the rows need none.
+        rows: the lines.
+        drops: the columns that a narrow terminal leaves out, the first first.
+        notes: lines below them.
+    """
+
+    title: str
+    rows: Sequence[Row]
+    drops: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A table as it was measured.
+
+    Attributes:
+        options, outputs: what was asked for.
+        steps: what was measured.
+        rows: the finished rows.
+    """
+
+    options: Any
+    outputs: Any
+    steps: Sequence[Step]
+    rows: Sequence[Row]
+
+
+def _same(rows: Sequence[Row]) -> list[Row]:
+    return list(rows)
+
+
+def _nothing(*_: Any) -> Iterator[Any]:
+    yield from ()
+
+
+def _none(*_: Any) -> None:
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Work:
+    """How a table is measured and shown. Everything here may import heavy packages.
+
+    Attributes:
+        steps: from options and outputs, both typed text, to steps. Raises UsageError and MissingError.
+        check: what of the outputs that a user asked for cannot be. Raises UsageError before anything is measured.
+        measure: the rows of each step, in the order of the steps.
+        finish: rows with what needs all of them: their order, their ranks.
+        shown: finished rows for people; None where they are shown as they are.
+        summary: what people look at first.
+        warnings: a line for each row that is measured but odd.
+        failures: a line for each row that makes the command fail.
+        write: the files that were asked for beside the rows. Returns lines that make the command fail.
+        drawings: charts of the page, from its contents and the table's rows.
+        worst: the normal that a step's codec turns the most; None where there is none.
+        lacking: what this machine turned out to lack; makes the exit status 3.
+        missing: why `run` leaves the table out on this machine; empty where it does not.
+    """
+
+    steps: Callable[[Any, Any], Sequence[Step]]
+    measure: Callable[[Sequence[Step], Tick], Iterator[list[Row]]]
+    check: Callable[[Any, Sequence[Step]], None] = _none
+    finish: Callable[[Sequence[Row]], list[Row]] = _same
+    shown: Callable[[Measured], Iterable[Sheet]] | None = None
+    summary: Callable[[Sequence[Row]], Iterator[Sheet]] = _nothing
+    warnings: Callable[[Sequence[Row]], Iterable[str]] = _nothing
+    failures: Callable[[Sequence[Row]], Iterable[str]] = _nothing
+    write: Callable[[Measured, Tick], Iterable[str] | None] = _none
+    drawings: Callable[..., Iterator[Any]] = _nothing
+    worst: Callable[[Step], Any] = _none
+    lacking: Callable[[Measured], Iterable[str]] = _nothing
+    missing: Callable[[], str] = str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Table:
+    """A table.
+
+    Attributes:
+        name: the command, the table of a run and the anchor on the page; one word.
+        package: where its code is: `__package__` of the file that makes it.
+        help: what the command's help says: a sentence, and a paragraph if need be.
+        options: the dataclass of what is measured; the command line, tests, gates and Python read it.
+        outputs: the dataclass of what may be written beside the rows.
+        columns: the columns of its rows, in order.
+        also: columns that only its summaries have.
+        section: its part of the page.
+        usual: what `run` measures of it where nothing else is asked for: sets of options.
+        single: options of a gate or a test that says nothing else.
+        files: by output, the folder or file of a run that holds it.
+        by: a column; for people rows that differ in it are tables of their own.
+        partial: whether a row that says why figures are missing may have others.
+        in_all: whether `run` measures it without being asked to.
+        old_names: what older runs call the table.
+        renamed: columns of older runs, by what they are called now.
+    """
+
+    name: str
+    package: str
+    help: str
+    options: type
+    columns: tuple[Column, ...]
+    section: Section
+    outputs: type = NoOutputs
+    also: tuple[Column, ...] = ()
+    usual: tuple[Mapping[str, Any], ...] = ({},)
+    single: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    by: str = ""
+    partial: bool = False
+    in_all: bool = True
+    old_names: tuple[str, ...] = ()
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def work(self) -> Work:
+        """How it is measured."""
+        return import_module(f"{self.package}.work").WORK
+
+    def empty(self, parts: Iterable[str] = ()) -> Row:
+        """A row without values; `parts` are what `*` stands for in the columns that have it."""
+        names = [[c.name.replace("*", part) for part in parts] if "*" in c.name else [c.name] for c in self.columns]
+        return dict.fromkeys(name for several in names for name in several)
+
+    def column(self, name: str) -> Column | None:
+        """The column that a row or a summary calls so; None where there is none."""
+        found = [column for column in (*self.columns, *self.also) if column.is_called(name)]
+        # `ms_frame` is itself and not one of `ms_*`.
+        return max(found, key=lambda column: len(column.name), default=None)
+
+    def of_role(self, *roles: Role) -> list[Column]:
+        """The columns of some roles."""
+        return [column for column in self.columns if column.role in roles]
+
+    def name_of(self, row: Mapping[str, Any]) -> str:
+        """What a row is called: its key columns' values."""
+        return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
+
+    def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
+        """The columns of rows that a narrow terminal leaves out, the first first."""
+        found = {name: column.drops for name in (rows[0] if rows else ()) if (column := self.column(name))}
+        return tuple(sorted((name for name, at in found.items() if at), key=lambda name: found[name]))
+
+    def without_hidden(self, rows: Iterable[Row]) -> list[Row]:
+        """Rows less the columns that are not for people."""
+        hidden = {column.name for column in self.columns if not column.shown}
+        return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
+
+
+def each(one: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
+    """A Work's `measure` for a table that is measured a case at a time."""
+
+    def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+        for step in steps:
+            rows = list(one(step.case))
+            tick(step.name)
+            yield rows
+
+    return measure

@@ -1,0 +1,101 @@
+"""The table of tangent frames: what their codes lose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import Backends, Names, Option, Seed
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class FramesOptions:
+    """What `frames` measures. Names are comma-separated; no storage: where each code usually lies."""
+
+    encoding: Annotated[str, Option("--encoding", f"Tangent frame codes, {Names}.")] = "all"
+    storage: Annotated[
+        str | None, Option("--storage", f"Tangent frame storages, {Names}. Default: each code's usual.")
+    ] = None
+    frames: Annotated[
+        str, Option("--frames", f"Tangent frame sets or mesh files, whose vertices are taken, {Names}.", files=True)
+    ] = "rotations"
+    backend: Backends = "jax,glsl"
+    count: Annotated[int, Option("--count", "Tangent frames in a uniform set.")] = 2**16
+    seed: Seed = 0
+
+
+def _angle(what: str, says: str, *drops: int) -> tuple[Column, ...]:
+    figures = zip(("mean", "rms", "max"), ("Mean", "Root mean square", "Largest"), drops, strict=True)
+    return tuple(
+        Column(f"{what}_{name}_deg", f"{title} {says}", unit="degrees", better="less", drops=at)
+        for name, title, at in figures
+    )
+
+
+COLUMNS = (
+    Column("encoding", "How a tangent frame becomes a few numbers.", KEY),
+    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    Column("frame_set", "The set of tangent frames that was measured on.", KEY),
+    Column(
+        "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", KEY
+    ),
+    Column("bits", "Bits that the code occupies in its texel."),
+    Column("count", "How many tangent frames were measured.", HOW, drops=13),
+    Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
+    Column("hands_lost", "Tangent frames that came back with the other handedness.", better="less"),
+    *_angle("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
+    *_angle("tangent", "angle between a tangent and its decode.", 10, 8, 15),
+    *_angle("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),
+    Column(
+        "effective_bits",
+        "log2 of the number of ideally placed codes that have this RMS rotation; uniform sets only.",
+        unit="bits",
+        better="more",
+    ),
+    Column("codes", "How many codes there are: every value that the stored numbers can take.", HOW, drops=4),
+    Column("limit_mean_deg", "The least mean rotation that this many codes can have.", HOW, "degrees", drops=7),
+    Column("limit_rms_deg", "The least RMS rotation that this many codes can have.", HOW, "degrees", drops=14),
+    Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees", drops=7),
+    Column("reached_mean_percent", "The bound's share of the mean; 100 is ideal.", unit="%", better="more", drops=6),
+    Column("reached_rms_percent", "The bound's share of the RMS; 100 is ideal.", unit="%", better="more"),
+    Column("reached_max_percent", "The bound's share of the maximum; 100 is ideal.", unit="%", better="more", drops=5),
+    Column(
+        "below_limit",
+        "Set when the error is below the theoretical minimum, which means the measurement is wrong.",
+        Role.RAW,
+        shown=False,
+    ),
+    Column("device", "What it was measured on.", HOW, drops=1),
+    Column(
+        "rounded_by",
+        "emulation, the device's own conversion, or the shader where the device rounds otherwise.",
+        HOW,
+        drops=2,
+    ),
+    Column("seed", "The random seed.", HOW, drops=3),
+    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+)
+
+TABLE = Table(
+    name="frames",
+    package=__package__ or "",
+    help="What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost "
+    "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "
+    "its uv.",
+    options=FramesOptions,
+    columns=COLUMNS,
+    single={"encoding": "smallest_three", "backend": "jax"},
+    section=Section(
+        title="What tangent frames lose",
+        short="Frames",
+        intro="A normal, a tangent and the handedness of the bitangent in one texel: how far is the decoded tangent "
+        "frame "
+        "turned?",
+        method="Rotations spread evenly by Haar's measure, half of them mirrored, through each code in its storage as "
+        "normals go. The angle is that of the rotation from the true tangent frame to the decoded one; lost handedness "
+        "is counted. The bound is the ball of rotations that is one code's share.",
+    ),
+)

@@ -1,0 +1,99 @@
+"""How the table of tangent frames is measured and shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ....encodings.catalogue import FRAME_ENCODINGS
+from ....encodings.codecs.frame_codec import FrameCodec
+from ....encodings.storages.storage import FRAME_STORAGES
+from ...machine.devices import require_device, require_jax
+from ...options.counts import check_seed, checked_count
+from ...options.targets import what_is_left
+from ...output.errors import pick
+from ..table import NoOutputs, Row, Sheet, Step, Work, each
+from . import measure
+from .sets import frame_sets_named
+from .table import FramesOptions
+
+
+def cases(options: FramesOptions) -> list[measure.Case]:
+    """One case for each row.
+
+    Raises:
+        UsageError: unknown names, a file that cannot be read, or nothing that fits.
+        MissingError: only GLSL is asked for and there is no GL device.
+    """
+    check_seed(options.seed)
+    count = checked_count(options.count)
+    chosen = codecs(options)
+    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    require_jax()
+    if backends == ["glsl"]:
+        require_device()
+    sets = frame_sets_named(options.frames, count, options.seed)
+    return [measure.Case(codec, frames, backend) for frames in sets for codec in chosen for backend in backends]
+
+
+def codecs(options: FramesOptions) -> list[FrameCodec]:
+    """The codecs asked for; those that do not fit are named on standard error."""
+    made, complaints = list[FrameCodec](), list[str]()
+    for encoding in pick("frame encoding", options.encoding, FRAME_ENCODINGS):
+        names = ",".join(encoding.storages) if options.storage is None else options.storage
+        for storage in pick("frame storage", names, FRAME_STORAGES):
+            codec = FrameCodec(encoding, storage)
+            if codec.misfit:
+                complaints.append(f"{codec.name}: {codec.misfit}")
+            else:
+                made.append(codec)
+    return what_is_left(made, complaints)
+
+
+def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:
+    return [Step(_key(case), case, case.name) for case in cases(options)]
+
+
+def _key(case: measure.Case) -> Row:
+    key: Row = {"codec": case.codec.name, "frame_set": case.frame_set.name, "backend": case.backend}
+    return key | {"count": case.frame_set.count, "seed": case.frame_set.seed}
+
+
+def _failures(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["below_limit"]:
+            wrong = f"{row['codes']} codes cannot do that: the measurement is wrong"
+            yield f"{row['encoding']}/{row['storage']}: {row['below_limit']}; {wrong}"
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by set and bits, the best codec first; those without figures last."""
+    sets = list(dict.fromkeys(row["frame_set"] for row in rows))
+    best: dict[tuple, float] = {}
+    for row in rows:
+        rms, codec = row["rotation_rms_deg"], _codec_of(row)
+        best[codec] = min(best.get(codec, math.inf), math.inf if rms is None else rms)
+    return sorted(rows, key=lambda row: (sets.index(row["frame_set"]), row["bits"], best[_codec_of(row)]))
+
+
+def _codec_of(row: Row) -> tuple:
+    return row["frame_set"], row["encoding"], row["storage"]
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    measured = [row for row in in_order(rows) if row["rotation_rms_deg"] is not None]
+    chosen = [row for row in measured if row["backend"] == measured[0]["backend"]]
+    names = ("encoding", "storage", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
+    names += ("effective_bits", "limit_rms_deg", "hands_lost")
+    if chosen:
+        title = f"tangent frames, degrees between the true and the decoded one, by {chosen[0]['backend']}"
+        yield Sheet(title, [{name: row[name] for name in names} for row in chosen])
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(lambda case: [measure.measure(case)]),
+    finish=in_order,
+    summary=_summary,
+    failures=_failures,
+)

@@ -1,0 +1,75 @@
+"""The table of `tune`: parameters fitted to normals, and what they gain on a half that was held out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from ...options.option import Option, Reading, Seed
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class TuneOptions(Reading):
+    """What `tune` fits, and to what."""
+
+    encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` shows them.")] = ""
+    normals: Annotated[str, Option("--normals", "A normal set or a file of one.", files=True)] = "playground"
+    storage: Annotated[str, Option("--storage", "A storage.")] = "rgba8"
+    parameter: Annotated[
+        str, Option("--parameter", "An encoding's own; bits, table; comma-separated. Default: all there are.")
+    ] = "all"
+    error: Annotated[str, Option("--error", "psnr, rms, mean or max, the largest angle.")] = "psnr"
+    count: Annotated[int, Option("--count", "Normals in a uniform set.")] = 2**20
+    seed: Seed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class TuneOutputs:
+    """What `tune` writes beside its rows."""
+
+    table: Annotated[Path | None, Option("--table", "Write a tuned look-up into this file, a NumPy array.")] = None
+
+
+COLUMNS = (
+    Column("encoding", "The encoding as published.", KEY),
+    Column("storage", "The texel format that it was tuned in.", KEY),
+    Column("normals", "The set of normals that it was tuned to.", KEY),
+    Column("error", "What the tuning makes small, or in decibels large.", KEY),
+    Column("fitted_to", "Normals that it was fitted to.", HOW),
+    Column("held_out", "Normals that were held out and measured on.", HOW),
+    Column("seed", "The random seed of uniform sets and of the hold-out.", HOW, drops=1),
+    Column("tuned_encoding", "What was found, by the name that --encoding takes.", HOW),
+    Column("tuned_storage", "What was found, by the name that --storage takes.", HOW),
+    Column("quantity", "A parameter, or a figure of the hold-out.", KEY),
+    Column("published", "Its value as published."),
+    Column("tuned", "Its value as tuned."),
+    Column("gain", "What tuning gained on the hold-out.", better="more"),
+    Column("unit", "Of the gain: dB, or percent of an angle.", HOW),
+    Column("glsl", "The macro that sets the parameter in GLSL.", HOW, drops=2),
+)
+
+TABLE = Table(
+    name="tune",
+    package=__package__ or "",
+    help="Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out."
+    "\n\nWhat is found has a name that --encoding and --storage take in every command, such as "
+    "stereographic:scale=1.31.",
+    options=TuneOptions,
+    outputs=TuneOutputs,
+    columns=COLUMNS,
+    usual=({"encoding": "stereographic"}, {"encoding": "spherical"}, {"encoding": "best_fit"}),
+    single={"encoding": "stereographic"},
+    in_all=False,
+    section=Section(
+        title="What tuning gains",
+        short="Tuning",
+        intro="Parameters fitted to one half of a set: what do they gain on the other half?",
+        method="Tuning starts with gradient descent on a smooth model of the quantisation error, then refines with a "
+        "search on the measured error. Images are split into two halves at random, by pixel; for look-up tables, by "
+        "tiles of 16 x 16. Figures are of the half that was held out.",
+    ),
+)

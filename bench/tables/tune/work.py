@@ -1,0 +1,238 @@
+"""How `tune` fits parameters to one half of a set and measures the other."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....encodings.catalogue import NAMES
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ...codecs.names import check_twin, storages_named
+from ...codecs.tuned_names import MARK
+from ...codecs.tuned_names import TABLE as LOOK_UP
+from ...codecs.user_encodings import encodings_named
+from ...machine.devices import require_jax
+from ...normals.normal_names import normal_sets_named
+from ...options.counts import check_seed, checked_count
+from ...output.errors import UsageError, pick
+from ...output.writing import check_writable, whole_file
+from ..quality import measure as quality
+from ..table import Measured, Sheet, Step, Tick, Work, each
+from .expected_errors import POWERS
+from .halves import Halves, halves_of
+from .table import TABLE, TuneOptions, TuneOutputs
+from .tuning import Tuned, fitted, fitted_table, free_components
+
+BITS = "bits"
+# Held-out figures by the goal that each is.
+FIGURES = {"psnr": "psnr_db", "mean": "angle_mean_deg", "rms": "angle_rms_deg", "max": "angle_max_deg"}
+# Of that a gain is less than what another half would say.
+NOTHING_DB = 0.005
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What is tuned: a codec, the names of its parameters that are, and whether its bits or its look-up are."""
+
+    codec: Codec
+    names: list[str]
+    has_bits: bool
+    has_table: bool
+
+
+@dataclass(frozen=True)
+class Side:
+    """A codec, as published or tuned, and its row on the held-out half."""
+
+    codec: Codec
+    row: Row
+
+
+@dataclass(eq=False)
+class Tuning:
+    """What is to be tuned to what, and once it is: the codec before and after, and its look-up."""
+
+    chosen: Chosen
+    halves: Halves
+    options: TuneOptions
+    table: Path | None
+    sides: tuple[Side, Side] | None = None
+    scales: np.ndarray | None = None
+
+    def measured(self) -> list[Row]:
+        """Fit to one half, and measure both codecs on the other."""
+        chosen, halves, goal = self.chosen, self.halves, self.options.error
+        self.scales = fitted_table(chosen.codec, halves.fitting, goal) if chosen.has_table else None
+        found = fitted(chosen.codec, halves.fitting, goal, chosen.names, chosen.has_bits)
+        codec = tuned_codec(chosen.codec, found, self.scales, self.table)
+        before, after = (Side(c, _measured(c, halves)) for c in (chosen.codec, codec))
+        self.sides = before, after
+        about = {"normals": halves.held_out.name, "error": goal, "seed": self.options.seed}
+        about |= {"fitted_to": len(halves.fitting), "held_out": halves.held_out.count}
+        return list(rows(before, after, chosen, found, about))
+
+
+def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
+    """One step. Raises UsageError for what cannot be tuned."""
+    encoding, table = options.encoding, outputs.table
+    if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
+        raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
+    chosen = chosen_of(encoding, options)
+    _one("error", pick("error", options.error, {name: name for name in POWERS}))
+    if table and not chosen.has_table:
+        raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
+    if table and set(str(table)) & {MARK, ","}:
+        raise UsageError(f"--table: {table} could not be named after best_fit:table=; a name without {MARK} and comma")
+    if table:
+        check_writable(table)
+    require_jax()
+    tuning = Tuning(chosen, _halves(chosen, options), options, table)
+    key: Row = {"codec": chosen.codec.name, "normals": tuning.halves.held_out.name, "error": options.error}
+    key |= {"parameter": options.parameter, "count": options.count, "seed": options.seed}
+    return [Step(key, tuning, chosen.codec.name)]
+
+
+def _write(done: Measured, _: Tick) -> None:
+    """The look-up, where it was asked for, and a line on how to use what was found."""
+    for tuning in (step.case for step in done.steps):
+        if tuning.sides:
+            if tuning.table and tuning.scales is not None:
+                _write_table(tuning.table, tuning.scales)
+            before, after = tuning.sides
+            _say_use(before, after, FIGURES[tuning.options.error], tuning.table, tuning.options.normals)
+
+
+def chosen_of(name: str, options: TuneOptions) -> Chosen:
+    """What an encoding's name and `--parameter` ask for. Raises UsageError where there is nothing of it."""
+    encoding = _one("encoding", encodings_named(name))
+    storage = _one("storage", storages_named(options.storage))
+    codec = Codec(encoding, storage)
+    if not codec.fits:
+        raise UsageError(f"{codec.name}: {codec.misfit}")
+    check_twin(encoding)
+    known = {p: p for p in (*encoding.published, *_others(codec))}
+    if not known:
+        raise UsageError(f"{codec.name}: nothing to tune: no parameter, look-up, or two numbers that share bits")
+    names = pick("parameter", options.parameter, known)
+    numbers = [name for name in names if name in encoding.published]
+    return Chosen(codec, numbers, BITS in names, LOOK_UP in names)
+
+
+def _others(codec: Codec) -> Iterator[str]:
+    """What else than numbers can be tuned."""
+    if free_components(codec):
+        yield BITS
+    look_up, storage = codec.encoding.look_up, codec.storage
+    counts = {storage.count(i) for i in range(codec.encoding.components)}
+    if look_up and storage.kind != "float" and len(counts) == 1 and counts <= set(look_up.levels):
+        yield LOOK_UP
+
+
+def _one(what: str, found: list[Any]) -> Any:
+    if len(found) != 1:
+        raise UsageError(f"one {what} at a time is tuned, not {len(found)}")
+    return found[0]
+
+
+def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
+    check_seed(options.seed)
+    needs_rays = chosen.codec.encoding.domain == "view"
+    sets = normal_sets_named(options.normals, checked_count(options.count), options.seed, options.reading, needs_rays)
+    return halves_of(_one("normal set", sets), options.seed, by_tiles=chosen.has_table)
+
+
+def tuned_codec(codec: Codec, found: Tuned, scales: np.ndarray | None, table: Path | None) -> Codec:
+    """The codec with what was found, under the name that says it."""
+    encoding: Encoding = codec.encoding
+    changed = {name: value for name, value in found.values.items() if value != encoding.published[name]}
+    if changed:
+        encoding = encoding.with_parameters(changed)
+    if scales is not None:
+        encoding = encoding.with_table(scales, str(table or "FILE"))
+    return replace(codec, encoding=encoding, storage=found.codec.storage)
+
+
+def _measured(codec: Codec, halves: Halves) -> Row:
+    return quality.measure(quality.Case(codec, halves.held_out, "jax"))
+
+
+def _write_table(path: Path, scales: np.ndarray) -> None:
+    with whole_file(path) as partial, partial.open("wb") as file:
+        np.save(file, scales)
+
+
+def rows(before: Side, after: Side, chosen: Chosen, found: Tuned, about: Row) -> Iterator[Row]:
+    """A row for each parameter that was tuned, then one for each figure of the held-out half."""
+    codecs = {"encoding": before.codec.encoding.name, "storage": before.codec.storage.name}
+    codecs |= {"tuned_encoding": after.codec.encoding.name, "tuned_storage": after.codec.storage.name}
+    empty = TABLE.empty() | codecs | about
+    for parameter in before.codec.encoding.parameters:
+        if parameter.name in chosen.names:
+            published, tuned = before.codec.encoding.published[parameter.name], found.values[parameter.name]
+            yield empty | _row(parameter.name, published, tuned) | {"glsl": parameter.constant}
+    if chosen.has_bits:
+        for i in free_components(before.codec):
+            published, tuned = (codec.storage.bits[i] for codec in (before.codec, after.codec))
+            yield empty | _row(f"{BITS}_{'xyz'[i]}", published, tuned)
+    if chosen.has_table:
+        yield empty | _row("texels_changed", 0, _changed(before.codec.encoding, after.codec.encoding))
+    for figure in FIGURES.values():
+        published, tuned = (side.row[figure] for side in (before, after))
+        yield empty | _row(figure, published, tuned) | _gain(figure, published, tuned)
+
+
+def _changed(before: Encoding, after: Encoding) -> int:
+    assert before.look_up
+    published, tuned = (encoding.tables()[before.look_up.sampler] for encoding in (before, after))
+    return int(np.count_nonzero(published != tuned))
+
+
+def _row(quantity: str, published: float, tuned: float) -> Row:
+    return {"quantity": quantity, "published": published, "tuned": tuned}
+
+
+def _gain(figure: str, published: float, tuned: float) -> Row:
+    """Decibels more, or by how many percent an angle is smaller."""
+    if figure == FIGURES["psnr"]:
+        return {"gain": tuned - published if tuned != published else 0.0, "unit": "dB"}
+    return {"gain": 100 * (1 - tuned / published) if published else 0.0, "unit": "%"}
+
+
+def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals: str) -> None:
+    gain = _gain(figure, *(side.row[figure] for side in (before, after)))
+    if gain["gain"] <= NOTHING_DB:
+        said = (
+            f"nothing is gained on the held-out half ({gain['gain']:.2g} {gain['unit']}): stay with what is published"
+        )
+    elif after.codec.encoding.look_up and not table and after.codec.encoding.tables != before.codec.encoding.tables:
+        said = "keep the look-up with --table FILE.npy to measure it elsewhere"
+    else:
+        names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name, "--normals", normals]
+        said = f"elsewhere: normalbench quality {shlex.join(names)}"
+    print(f"normalbench: {said}", file=sys.stderr)
+
+
+def _summary(found: Sequence[Row]) -> Iterator[Sheet]:
+    names = (
+        "encoding",
+        "storage",
+        "normals",
+        "tuned_encoding",
+        "tuned_storage",
+        "quantity",
+        "published",
+        "tuned",
+        "gain",
+    )
+    yield Sheet("tuned to one half, measured on the other", [{name: row[name] for name in names} for row in found])
+
+
+WORK = Work(steps=_steps, measure=each(lambda tuning: tuning.measured()), summary=_summary, write=_write)

@@ -1,0 +1,126 @@
+"""A codec: an encoding and the storage its numbers go through. It is what is measured."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+
+from ..storages.rounding import numbers_around, store_number
+from ..storages.storage import Storage
+from ..vec import Vec3, dot, jnp, select
+from .encoding import Encoding
+
+# A number that is not one of few values is not laid into fewer bits.
+LEAST_BITS = 4
+
+
+def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
+    """Why a storage's channels cannot hold numbers of so many values, 0 for any; None where they can."""
+    for channel, count in enumerate(levels):
+        bits = storage.bits[channel]
+        if count > storage.levels(channel):
+            return f"number {channel + 1} has {count} values, more than {storage.title} tells apart"
+        if not count and bits < LEAST_BITS:
+            return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
+    return None
+
+
+@dataclass(frozen=True)
+class Codec:
+    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`."""
+
+    encoding: Encoding
+    storage: Storage
+    rounding: str = "nearest"
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name}/{self.storage.name}" + ("" if self.rounding == "nearest" else f"/{self.rounding}")
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can.
+
+        Sign bits are kept beside it, in the depth's sign.
+        """
+        encoding, storage = self.encoding, self.storage
+        if encoding.components > storage.channels:
+            return f"{encoding.components} components, but {storage.title} has {storage.channels} channels"
+        if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
+            return f"{storage.title} is of floats, and {self._rounds} is for fixed point"
+        if encoding.is_precise and self.rounding != "nearest":
+            return "it is rounded precisely, not otherwise"
+        return numbers_misfit(storage, [encoding.levels_of(channel) for channel in range(encoding.components)])
+
+    @property
+    def _rounds(self) -> str:
+        return "precise rounding" if self.encoding.is_precise else self.rounding
+
+    @property
+    def fits(self) -> bool:
+        """Whether the storage can hold what the encoding makes."""
+        return self.misfit is None
+
+    @property
+    def bits(self) -> int:
+        """The bits it occupies: of the channels used, and one for each sign bit."""
+        return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        size = self.encoding.components + self.encoding.sign_bits
+        return math.prod(self.encoding.levels_of(i) or self.storage.count(i) for i in range(size))
+
+    def numbers(self, component: int) -> np.ndarray:
+        """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""
+        if component >= self.encoding.components:
+            return np.array([-1.0, 1.0])
+        every, levels = self.storage.numbers(component), self.encoding.levels_of(component)
+        if not levels:
+            return every
+        nearest = np.abs(every - np.linspace(-1.0, 1.0, levels)[:, None]).argmin(axis=1)
+        return every[nearest]
+
+    def rounding_of(self, component: int) -> str:
+        """How a component rounds: one of few values to the nearest, whatever the others do."""
+        return "nearest" if self.encoding.levels_of(component) else self.rounding
+
+    def store(self, code):
+        """A code (Vec2 or Vec3) as it comes back from the storage. A sign bit comes back as it was."""
+        stored = (
+            store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else c
+            for i, c in enumerate(code)
+        )
+        return type(code)(*stored)
+
+    def stored(self, n: Vec3, view: Vec3):
+        """The code of unit normals as it comes back from the storage."""
+        # A number chosen from constants has no width of its own.
+        code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, n.z.dtype) for c in code))
+        return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
+
+    def _nearest_of(self, code, n: Vec3, view: Vec3):
+        """Of the codes around, every number rounded down or up, the one that is decoded nearest to n."""
+        around = [
+            (c,) * 2 if self.encoding.levels_of(i) else numbers_around(c, self.storage, i) for i, c in enumerate(code)
+        ]
+        codes = [type(code)(*numbers) for numbers in itertools.product(*around)]
+        # Squared distances, not cosines: near 1 those no longer tell fine codes apart.
+        misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
+        return reduce(_nearer, zip((dot(miss, miss) for miss in misses), codes, strict=True))[1]
+
+    def round_trip(self, n: Vec3, view: Vec3) -> Vec3:
+        """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised."""
+        return self.encoding.decode(self.stored(n, view), view)
+
+
+def _nearer(a, b):
+    """Of two codes with their distance the nearer one, and the first where they are as near."""
+    is_nearer = b[0] < a[0]
+    return select(is_nearer, b[0], a[0]), select(is_nearer, b[1], a[1])

@@ -1,0 +1,151 @@
+"""A depth codec: a depth encoding in a storage. It is what `normalbench depth` measures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ..position import Camera, Seen, position_from_linear_depth, position_from_window_depth
+from ..storages.depth_storage import DepthStorage, store_depth
+from ..vec import Vec2, Vec3, depth_or_far, jnp
+from .depth_encoding import ULP, DepthEncoding
+
+# What float32 arithmetic adds beside encoder and decoder, in units in the last place: one to the number where it is
+# scaled to an integer and back; three to a position (two products and the rays' own rounding; or a division and two
+# products). Where the inverse projection stands for the decoder it rounds the number's two factors as the decoder does.
+SCALING_ULPS, POSITION_ULPS = 1, 3
+
+
+@dataclass(frozen=True)
+class DepthCodec:
+    """A depth encoding and the storage of its number."""
+
+    encoding: DepthEncoding
+    storage: DepthStorage
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name}/{self.storage.name}"
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        return (
+            None if self.storage.is_signed or not self.encoding.signed else f"{self.storage.title}: no room for a sign"
+        )
+
+    @property
+    def fits(self) -> bool:
+        """Whether the storage can hold what the encoding makes."""
+        return self.misfit is None
+
+    @property
+    def bits(self) -> int:
+        """The bits it occupies."""
+        return self.storage.bits
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its number in [0, 1], or in [-1, 1] under a sign, can be."""
+        if self.storage.format.kind != "float":
+            return 2**self.bits
+        both = self.storage.format.count(0)
+        return both if self.encoding.signed else (both + 1) // 2
+
+    @property
+    def is_window(self) -> bool:
+        """Whether the number is what a depth buffer holds."""
+        return self.encoding.projection is not None
+
+    def far(self, far):
+        """The far plane as the encoding is given it: at 1 where the storage holds the depth in the scene's units."""
+        return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
+
+    def stored(self, depth, near, far):
+        """The numbers of depths (float32, any shape) as they come back from the storage.
+
+        Args:
+            depth: view depth, with the sign of the normal's z where the encoding keeps one.
+            near, far: the planes' distances, float32 scalars; 0 < near < far.
+        """
+        number = self.encoding.encode(depth_or_far(depth, far), near, self.far(far))
+        return store_depth(number, self.storage, self.encoding.signed)
+
+    def depths(self, number, near, far):
+        """The depths of numbers, under the sign that was kept."""
+        return self.encoding.decode(number, near, self.far(far))
+
+    def round_trip(self, depth, near, far):
+        """Depths encoded, stored and decoded; see `stored`."""
+        return self.depths(self.stored(depth, near, far), near, far)
+
+    def furthest(self, depth: np.ndarray, camera: Camera, with_arithmetic: bool = True) -> np.ndarray:
+        """How far each depth may move on its way through the storage, at worst.
+
+        Half a step of the storage, through the exact maps; and, if asked for, what float32 arithmetic adds to the
+        number and to the depth, down to the position.
+
+        Args:
+            depth: float64, positive, any shape.
+
+        Returns:
+            float64 of the same shape; infinite where the storage may give anything.
+        """
+        import jax
+
+        scaling = 0 if self.storage.format.kind == "float" else SCALING_ULPS
+        slack = (sum(self.encoding.ulps) + scaling) * ULP * with_arithmetic
+        with jax.enable_x64(True):
+            near, far = jnp.float64(camera.near), self.far(jnp.float64(camera.far))
+            exact = jnp.asarray(depth, jnp.float64)
+            number = self.encoding.encode(exact, near, far)
+            by_depth = abs(self.encoding.encode(exact * (1 + slack), near, far) - number)
+            off = jnp.asarray(self._half_step(np.asarray(number))) + slack * number + by_depth
+            top = jnp.inf if self.storage.is_open and self.encoding.own_units else 1 + slack
+            ends = (jnp.clip(number + side * off, 0.0, top) for side in (1.0, -1.0))
+            moved = [self.encoding.decode(end, near, far) for end in ends]
+            after = slack + POSITION_ULPS * ULP * with_arithmetic
+            errors = [jnp.where(d >= 0, abs(d - exact) + after * jnp.maximum(d, exact), jnp.inf) for d in moved]
+            return np.asarray(jnp.maximum(*errors))
+
+    def _half_step(self, number: np.ndarray) -> np.ndarray:
+        """Half a step of the storage at numbers of float64."""
+        if self.storage.format.kind != "float":
+            scale = self.storage.scale // 2 if self.encoding.signed else self.storage.scale
+            return np.full_like(number, 0.5 / scale)
+        with np.errstate(over="ignore"):
+            rounded = number.astype(np.float16 if self.storage.bits == 16 else np.float32)
+            finite = np.isfinite(rounded)
+            return np.where(finite, 0.5 * np.spacing(np.where(finite, rounded, 1)).astype(np.float64), np.inf)
+
+
+def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+    """Positions of stored numbers by the inverse projection; the encoding has a projection."""
+    return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
+
+
+def by_eye_ray(codec: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+    """Positions of stored numbers by the decoder and the eye's ray."""
+    return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
+
+
+@dataclass(frozen=True)
+class Rebuild:
+    """A way from a number to a position.
+
+    Attributes:
+        position: (codec, number, place, seen) -> view-space position.
+        by_projection: whether it takes the number for a depth buffer's, which only some encodings' are.
+    """
+
+    position: Callable[[DepthCodec, Any, Vec2, Seen], Vec3]
+    by_projection: bool
+
+
+REBUILDS: Mapping[str, Rebuild] = MappingProxyType(
+    {"inverse_projection": Rebuild(by_inverse_projection, True), "eye_ray": Rebuild(by_eye_ray, False)}
+)

@@ -1,0 +1,150 @@
+"""What an encoding is: a pair of maps between unit normals and a few numbers, written twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+from ..vec import Vec2, Vec3
+from .fingerprint import fingerprint
+
+Code = Vec2 | Vec3
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of an encoding that may be another one: `encode` and `decode` both take it by its name.
+
+    Attributes:
+        name: the keyword, and what it is called on the command line.
+        constant: the GLSL macro for it; what `constants` say of that is the published value.
+        least, most: its range.
+    """
+
+    name: str
+    constant: str
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class LookUp:
+    """A table of an encoding that may be another one: `encode` takes it by the keyword `table`.
+
+    Attributes:
+        sampler: its key in `tables`.
+        levels: how many values a number of the code may have in a storage that it can be fitted to; evenly spread ones,
+            as many for each number.
+        fit: (normals, levels, prior) -> the table with the least squared error on them. Normals are float64 of shape
+            (count, 3); `prior` is how many normals the middle of a texel counts as.
+    """
+
+    sampler: str
+    levels: range
+    fit: Callable[[Any, Any, float], Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Encoding:
+    """A pair of maps between normals and codes, in JAX here and in GLSL in the file beside it.
+
+    The GLSL file defines `<name>_encode(vec3 n, vec3 view)` and `<name>_decode(code, vec3 view)`; the code is a vec2 or
+    vec3 of `components + sign_bits` numbers.
+
+    Attributes:
+        name: the catalogue's key, the file's name and the prefix of the GLSL functions.
+        title: what a reader calls it.
+        encode: (n, view) -> code, unit normal to numbers in [-1, 1] on its domain. `view` is the view-space position.
+        decode: (code, view) -> normal, not renormalised unless the method does so.
+        components: how many numbers are stored with the storage's precision.
+        domain: the normals it can hold: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
+        citation: where it comes from.
+        glsl: the GLSL twin.
+        ulps: how far the two languages may differ before storage, encode and decode, in 2^-23 (a unit in the last
+            place of 1), times how far the map moves its result for a unit of its input where that is more than one.
+        ulps_reason: why it is that many.
+        sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
+        constants: numbers that both languages need, by their GLSL name.
+        levels: for each component how many values it may have, from -1 to 1 evenly spread; 0, as where none are given,
+            for a number like any other.
+        is_precise: of the codes around, every component rounded down or up, the one that decodes nearest is stored.
+        searches: the encoder takes the best of several codes; where two are as good the languages may differ.
+        tables: makes the look-up tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
+        functions: what the names of its GLSL functions begin with, of a variant that shares another's file.
+        parameters: those of its constants that may have other values.
+        look_up: that one of its tables that may be another one.
+    """
+
+    name: str
+    title: str
+    encode: Callable[[Vec3, Vec3], Any]
+    decode: Callable[[Any, Vec3], Vec3]
+    components: int
+    domain: str
+    citation: str
+    glsl: Path
+    ulps: tuple[int, int]
+    ulps_reason: str
+    sign_bits: int = 0
+    levels: tuple[int, ...] = ()
+    is_precise: bool = False
+    searches: bool = False
+    constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    tables: Callable[[], Mapping[str, Any]] = dict
+    functions: str = ""
+    parameters: tuple[Parameter, ...] = ()
+    look_up: LookUp | None = None
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
+
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        code = f"vec{self.components + self.sign_bits}"
+        return (
+            f"{code} {self.prefix}_encode(vec3 n, vec3 view)",
+            f"vec3 {self.prefix}_decode({code} e, vec3 view)",
+        )
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
+        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
+        return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
+
+    def levels_of(self, component: int) -> int:
+        """How many values a number of its code has; 0 for one like any other, 2 for a sign bit."""
+        if component >= self.components:
+            return 2
+        return self.levels[component] if self.levels else 0
+
+    @property
+    def published(self) -> dict[str, float]:
+        """The values of its parameters by their names, as published."""
+        return {p.name: float(self.constants[p.constant]) for p in self.parameters}  # type: ignore[arg-type]
+
+    def with_parameters(self, values: Mapping[str, float]) -> Encoding:
+        """The encoding with other values for some of its parameters, in both languages, under a name that says them."""
+        macros = {p.constant: values[p.name] for p in self.parameters if p.name in values}
+        said = "".join(f":{name}={value:.9g}" for name, value in values.items())
+        made = replace(self, constants={**self.constants, **macros})
+        return made._variant(said, **values)
+
+    def with_table(self, table: Any, said: str) -> Encoding:
+        """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
+        assert self.look_up
+        tables = {**self.tables(), self.look_up.sampler: table}
+        made = replace(self, tables=lambda: tables)._variant(f":table={said}")
+        encode: Callable[..., Any] = self.encode
+        return replace(made, encode=partial(encode, table=table))
+
+    def _variant(self, said: str, **values: float) -> Encoding:
+        encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
+        name, title = self.name + said, f"{self.title}, {said.removeprefix(':').replace(':', ', ')}"
+        return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)

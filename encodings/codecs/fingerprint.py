@@ -1,0 +1,44 @@
+"""Tells two encodings of one name apart: a hash over what makes their figures."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+DIGITS = 16
+_INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
+
+
+def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any]) -> str:
+    """Hex digits over a GLSL file and what it includes, the Python file next to it if there is one, values and tables.
+
+    Raises:
+        OSError: a file cannot be read.
+    """
+    twin = glsl.with_suffix(".py")
+    files = (*_texts(glsl.resolve(), set()), *([twin.read_bytes()] if twin.exists() else []))
+    arrays = (part for name, table in sorted(tables.items()) for part in _array(name, np.ascontiguousarray(table)))
+    return _hashed((*files, repr(values).encode(), *arrays))
+
+
+def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
+    """A shader file and every file that it includes, each once."""
+    seen.add(path)
+    yield (text := path.read_bytes())
+    for name in _INCLUDE.findall(text):
+        if (target := (path.parent / name.decode()).resolve()) not in seen:
+            yield from _texts(target, seen)
+
+
+def _array(name: str, array: np.ndarray) -> tuple[bytes, bytes]:
+    return f"{name} {array.dtype} {array.shape}".encode(), array.tobytes()
+
+
+def _hashed(parts: Iterable[bytes]) -> str:
+    # Each part is hashed first, so that nothing can move from one to the next.
+    return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).hexdigest()[:DIGITS]

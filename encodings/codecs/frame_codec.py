@@ -1,0 +1,64 @@
+"""A frame codec: a frame encoding in a storage. It is what `normalbench frames` measures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..rotation import Frame
+from ..storages.rounding import store_number
+from ..storages.storage import Storage
+from ..vec import TINY, Vec4
+from .codec import numbers_misfit
+from .frame_encoding import FrameEncoding
+
+# Of floats by their size the least number that a hand is kept at: none that a device may flush to 0.
+LEAST_FLOAT = {16: 2.0**-14, 32: TINY}
+
+
+@dataclass(frozen=True)
+class FrameCodec:
+    """A frame encoding and the storage of its four numbers."""
+
+    encoding: FrameEncoding
+    storage: Storage
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name}/{self.storage.name}"
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        return numbers_misfit(self.storage, self.encoding.levels)
+
+    @property
+    def bits(self) -> int:
+        """The bits it occupies: all of the texel's."""
+        return sum(self.storage.bits)
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        return math.prod(n or self.storage.count(i) for i, n in enumerate(self.encoding.levels))
+
+    @property
+    def least(self) -> float:
+        """The least number above 0 that the storage holds where the encoding keeps the hand: a whole step of SNORM,
+        half of one of UNORM, which has no 0."""
+        if self.storage.kind == "float":
+            return LEAST_FLOAT[self.storage.bits[0]]
+        return 1.0 / self.storage.scale(self.encoding.hand_in)
+
+    def store(self, code: Vec4) -> Vec4:
+        """A code (float32, any shape) as it comes back from the storage."""
+        return Vec4(*(store_number(c, self.storage, i) for i, c in enumerate(code)))
+
+    def stored(self, frame: Frame) -> Vec4:
+        """The code of frames as it comes back from the storage."""
+        code = self.store(self.encoding.encode(frame, self.least))
+        return self.store(self.encoding.settle(frame, code)) if self.encoding.settle else code
+
+    def round_trip(self, frame: Frame) -> Frame:
+        """Frames (float32, any shape, as `frame_of` makes them) encoded, stored and decoded."""
+        return self.encoding.decode(self.stored(frame), self.least)

@@ -1,0 +1,63 @@
+"""What a frame encoding is: a pair of maps between tangent frames and four numbers, written twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..rotation import Frame
+from ..vec import Vec4
+
+
+@dataclass(frozen=True, eq=False)
+class FrameEncoding:
+    """A pair of maps between tangent frames and codes, in JAX here and in GLSL in the file beside it.
+
+    The GLSL file defines `vec4 <name>_encode(Frame frame, float least)` and `Frame <name>_decode(vec4 e, float least)`,
+    and where it settles `vec4 <name>_settle(Frame frame, vec4 stored)`. What reaches an encoder has been through
+    `rotation.frame_of`: nothing is NaN or infinite.
+
+    Attributes:
+        name: the catalogue's key, the file's name and the prefix of the GLSL functions.
+        title: what a reader calls it.
+        encode: (frame, least) -> four numbers in [-1, 1]. `least` is the least number above 0 that the storage holds
+            where the hand lies: what keeps a sign.
+        decode: (numbers, least) -> frame.
+        hand_in: which of the four numbers has the frame's hand for its sign.
+        levels: for each number how many values it may have, from -1 to 1 evenly spread; 0 for a number like any other.
+        storages: where it usually lies, names of FRAME_STORAGES.
+        citation: where it comes from.
+        glsl: the GLSL twin.
+        ulps: how far the two languages may differ before storage, encode and decode, in 2^-23; encode as it is decoded
+            where two codes stand for frames that near.
+        ulps_reason: why it is that many.
+        settle: (frame, the code as it comes back) -> the code to store, where some numbers depend on how others were
+            rounded; those others stay as they came back.
+        constants: numbers that both languages need, by their GLSL name.
+    """
+
+    name: str
+    title: str
+    encode: Callable[[Frame, Any], Vec4]
+    decode: Callable[[Vec4, Any], Frame]
+    hand_in: int
+    levels: tuple[int, int, int, int]
+    storages: tuple[str, ...]
+    citation: str
+    glsl: Path
+    ulps: tuple[int, int]
+    ulps_reason: str
+    settle: Callable[[Frame, Vec4], Vec4] | None = None
+    constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def signatures(self) -> tuple[str, ...]:
+        """What its GLSL file defines."""
+        settle = (f"vec4 {self.name}_settle(Frame frame, vec4 stored)",) if self.settle else ()
+        return (
+            f"vec4 {self.name}_encode(Frame frame, float least)",
+            f"Frame {self.name}_decode(vec4 e, float least)",
+            *settle,
+        )

@@ -1,0 +1,85 @@
+"""The kinds of encodings: of normals, of depth, of tangent frames and of light."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from .depth_encoding import DepthEncoding
+from .encoding import Encoding
+from .frame_encoding import FrameEncoding
+from .light_encoding import LightEncoding
+
+
+class AnyEncoding(Protocol):
+    """What encodings of every kind say of themselves; see each kind for what they mean there."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def citation(self) -> str: ...
+    @property
+    def glsl(self) -> Path: ...
+    @property
+    def ulps(self) -> tuple[int, int]: ...
+    @property
+    def ulps_reason(self) -> str: ...
+    @property
+    def signatures(self) -> tuple[str, ...]: ...
+
+
+class AnyCodec(Protocol):
+    """What codecs of every kind can do: an encoding in a storage."""
+
+    @property
+    def name(self) -> str:
+        """What rows call it."""
+        ...
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        ...
+
+    @property
+    def bits(self) -> int:
+        """The bits it occupies."""
+        ...
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has, used or not."""
+        ...
+
+    def stored(self, *given: Any) -> Any:
+        """The code of what is given as it comes back from the storage."""
+        ...
+
+    def round_trip(self, *given: Any) -> Any:
+        """What is given, encoded, stored and decoded."""
+        ...
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What encodings are of.
+
+    Attributes:
+        name: what a reader calls what is encoded.
+        folder: where the pairs of files lie.
+        encoding: the type of each pair's ENCODING.
+    """
+
+    name: str
+    folder: str
+    encoding: type
+
+
+NORMAL = Kind("normal", "normals", Encoding)
+DEPTH = Kind("depth", "depth", DepthEncoding)
+FRAME = Kind("tangent frame", "frame", FrameEncoding)
+LIGHT = Kind("light", "light", LightEncoding)
+KINDS = (NORMAL, DEPTH, FRAME, LIGHT)

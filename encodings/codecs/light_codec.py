@@ -1,0 +1,101 @@
+"""A light codec: a light encoding in a storage. It is what a light buffer holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..storages.rounding import store_texel
+from ..storages.storage import Storage
+from ..vec import Vec4
+from .light_encoding import LightEncoding
+
+
+@dataclass(frozen=True)
+class LightCodec:
+    """A light encoding and the storage of its texels."""
+
+    encoding: LightEncoding
+    storage: Storage
+
+    @property
+    def name(self) -> str:
+        """The encoding's, which is made for one format; the format's where a texel is the light itself."""
+        return self.storage.name if self.encoding.is_plain else self.encoding.name
+
+    @property
+    def title(self) -> str:
+        """What a reader calls it."""
+        lacks = "" if self.has_alpha else ", no fourth channel"
+        return f"{self.storage.title}{lacks}" if self.encoding.is_plain else self.encoding.title
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        if self.storage.name in self.encoding.storages:
+            return None
+        return f"{self.encoding.name} is made for {', '.join(self.encoding.storages)}"
+
+    @property
+    def bits(self) -> int:
+        """The bits of a texel."""
+        return sum(self.storage.bits)
+
+    @property
+    def codes(self) -> int:
+        """How many texels there are, used or not."""
+        return 2**self.bits
+
+    @property
+    def bytes_per_pixel(self) -> int:
+        """The bytes of one target. A code that is read while it is written has two copies."""
+        return self.bits // 8 * (2 if self.blend == "read" else 1)
+
+    @property
+    def has_alpha(self) -> bool:
+        """Whether it holds a fourth number."""
+        return self.encoding.has_alpha and self.storage.channels == 4
+
+    @property
+    def limit(self) -> float:
+        """The most white light that it holds."""
+        return self.storage.largest if self.encoding.is_plain else self.encoding.limit
+
+    @property
+    def blend(self) -> str:
+        """How light is added: one of light_encoding.BLENDS."""
+        return self.encoding.blend
+
+    @property
+    def no_light(self) -> float:
+        """What every channel of a texel without light holds."""
+        return self.encoding.no_light
+
+    @property
+    def glsl(self) -> Path:
+        """The GLSL of its encoding."""
+        return self.encoding.glsl
+
+    def encode(self, light: Vec4) -> Vec4:
+        """Light (not negative, finite, any shape) to a texel, as the format is given it."""
+        return self.encoding.encode(light)
+
+    def store(self, texel: Vec4, rounding: str = "nearest") -> Vec4:
+        """A texel (any shape) as the format gives it back; 0 in a channel that the format lacks."""
+        storage = self.storage
+        return Vec4(
+            *(store_texel(c, storage, i, rounding) if i < storage.channels else 0.0 * c for i, c in enumerate(texel))
+        )
+
+    def decode(self, texel: Vec4) -> Vec4:
+        """A texel, as the format gives it back, to light; the fourth number is 0 where the format lacks it."""
+        light = self.encoding.decode(texel)
+        return light if self.storage.channels == 4 else Vec4(light.x, light.y, light.z, light.x * 0.0)
+
+    def stored(self, light: Vec4) -> Vec4:
+        """The texel of light as it comes back from the storage."""
+        return self.store(self.encode(light))
+
+    def round_trip(self, light: Vec4) -> Vec4:
+        """Light encoded, stored and decoded."""
+        return self.decode(self.stored(light))

@@ -1,0 +1,117 @@
+"""What the number of a depth is stored in, and its arithmetic: channels of a target, or the depth buffer itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ..vec import jnp, maximum, minimum, select, sign_bit
+from .rounding import store_half, store_unorm
+from .storage import R32F, STORAGES, Storage
+
+
+@dataclass(frozen=True)
+class DepthStorage:
+    """Where the number of a depth lies.
+
+    Attributes:
+        name: the catalogue's key.
+        title: what a reader calls it.
+        format: of the render target, or of the depth attachment.
+        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", a target's first; or
+            "attachment", the depth buffer itself.
+        bits: of the number.
+    """
+
+    name: str
+    title: str
+    format: Storage
+    home: str
+    bits: int
+
+    @property
+    def scale(self) -> int:
+        """The integer that stands for 1; 1 for floats."""
+        return 1 if self.format.kind == "float" else 2**self.bits - 1
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether there is room for a sign: a depth buffer holds 0 to 1."""
+        return self.home != "attachment"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether numbers beyond 1 keep their value: floats that are not a depth buffer's."""
+        return self.format.kind == "float" and self.home == "channel"
+
+
+def _native(name: str, title: str, kind: str, bits: int, internal_format: int) -> DepthStorage:
+    return DepthStorage(name, title, Storage(name, title, kind, (bits,), internal_format), "attachment", bits)
+
+
+# A depth buffer of 32-bit integers is not among them: few devices have one, and a shader's depth is a float32, whose
+# steps below 1 are 2^-24.
+DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
+    {
+        "packed16": DepthStorage("packed16", "8:8 in B and A of RGBA8", STORAGES["rgba8"], "packed", 16),
+        "packed24": DepthStorage("packed24", "8:8:8 in G, B and A of RGBA8", STORAGES["rgba8"], "packed", 24),
+        "r16f": DepthStorage("r16f", "R16F", Storage("r16f", "R16F", "float", (16,), 0x822D), "channel", 16),
+        "r32f": DepthStorage("r32f", "R32F", R32F, "channel", 32),
+        "depth16": _native("depth16", "depth buffer, 16 bits", "unorm", 16, 0x81A5),
+        "depth24": _native("depth24", "depth buffer, 24 bits", "unorm", 24, 0x81A6),
+        "depth32f": _native("depth32f", "depth buffer, 32-bit float", "float", 32, 0x8CAC),
+    }
+)
+
+
+def fixed(c, scale: int, is_signed: bool):
+    """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0.
+
+    A signed c in [-1, 1] lies in sign and magnitude: the upper half of the integers is for the negative and for -0.
+    """
+    half = scale // 2
+    magnitude = minimum(maximum(abs(c) if is_signed else c, 0.0), 1.0)
+    integer = jnp.round(magnitude * jnp.float32(half if is_signed else scale)).astype(jnp.uint32)
+    return select(sign_bit(c), integer + jnp.uint32(half + 1), integer) if is_signed else integer
+
+
+def from_fixed(integer, scale: int, is_signed: bool):
+    """The number that an unsigned integer (uint32) stands for."""
+    half = scale // 2
+    if not is_signed:
+        return _share(integer, scale)
+    is_negative = integer > half
+    magnitude = _share(select(is_negative, integer - jnp.uint32(half + 1), integer), half)
+    return select(is_negative, -magnitude, magnitude)
+
+
+def _share(integer, scale: int):
+    """integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ...
+
+    As a quotient a compiler may multiply by the rounded reciprocal, which is a whole step off where n is 24.
+    """
+    high = integer.astype(jnp.float32) * jnp.float32(1.0 / (scale + 1))
+    return high + high * jnp.float32(1.0 / (scale + 1))
+
+
+def store_bytes(integer, bits: int):
+    """An unsigned integer over channels of 8-bit UNORM, the highest byte first, and back. No byte is rounded by itself,
+    so none can carry into another."""
+    together = jnp.zeros_like(integer)
+    for shift in range(bits - 8, -1, -8):
+        byte = ((integer >> shift) & 0xFF).astype(jnp.float32)
+        texel = store_unorm(byte / 255.0, 255)
+        together = together | ((texel * 255.0 + 0.5).astype(jnp.uint32) << shift)
+    return together
+
+
+def store_depth(c, storage: DepthStorage, is_signed: bool = False):
+    """The number of a depth (float32, any shape) as it comes back; with a sign where `is_signed`."""
+    if storage.home == "packed":
+        integer = store_bytes(fixed(c, storage.scale, is_signed), storage.bits)
+        return from_fixed(integer, storage.scale, is_signed)
+    if storage.format.kind != "float":
+        return store_unorm(c, storage.scale)
+    kept = c if storage.is_open else minimum(maximum(c, 0.0), 1.0)
+    return store_half(kept) if storage.bits == 16 else kept

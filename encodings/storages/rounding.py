@@ -1,0 +1,141 @@
+"""How numbers become texels and come back: the arithmetic of render target formats, emulated bit for bit.
+
+UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is clamped
+to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the even
+integer, NaN takes the lower end; what comes back is the integer times the float32 reciprocal of the scale. That is
+OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (`test_storage.py`).
+
+Half floats round to nearest even, or are cut off: GL allows both, and both ship. To truncate is to cut off the texel:
+UNORM goes down, which is toward -1 in the code; SNORM and floats go toward zero. `truncate_half` is what engines that
+pack by hand write to make up for that, floor(x (2^n - 1/2)). Where a device does not round as a codec asks, the shader
+rounds before the write (`storage.glsl`), and the row says so.
+
+Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
+"""
+
+from __future__ import annotations
+
+from ..vec import jnp, maximum, minimum, select
+from .storage import MANTISSA, Storage
+
+# IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
+SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
+
+
+def rounded(x, scale: int, rounding: str = "nearest"):
+    """x in [-1, 1] (any shape) as a whole number, `scale` standing for 1: nearest, or cut off toward zero, or
+    cut off of x (scale + 1/2)."""
+    if rounding == "nearest":
+        return jnp.round(x * float(scale))
+    widened = jnp.trunc(x * (scale + 0.5 if rounding == "truncate_half" else float(scale)))
+    return minimum(maximum(widened, -float(scale)), float(scale))
+
+
+def store_unorm(x, scale: int, rounding: str = "nearest"):
+    """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
+    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * (1.0 / scale)
+
+
+def store_snorm(x, scale: int, rounding: str = "nearest"):
+    """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
+    code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding)
+    # An integer has no negative zero.
+    return code.astype(jnp.int32).astype(x.dtype) * (1.0 / scale)
+
+
+def store_half(x, rounding: str = "nearest"):
+    """x (float32, any shape) as a 16-bit float stores it: 11 significant bits, steps of 2^-24 below 2^-14.
+
+    Nearest turns what is at least 65520 into infinity; toward zero stops at 65504 and keeps only infinity infinite.
+    """
+    if rounding == "nearest":
+        return x.astype(jnp.float16).astype(jnp.float32)
+    bits = x.view(jnp.uint32)
+    normal = (bits & jnp.uint32(0xFFFFE000)).view(jnp.float32)
+    subnormal = jnp.trunc(x * 2.0**24) * 2.0**-24
+    kept = select(abs(x) < 2.0**-14, subnormal, normal)
+    return select(jnp.isfinite(x), minimum(maximum(kept, -65504.0), 65504.0), x)
+
+
+def store_small_float(x, bits: int, rounding: str = "nearest"):
+    """x (float32, any shape) as an unsigned float of 11 or 10 bits stores it: five of exponent, the rest of mantissa.
+
+    There is nothing below 0, and what is finite stays finite: 65024 or 64512 at most (OpenGL 4.6, 2.3.4.3 and 2.3.4.4).
+    """
+    cut = 23 - (bits - 5)
+    least, most = 2.0 ** (-14 - (bits - 5)), 2.0**16 - 2.0 ** (15 - (bits - 5))
+    word = maximum(x, 0.0).view(jnp.uint32)
+    half = jnp.uint32(2 ** (cut - 1) - 1) + (word >> cut & 1) if rounding == "nearest" else jnp.uint32(0)
+    normal = (word + half & jnp.uint32(2**32 - 2**cut)).view(jnp.float32)
+    steps = maximum(x, 0.0) * (1.0 / least)
+    subnormal = (jnp.round(steps) if rounding == "nearest" else jnp.floor(steps)) * least
+    kept = minimum(select(x < 2.0**-14, subnormal, normal), most)
+    return select((x == jnp.inf) | jnp.isnan(x), x, kept)
+
+
+def store_float(x, bits: int, rounding: str = "nearest"):
+    """x (float64, any shape, magnitude below 2^15) as a float of so many bits stores it, by arithmetic: what stands for
+    the exact map. Of 11 and 10 bits there is nothing below 0."""
+    if bits == 32:
+        return x.astype(jnp.float32).astype(x.dtype)
+    octave = maximum(jnp.frexp(x)[1] - 1, -14)
+    step = jnp.ldexp(jnp.ones_like(x), octave - MANTISSA[bits])
+    whole = x / step
+    stored = (jnp.round(whole) if rounding == "nearest" else jnp.trunc(whole)) * step
+    return stored if bits == 16 else maximum(stored, 0.0)
+
+
+def to_srgb(x):
+    """Linear light in [0, 1] (float32, any shape) by the sRGB curve."""
+    curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
+    return select(x <= SRGB_KNEE, x * SRGB_SLOPE, curved)
+
+
+def from_srgb(x):
+    """Linear light of a value of the sRGB curve in [0, 1] (float32, any shape)."""
+    straight = x * (1.0 / SRGB_SLOPE)
+    return select(straight <= SRGB_KNEE, straight, ((x + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER)
+
+
+def store_srgb(x, scale: int, rounding: str = "nearest"):
+    """x (float32, any shape) as a colour of an sRGB target stores it and gives it back, in [0, 1]; NaN is 0."""
+    return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
+
+
+def store_exactly(x):
+    """x (float32, any shape) as it is. Nothing is rounded, and yet XLA must not see through it: it would make one scale
+    and offset of the encoder's and the decoder's, and measure another method."""
+    from jax.lax import optimization_barrier  # a second to import, which `normalbench list` does not take
+
+    return optimization_barrier(x)
+
+
+def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
+    """One number of a texel (float32, any shape), as the format is given it, through one channel and back."""
+    bits, scale = storage.bits[channel], storage.scale(channel)
+    if storage.kind == "float":
+        if x.dtype != jnp.float32:
+            return store_float(x, bits, rounding)
+        if bits == 32:
+            return store_exactly(x)
+        return store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
+    if storage.kind == "snorm":
+        return store_snorm(x, scale, rounding)
+    return (store_srgb if channel < storage.curved else store_unorm)(x, scale, rounding)
+
+
+def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
+    """One number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
+    # What is laid across channels is a whole number as UNORM and SNORM have it; its bytes are exact.
+    if storage.is_biased:
+        return store_texel(c * 0.5 + 0.5, storage, channel, rounding) * 2.0 - 1.0
+    return store_texel(c, storage, channel, rounding)
+
+
+def numbers_around(c, storage: Storage, channel: int):
+    """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
+    scale = storage.scale(channel)
+    x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
+    below = jnp.floor(x * float(scale))
+    texels = (step * (1.0 / scale) for step in (below, minimum(below + 1.0, float(scale))))
+    return tuple(texel * 2.0 - 1.0 if storage.is_biased else texel for texel in texels)

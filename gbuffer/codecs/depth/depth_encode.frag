@@ -1,0 +1,24 @@
+#version 430
+// Encodes a texture of depths into the storage under test: HOME 0 packs into the 8-bit channels of the target from the bit
+// FIRST on, 1 writes a channel of its own, 2 the depth buffer.
+#include "depth_code.glsl"
+#include "storage.glsl"
+
+uniform sampler2D points;  // place on the screen, depth
+uniform vec2 range;        // near, far
+#if HOME != 2
+layout(location = 0) out vec4 texel;
+#endif
+
+void main() {
+    float depth = texelFetch(points, ivec2(gl_FragCoord.xy), 0).z;
+    float number = number_of_depth(depth, range, OPEN != 0);
+#if HOME == 0
+    uint integer = fixed_code(number, SCALE, DEPTH_SIGNED != 0);
+    for (int c = 0; c < 4; ++c) texel[c] = float(byte_of(integer, FIRST, BITS, c)) / 255.0;
+#elif HOME == 1
+    texel = vec4(ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, 0) : number);
+#else
+    gl_FragDepth = ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, 0) : number;
+#endif
+}

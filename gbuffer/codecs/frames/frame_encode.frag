@@ -1,0 +1,19 @@
+#version 430
+// Encodes textures of tangent frames into the render target under test.
+#include "frame_code.glsl"
+#include "storage.glsl"
+
+uniform sampler2D normals;  // normal, hand
+uniform sampler2D tangents;
+layout(location = 0) out vec4 texel;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 normal = texelFetch(normals, pixel, 0);
+    Frame frame = frame_of(normal.xyz, texelFetch(tangents, pixel, 0).xyz, normal.w);
+    vec4 code = FRAME_ENCODE(frame, FRAME_LEAST);
+#if FRAME_SETTLES
+    code = FRAME_SETTLE(frame, unbiased(round_texel(biased(code))));
+#endif
+    texel = to_texel(code);
+}

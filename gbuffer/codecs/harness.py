@@ -1,0 +1,116 @@
+"""What the codecs of every kind need of a GL device: functions looked for, two passes, and a compute shader."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...encodings.storages.storage import Storage
+from ..gl.device import Device, bind, read_pixels
+from ..gl.handles import Texture
+from ..gl.shader import ShaderError, read_shader
+
+Tables = Callable[[], Mapping[str, Any]]
+Textures = dict[str, Texture]
+
+
+def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
+    """Raises ShaderError where a GLSL file cannot be read or lacks a function of this result, name and first type."""
+    text = re.sub(r"\s+", " ", read_shader(glsl))
+    for signature in signatures:
+        head, given = signature.split("(")
+        if not re.search(rf"\b{head} ?\( ?{given.split()[0]}\b", text):
+            raise ShaderError(f"{glsl}: no function {signature}")
+
+
+def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
+    """Uniforms by name; those the compiler dropped are left out."""
+    for name, value in values.items():
+        if name in program:
+            program[name].value = value
+
+
+class Passes:
+    """A pass that encodes into targets and one that decodes from them; a context manager that releases both.
+
+    Args:
+        shaders: the encoding pass and the decoding one.
+        defines, names: as `Source` takes them.
+        formats: of the targets between them, by the decoding pass's sampler.
+        tables: makes the look-up tables of both by sampler.
+
+    Raises:
+        ShaderError: one of them does not compile.
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        shaders: tuple[str, str],
+        defines: Mapping[str, object],
+        names: Mapping[str, Path],
+        formats: Mapping[str, Storage],
+        tables: Tables = dict,
+    ):
+        self._device, self._formats = device, formats
+        with ExitStack() as stack:
+            self._encode, self._decode = (
+                device.owned(stack, device.fragment_pass(shader, defines, names)) for shader in shaders
+            )
+            self._tables = uploaded(device, stack, tables())
+            self._stack = stack.pop_all()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def _through(self, results: Sequence[Storage], **given: np.ndarray) -> list[np.ndarray]:
+        """Arrays of shape (height, width, channels) through the targets, as the decoding pass gives them back.
+
+        Raises:
+            FormatError: the device cannot render to a format.
+        """
+        device = self._device
+        with ExitStack() as stack:
+            sources = uploaded(device, stack, given)
+            kept = self._written(stack, sources)
+            made = [device.owned(stack, device.target(kept["texels"].size, storage)) for storage in results]
+            device.render(self._decode, made, **kept, **sources, **self._tables)
+            return [read_pixels(texture) for texture in made]
+
+    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+        """What the encoding pass leaves in the targets; released with the stack."""
+        device, size = self._device, next(iter(sources.values())).size
+        kept = {name: device.owned(stack, device.target(size, storage)) for name, storage in self._formats.items()}
+        device.render(self._encode, list(kept.values()), **sources, **self._tables)
+        return kept
+
+
+def uploaded(device: Device, stack: ExitStack, arrays: Mapping[str, np.ndarray]) -> Textures:
+    """Arrays as textures by name, released with the stack."""
+    return {name: device.owned(stack, device.upload(array)) for name, array in arrays.items()}
+
+
+def exact(
+    device: Device,
+    shader: str,
+    defines: Mapping[str, object],
+    names: Mapping[str, Path],
+    given: Sequence[np.ndarray],
+    outputs: int,
+    tables: Tables = dict,
+    **uniforms: Any,
+) -> list[np.ndarray]:
+    """What a compute shader makes of float32 arrays of shape (count, 4), without any storage: arrays of that shape."""
+    with ExitStack() as stack:
+        compute: Any = device.owned(stack, device.compute_pass(shader, defines, names))
+        bind(compute, uploaded(device, stack, tables()))
+        set_uniforms(compute, uniforms)
+        return device.computed(compute, given, outputs)

@@ -1,0 +1,39 @@
+"""A layout as macros: what `words.glsl` and `gbuffer.glsl` are given."""
+
+from __future__ import annotations
+
+from ..codecs.codec_passes import levels_of, storage_kind
+from ..layouts.layout import COMPONENTS, PACKINGS, Layout
+
+
+def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]:
+    """The macros that make `gbuffer.glsl` speak of a layout; `rounds` is `shader_roundings`."""
+    words = layout.words
+    storages = [target.storage for target in layout.targets]
+    first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
+    first |= {"POWER": "power", "KIND": "kind", "INSTANCE": "instance"}
+    widen, bias = PACKINGS[layout.packing]
+    return {
+        **{name: COMPONENTS.index(component) for name, component in first.items()},
+        "NUMBERS": len(COMPONENTS),
+        "WORDS": len(words),
+        "WORD_COMPONENT": tuple(COMPONENTS.index(word.component) for word in words),
+        "WORD_TARGET": tuple(word.target for word in words),
+        "WORD_FIRST": tuple(word.first for word in words),
+        "WORD_BITS": tuple(word.bits for word in words),
+        "TARGETS": len(storages),
+        "TARGET_KIND": tuple(storage_kind(storage) for storage in storages),
+        "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
+        "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
+        "TARGET_ROUNDS": rounds,
+        "NORMAL_LEVELS": levels_of(layout.encoding),
+        "NORMAL_SCALE": layout.normal_scales,
+        "NORMAL_BIASED": int(layout.codec.storage.is_biased),
+        "PACK_WIDEN": widen,
+        "PACK_BIAS": bias,
+        "HAS_DEPTH": int("depth" in layout.components),
+        "HAS_POWER": int("power" in layout.components),
+        "HAS_KIND": int("kind" in layout.components),
+        "HAS_INSTANCE": int("instance" in layout.components),
+        "WORLD_SPACE": int(layout.space == "world"),
+    }

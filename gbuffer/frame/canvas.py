@@ -1,0 +1,171 @@
+"""What a pass draws with: targets that it writes, programs that know the frame, and what it reads, bound by name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..gl.handles import Program, VertexArray
+from .contract import Pass, PipelineError, Run
+from .frame import Frame
+from .meshes import Geometry
+from .resource import Resource
+from .scene_buffers import Sight
+
+# Of surfaces that meet in one depth, as the two faces of a silhouette do, the first wins: passes that write the depth
+# keep it, passes over that depth change each sample once. Every pass leaves the stencil at 0.
+NEAREST, AGAIN = "<", "<="
+# What covers the target lies at the far plane: it is in front of nothing but the background.
+COVERED = ">"
+
+
+class Canvas:
+    """A frame as one pass sees it.
+
+    Attributes:
+        frame, device, plan: what the frame is made of, on which device.
+        told: the macros that earlier passes and this one tell.
+
+    Raises:
+        PipelineError: the pass uses what it does not declare.
+    """
+
+    def __init__(self, frame: Frame, one: Pass):
+        self.frame, self.device, self.plan, self._pass = frame, frame.device, frame.plan, one
+        earlier = frame.pipeline.upto(one)
+        self.told = {name: value for stage in (*earlier, one) for name, value in stage.tells.items()}
+        offered = {resource for stage in earlier for resource in stage.offers}
+        self._samplers = _samplers((*one.reads, *offered), one.writes)
+        self._size, self._view = frame.plan.size, None
+
+    def begin(self) -> None:
+        """Clear what the pass begins anew."""
+        for resource in self._pass.begins:
+            self.frame.clear(resource)
+
+    def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
+        """A resource's textures: of the copy in use, or `copy` before it."""
+        return self.frame.textures(self._declared(resource, (*self._pass.reads, *self._pass.writes)), copy)
+
+    def swap(self, resource: Resource) -> None:
+        """Write the next copy from here on; what was in use is the copy before."""
+        self.frame.held(self._declared(resource, self._pass.writes)).move_on()
+
+    def target(self, *colours: Resource, depth: Resource | None = None, most: int | None = None) -> Target:
+        """What to draw into.
+
+        Args:
+            colours: resources that the pass writes, in the order of the shader's outputs.
+            depth: depth and stencil to draw against; written if the pass writes it.
+            most: how many textures at most.
+        """
+        for resource in colours:
+            self._declared(resource, self._pass.writes)
+        if depth:
+            self._declared(depth, (*self._pass.reads, *self._pass.writes))
+        return Target(self, colours, depth, most, depth in self._pass.writes)
+
+    def at(self, size: tuple[int, int], view: Sight | None) -> None:
+        """Prepare the programs that follow for a target of this size, seen from `view` or by the scene's own camera."""
+        self._size, self._view = size, view
+
+    def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
+        """A compiled pair of shaders that knows the frame's layout and what was told. Raises ShaderError."""
+        made = self.frame.program(vertex, fragment, **{**self.told, **defines})
+        for name in made:
+            if name.removesuffix("_before") in self.frame.pipeline.resources and name not in self._samplers:
+                raise PipelineError(f"pass {self._pass.name} samples {name}, which it does not read")
+        return made
+
+    def fullscreen(self, fragment: str | Path, **defines: object) -> VertexArray:
+        """A shader to run over a whole target: `render(vertices=3)`."""
+        return self.frame.array(self.program("fullscreen.vert", fragment, **defines), [])
+
+    def geometry(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Geometry:
+        """A program to draw the scene's meshes with."""
+        return Geometry(self.frame, self.program(vertex, fragment, **defines))
+
+    def over(
+        self,
+        fragment: str | Path,
+        *colours: Resource,
+        depth: Resource | None = None,
+        blend: tuple[int, int] | None = None,
+        **defines: object,
+    ) -> Run:
+        """A pass that is one shader over whole targets, or over what is covered if there is a depth."""
+        target, covers = self.target(*colours, depth=depth), self.fullscreen(fragment, **defines)
+
+        def run() -> None:
+            target.use()
+            self.device.state(COVERED if depth else None, blend)
+            self.prepare(covers.program)
+            covers.render(vertices=3)
+
+        return run
+
+    def prepare(self, program: Program, **textures: Any) -> None:
+        """Bind what shaders read before a draw: the frame, the scene, tables, and what the pass reads by its name."""
+        read = {name: self.frame.textures(*at) for name, at in self._samplers.items() if name in program}
+        there = {name: several for name, several in read.items() if several}
+        self.frame.bind(program, self._size, self._view, {**there, **textures})
+
+    def _declared(self, resource: Resource, known: tuple[Resource, ...]) -> Resource:
+        if resource not in known:
+            raise PipelineError(f"pass {self._pass.name} uses {resource.name}, which it does not declare")
+        return resource
+
+
+def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
+    """The samplers that resources are read by, each with its resource and copy."""
+    found = {resource.name: (resource, 0) for resource in reads}
+    return found | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
+
+
+@dataclass(frozen=True)
+class Target:
+    """Textures to draw into, looked up at each use: copies move on."""
+
+    canvas: Canvas
+    colours: tuple[Resource, ...]
+    depth: Resource | None
+    most: int | None
+    writes_depth: bool
+
+    def use(self, view: Sight | None = None, at: int | None = None) -> None:
+        """Draw here.
+
+        Args:
+            view: from where; the scene's camera if None.
+            at: which slice of volumes; all of them, by `gl_Layer`, if None.
+        """
+        frame = self.canvas.frame
+        colours = [texture for resource in self.colours for texture in frame.textures(resource)]
+        made = frame.framebuffer(colours[: self.most], self.depth, self.writes_depth, at)
+        made.use()
+        self.canvas.at(made.size, view)
+
+
+@dataclass(frozen=True)
+class Built:
+    """A pass made ready: what to run, on which canvas."""
+
+    canvas: Canvas
+    run: Run
+
+    def __call__(self) -> None:
+        self.canvas.begin()
+        self.run()
+
+
+def built(frame: Frame, one: Pass) -> Run:
+    """A pass made ready for a frame; nothing to run where nothing that it writes is there.
+
+    Raises:
+        PipelineError, ShaderError, FormatError: it cannot be made.
+    """
+    if not any(resource.texels(frame.plan) for resource in one.writes):
+        return lambda: None
+    canvas = Canvas(frame, one)
+    return Built(canvas, one.build(canvas))

@@ -1,0 +1,188 @@
+"""What passes promise one another: what each reads and writes, in which order. Checked when a pipeline is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from .plan import Plan
+from .resource import Resource
+from .resources import COLOURS, GBUFFER, LIGHT
+
+if TYPE_CHECKING:
+    from .canvas import Canvas
+
+Run = Callable[[], None]
+
+
+class PipelineError(Exception):
+    """Passes that do not fit together: one line that names the pass and the resource."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """One pass over a frame.
+
+    Attributes:
+        name: what tables call it, once in a pipeline.
+        reads: what earlier passes have written, and what the frame before has kept.
+        writes: what later passes may read. What it does not read as well is cleared before it runs.
+        build: given a canvas it compiles, and returns what to run for each frame. It is not called where nothing that
+            the pass writes is there.
+        after: of an effect's pass: the pass that it follows.
+        tells: macros for itself and every later pass. An effect tells who may read what it writes.
+        expects: values of macros that it can work with, some earlier pass having told one of them.
+        needs: components that it cannot do without in the G-buffer.
+    """
+
+    name: str
+    reads: tuple[Resource, ...]
+    writes: tuple[Resource, ...]
+    build: Callable[[Canvas], Run]
+    after: str = ""
+    tells: Mapping[str, int] = field(default_factory=dict)
+    expects: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    needs: frozenset[str] = frozenset()
+
+    @property
+    def begins(self) -> tuple[Resource, ...]:
+        """What it writes from nothing."""
+        return tuple(resource for resource in self.writes if resource not in self.reads)
+
+    @property
+    def offers(self) -> tuple[Resource, ...]:
+        """What later passes may read without saying so, by a macro."""
+        return self.writes if self.after and self.tells else ()
+
+
+@dataclass(frozen=True)
+class Pipeline:
+    """An ordered list of passes.
+
+    Attributes:
+        name, title, source: what it is called, what it is, where it comes from.
+        stages: the passes, in order.
+        usual_layout: the layout it is published with.
+
+    Raises:
+        PipelineError: its passes do not fit together.
+    """
+
+    name: str
+    title: str
+    source: str
+    stages: tuple[Pass, ...]
+    usual_layout: str = "hybrid"
+
+    def __post_init__(self):
+        for index, one in enumerate(self.stages):
+            reason = next(_misfits(one, self.stages[:index], self.stages), None)
+            if reason:
+                raise PipelineError(f"pipeline {self.name}: pass {one.name} {reason}")
+
+    @cached_property
+    def resources(self) -> Mapping[str, Resource]:
+        """All that its passes write, by name."""
+        return {resource.name: resource for one in self.stages for resource in one.writes}
+
+    @cached_property
+    def told(self) -> Mapping[str, int]:
+        """All macros that its passes tell."""
+        return {name: value for one in self.stages for name, value in one.tells.items()}
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Components that it cannot do without in the G-buffer, besides the normal."""
+        return frozenset().union(*(one.needs for one in self.stages))
+
+    @property
+    def has_gbuffer(self) -> bool:
+        """Whether a layout makes a difference to it."""
+        return GBUFFER.name in self.resources
+
+    @property
+    def light_targets(self) -> tuple[int, ...]:
+        """How many targets its light buffer may have; empty where it has none."""
+        if LIGHT.name not in self.resources:
+            return ()
+        return (1,) if self.told["LIGHT_HOLDS"] == COLOURS else (1, 2)
+
+    @property
+    def scaled(self) -> bool:
+        """Whether G-buffer and light buffer may be smaller than the image."""
+        return bool(self.told.get("FILTERS"))
+
+    @property
+    def starts_light(self) -> bool:
+        """Whether one pass writes the G-buffer and, in one more target, the light buffer."""
+        return any({GBUFFER, LIGHT} <= set(one.writes) for one in self.stages)
+
+    def planned(self, plan: Plan) -> Plan:
+        """A plan as this pipeline takes it."""
+        return replace(plan, apart=self.scaled)
+
+    def upto(self, stage: Pass) -> tuple[Pass, ...]:
+        """The passes before one; all of them if it is none of them."""
+        return self.stages[: self.stages.index(stage)] if stage in self.stages else self.stages
+
+    def with_effect(self, passes: Iterable[Pass]) -> Pipeline:
+        """The pipeline with an effect's passes, each behind the one that it names and those that did so before.
+
+        Raises:
+            PipelineError: there is no such pass, or they do not fit.
+        """
+        stages = list(self.stages)
+        for one in passes:
+            stages.insert(_place(self.name, one, stages), one)
+        return replace(self, stages=tuple(stages))
+
+
+def _place(pipeline: str, one: Pass, stages: list[Pass]) -> int:
+    names = [stage.name for stage in stages]
+    if one.after not in names:
+        known = ", ".join(names)
+        raise PipelineError(f"pipeline {pipeline}: pass {one.name} comes after {one.after!r}; known: {known}")
+    place = names.index(one.after) + 1
+    while place < len(stages) and stages[place].after == one.after:
+        place += 1
+    return place
+
+
+def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:
+    """Why a pass does not fit behind others, reason after reason."""
+    if one.name in [other.name for other in earlier]:
+        yield "has the name of another pass"
+    if not one.writes:
+        yield "writes nothing"
+    for resource in (*one.reads, *one.writes):
+        yield from _resource_misfits(resource, earlier)
+    for resource in one.reads:
+        if resource.name not in _written(stages if resource.kept else earlier):
+            yield f"reads {resource.name}, which no {'' if resource.kept else 'earlier '}pass writes"
+        if taker := next((other for other in _written(earlier).values() if other.shares == resource), None):
+            yield f"reads {resource.name}, whose place {taker.name} has taken"
+    yield from _macro_misfits(one, {name: value for other in earlier for name, value in other.tells.items()})
+
+
+def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
+    return {resource.name: resource for stage in stages for resource in stage.writes}
+
+
+def _resource_misfits(resource: Resource, earlier: Sequence[Pass]) -> Iterator[str]:
+    """Why a resource cannot be."""
+    if resource.misfit:
+        yield f"has the resource {resource.name}, which {resource.misfit}"
+    if _written(earlier).get(resource.name, resource) != resource:
+        yield f"has a resource {resource.name} that differs from an earlier pass's"
+
+
+def _macro_misfits(one: Pass, told: Mapping[str, int]) -> Iterator[str]:
+    """Why a pass cannot work with what it is told."""
+    for macro, value in one.tells.items():
+        if told.get(macro, value) != value:
+            yield f"tells {macro} {value}, and an earlier pass {told[macro]}"
+    for macro, values in one.expects.items():
+        if told.get(macro) not in values:
+            yield f"expects {macro} {' or '.join(map(str, values))}, and is told {told.get(macro, 'nothing')}"

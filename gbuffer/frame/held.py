@@ -1,0 +1,50 @@
+"""A resource on the device."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import Any
+
+from ...encodings.storages.storage import Storage
+from ..gl.device import Device
+from ..gl.raw import depth_stencil
+from .plan import Plan
+from .resource import DEPTH_MAP, Resource, Texel
+
+
+class Held:
+    """A resource's copies, made when first asked for and released with the stack; one of them is in use."""
+
+    def __init__(self, device: Device, stack: ExitStack, resource: Resource, plan: Plan):
+        self._device, self._stack, self._resource = device, stack, resource
+        self._texels, self._shape = resource.texels(plan), resource.shape(plan)
+        self._copies: dict[int, list[Any]] = {}
+        self._used = 0
+
+    def copy(self, before: int) -> list[Any]:
+        """The textures, or the depth buffer, of the copy in use or of one before it."""
+        place = (self._used - before) % self._resource.copies
+        if place not in self._copies:
+            self._copies[place] = [self._made(texel) for texel in self._texels]
+        return self._copies[place]
+
+    def move_on(self) -> None:
+        """Use the next copy."""
+        self._used = (self._used + 1) % self._resource.copies
+
+    def _made(self, texel: Texel) -> Any:
+        made = self._texture(texel)
+        self._stack.callback(made.release)
+        if self._resource.smooth:
+            self._device.smooth(made)
+        return made
+
+    def _texture(self, texel: Texel) -> Any:
+        width, height, samples = self._shape
+        if isinstance(texel, Storage):
+            volume = (width, height, self._resource.depth)
+            volumes, flat = self._device.volume, self._device.target
+            return volumes(volume, texel) if self._resource.depth else flat((width, height), texel, samples)
+        if texel == DEPTH_MAP:
+            return self._device.depth_map((width, height))
+        return depth_stencil(self._device.context, (width, height), samples)

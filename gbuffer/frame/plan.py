@@ -1,0 +1,52 @@
+"""What a frame is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...encodings.codecs.light_codec import LightCodec
+from ..layouts.layout import Layout
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a frame is made of.
+
+    Attributes:
+        size: width and height of the final image.
+        samples: of each pixel.
+        layout, light_buffer: what the G-buffer and the light are kept in.
+        light_targets: 1 or 2, see `accumulation.glsl`.
+        shadows: whether the sun has a shadow map.
+        scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
+        apart: whether G-buffer and light buffer have that scale, and one sample a pixel; the pipeline says so.
+    """
+
+    size: tuple[int, int]
+    samples: int
+    layout: Layout
+    light_buffer: LightCodec
+    light_targets: int
+    shadows: bool
+    scale: float
+    apart: bool = False
+
+    @property
+    def surface_scale(self) -> float:
+        """Of the G-buffer's size to the image's."""
+        return self.scale if self.apart else 1.0
+
+    @property
+    def surface_size(self) -> tuple[int, int]:
+        """Width and height of the G-buffer."""
+        return scaled(self.size, self.surface_scale)
+
+    @property
+    def surface_samples(self) -> int:
+        """Samples of each pixel of the G-buffer."""
+        return 1 if self.apart else self.samples
+
+
+def scaled(size: tuple[int, int], scale: float) -> tuple[int, int]:
+    """A share of a size, of one pixel or more."""
+    return max(round(size[0] * scale), 1), max(round(size[1] * scale), 1)

@@ -1,0 +1,117 @@
+"""What passes hand on to one another: textures by name, whose formats and sizes follow from a frame's plan."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ...encodings.storages.storage import FORMATS, R32F, Storage
+from ..layouts.layout import DEPTH_STENCIL_BYTES
+from .plan import Plan, scaled
+
+# The two formats that hold depth: one that shaders read, and the one that geometry is tested against.
+DEPTH_MAP, DEPTH_STENCIL = "depth map", "depth and stencil"
+# Whose size and samples a resource follows.
+IMAGE, SURFACES = "image", "surfaces"
+# Samples: those of what it follows.
+AS_MANY = 0
+
+Texel = Storage | str
+
+
+def _light(plan: Plan) -> tuple[Texel, ...]:
+    return (plan.light_buffer.storage,) * plan.light_targets
+
+
+def _next_light(plan: Plan) -> tuple[Texel, ...]:
+    return _light(plan) if plan.light_buffer.blend == "read" else ()
+
+
+def _linear_depth(plan: Plan) -> tuple[Texel, ...]:
+    return () if "depth" in plan.layout.components else (R32F,)
+
+
+# Formats that a plan decides, as the texels of each texture; a resource without any is not there.
+PLANNED: Mapping[str, Callable[[Plan], tuple[Texel, ...]]] = MappingProxyType(
+    {
+        "the layout's": lambda plan: tuple(target.storage for target in plan.layout.targets),
+        "the light buffer's": _light,
+        "the light buffer's, where it is read": _next_light,
+        "linear depth": _linear_depth,
+        "shadows": lambda plan: (DEPTH_MAP,) * plan.shadows,
+    }
+)
+KNOWN = (*FORMATS, *PLANNED, DEPTH_MAP, DEPTH_STENCIL)
+
+
+@dataclass(frozen=True)
+class Resource:
+    """A texture, or several of one size, that passes write and read.
+
+    Attributes:
+        name: the sampler that reads it; `<name>_before` reads the copy before.
+        format: one of KNOWN.
+        scale: of the size of what it follows, or a size in pixels of its own.
+        follows: whose size and samples it has: the IMAGE's, or those of the G-buffer's SURFACES.
+        samples: of each pixel: 1, or AS_MANY.
+        copies: 2 or more for what is read while it is written. The second is made when first asked for.
+        depth: the slices of a volume; 0 for a texture of two dimensions.
+        kept: whether the next frame reads it. Each frame then moves on by one copy, and may read before it writes.
+        smooth: whether `texture()` blends neighbouring texels.
+        shares: the resource that it is wherever the two have one size and as many samples; it takes that one's place,
+            which no later pass may read.
+    """
+
+    name: str
+    format: str
+    scale: float | tuple[int, int] = 1.0
+    follows: str = IMAGE
+    samples: int = 1
+    copies: int = 1
+    depth: int = 0
+    kept: bool = False
+    smooth: bool = False
+    shares: Resource | None = None
+
+    def texels(self, plan: Plan) -> tuple[Texel, ...]:
+        """The format of each of its textures."""
+        return PLANNED[self.format](plan) if self.format in PLANNED else (FORMATS.get(self.format, self.format),)
+
+    def shape(self, plan: Plan) -> tuple[int, int, int]:
+        """Width, height, and samples of a pixel."""
+        is_image = self.follows == IMAGE
+        size, samples = (plan.size, plan.samples) if is_image else (plan.surface_size, plan.surface_samples)
+        own = self.scale if isinstance(self.scale, tuple) else scaled(size, self.scale)
+        return *own, samples if self.samples == AS_MANY else self.samples
+
+    def is_shared(self, plan: Plan) -> bool:
+        """Whether it is the resource that it shares."""
+        return self.shares is not None and self.shares.shape(plan) == self.shape(plan)
+
+    def bytes_per_pixel(self, plan: Plan) -> float:
+        """Of one copy, of all if they are kept, for a pixel of the image; 0 for what has a size in pixels."""
+        if isinstance(self.scale, tuple) or self.is_shared(plan):
+            return 0.0
+        sizes = (sum(t.bits) // 8 if isinstance(t, Storage) else DEPTH_STENCIL_BYTES for t in self.texels(plan))
+        part = self.scale if self.follows == IMAGE else self.scale * plan.surface_scale
+        return sum(sizes) * (self.copies if self.kept else 1) * self.shape(plan)[2] * part**2
+
+    @property
+    def misfit(self) -> str | None:
+        """Why it cannot be; None where it can."""
+        if self.format not in KNOWN:
+            return f"has the unknown format {self.format!r}; known: {', '.join(KNOWN)}"
+        if self.depth and (self.samples != 1 or not isinstance(self.scale, tuple)):
+            return "is a volume, which has one sample and a size in pixels"
+        if self.depth and not _is_plain(FORMATS.get(self.format)):
+            return f"is a volume, which cannot have the format {self.format!r}"
+        if self.copies < 1 or (self.kept and self.copies < 2):
+            return f"has {self.copies} copies; what is kept needs 2"
+        return None
+
+
+def _is_plain(storage: Storage | None) -> bool:
+    """Whether a device makes volumes of a format: channels of one size, bytes or floats."""
+    usual = {("unorm", 8), ("float", 16), ("float", 32)}
+    return storage is not None and {(storage.kind, bits) for bits in storage.bits} <= usual

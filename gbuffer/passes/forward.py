@@ -1,0 +1,31 @@
+"""Opaque surfaces, each under all lights at once, or under none of them."""
+
+from functools import partial
+
+from ..frame.canvas import NEAREST, Canvas
+from ..frame.contract import Pass, Run
+from ..frame.resources import DEPTH, FINAL, SHADOW_MAP
+from .forward_surfaces import ForwardSurfaces
+
+
+def forward() -> Pass:
+    """All opaque surfaces under all lights."""
+    return Pass("forward", (SHADOW_MAP,), (FINAL, DEPTH), partial(_build, True))
+
+
+def ambient() -> Pass:
+    """All opaque surfaces under ambient light, for lights to be added to."""
+    return Pass("ambient", (), (FINAL, DEPTH), partial(_build, False))
+
+
+def _build(lights: bool, canvas: Canvas) -> Run:
+    target = canvas.target(FINAL, depth=DEPTH)
+    surfaces = ForwardSurfaces(canvas, lights and bool(canvas.frame.scene_buffers.first_lamp))
+
+    def run() -> None:
+        target.use()
+        canvas.device.state(NEAREST)
+        surfaces.prepare(base=1.0)
+        surfaces.draw("opaque", *(surfaces.lamps if lights else (0, 0)))
+
+    return run

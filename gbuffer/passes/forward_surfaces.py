@@ -1,0 +1,26 @@
+"""The scene's meshes, lit as they are drawn."""
+
+from ..frame.canvas import Canvas
+
+
+class ForwardSurfaces:
+    """The scene's meshes, lit as they are drawn: by the sun or not, and by a range of lamps.
+
+    Attributes:
+        lamps: the number of the first lamp, and one more than that of the last.
+    """
+
+    def __init__(self, canvas: Canvas, by_sun: bool):
+        self._canvas, buffers = canvas, canvas.frame.scene_buffers
+        self._surfaces = canvas.geometry("geometry.vert", "forward.frag", LIT_BY_SUN=int(by_sun))
+        self.lamps = (buffers.first_lamp, len(buffers.lights))
+
+    def prepare(self, base: float) -> None:
+        """Bind; `base` is the share of ambient light and the surface's own."""
+        self._canvas.prepare(self._surfaces.program)
+        self._surfaces.program["base"] = base
+
+    def draw(self, name: str | int, first: int, last: int) -> None:
+        """Draw one of the scene's lists under lamps `first` to `last` - 1."""
+        self._surfaces.program["lit_by"] = (first, last)
+        self._surfaces.draw(name)

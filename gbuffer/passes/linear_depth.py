@@ -1,0 +1,14 @@
+"""The native depth buffer resolved to linear view depth; nothing where the layout keeps a depth of its own."""
+
+from ..frame.canvas import Canvas
+from ..frame.contract import Pass, Run
+from ..frame.resources import DEPTH, LINEAR_DEPTH
+
+
+def linear_depth() -> Pass:
+    """View depth of every pixel."""
+    return Pass("linear_depth", reads=(DEPTH,), writes=(LINEAR_DEPTH,), build=_build)
+
+
+def _build(canvas: Canvas) -> Run:
+    return canvas.over("linear_depth.frag", LINEAR_DEPTH)

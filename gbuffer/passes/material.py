@@ -1,0 +1,64 @@
+"""The second geometry pass: materials under the light that was accumulated."""
+
+from functools import partial
+
+from ..frame.canvas import AGAIN, NEAREST, Canvas
+from ..frame.contract import Pass, Run
+from ..frame.resources import BY_KIND, DEPTH, FINAL, FINAL_DEPTH, LIGHT, SURFACE, TERMS
+from ..gl import raw
+from ..gl.device import ADD, OVER
+
+
+def material(draws: str, filters: bool = False) -> Pass:
+    """Surfaces under the light buffer's light.
+
+    Args:
+        draws: which of the scene's lists: "opaque" begins the image, "special" is added to what is there, with its
+            ambient light, and "transparent" is laid over it.
+        filters: whether the light buffer has a size of its own, and is read by the discontinuity-sensitive filter.
+    """
+    depth = FINAL_DEPTH if filters else DEPTH
+    begins = draws == "opaque"
+    reads = (LIGHT, *(SURFACE if filters else ()), *(() if begins else (FINAL,)))
+    # Behind a filter the G-buffer's depth is another size: depth is drawn anew.
+    draws_depth = filters and begins
+    expects = {"LIGHT_HOLDS": (BY_KIND,) if draws == "special" else (TERMS,), "FILTERS": (int(filters),)}
+    return Pass(
+        "transparent" if draws == "transparent" else "material",
+        reads=reads if draws_depth else (*reads, depth),
+        writes=(FINAL, depth) if draws_depth else (FINAL,),
+        build=partial(_filtered if filters else _guarded, draws),
+        expects=expects,
+    )
+
+
+def _guarded(draws: str, canvas: Canvas) -> Run:
+    """Each sample once, over the G-buffer's depth."""
+    target, surfaces = canvas.target(FINAL, depth=DEPTH), canvas.geometry("geometry.vert", "material.frag")
+    context, blend = canvas.device.context, ADD if draws == "special" else None
+
+    def run() -> None:
+        target.use()
+        canvas.device.state(AGAIN, blend)
+        context.enable_direct(raw.STENCIL_TEST)
+        raw.once_a_pixel(1)
+        canvas.prepare(surfaces.program)
+        surfaces.draw(draws)
+        context.disable_direct(raw.STENCIL_TEST)
+        raw.clear_stencil()
+
+    return run
+
+
+def _filtered(draws: str, canvas: Canvas) -> Run:
+    """Over a depth of the image's own."""
+    target, surfaces = canvas.target(FINAL, depth=FINAL_DEPTH), canvas.geometry("geometry.vert", "material.frag")
+    blend = OVER if draws == "transparent" else None
+
+    def run() -> None:
+        target.use()
+        canvas.device.state(NEAREST, blend)
+        canvas.prepare(surfaces.program)
+        surfaces.draw(draws)
+
+    return run

@@ -1,0 +1,25 @@
+"""Transparent surfaces, farthest first, each under all lights: no deferred pass holds more than one surface."""
+
+from ..frame.canvas import NEAREST, Canvas
+from ..frame.contract import Pass, Run
+from ..frame.resources import DEPTH, FINAL, SHADOW_MAP
+from ..gl.device import OVER
+from .forward_surfaces import ForwardSurfaces
+
+
+def transparent() -> Pass:
+    """Transparent surfaces over the image."""
+    return Pass("transparent", (FINAL, DEPTH, SHADOW_MAP), (FINAL,), _build)
+
+
+def _build(canvas: Canvas) -> Run:
+    target = canvas.target(FINAL, depth=DEPTH)
+    surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))
+
+    def run() -> None:
+        target.use()
+        canvas.device.state(NEAREST, OVER)
+        surfaces.prepare(base=1.0)
+        surfaces.draw("transparent", *surfaces.lamps)
+
+    return run

@@ -1,0 +1,1 @@
+"""A frame read back: the G-buffer unpacked, the image resolved."""

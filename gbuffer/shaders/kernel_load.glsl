@@ -1,8 +1,0 @@
-// A texel to the numbers of a code, as its storage has them.
-#include "../../encodings/storage.glsl"
-
-MADE kernel_operation(GIVEN given, BESIDE beside) {
-    vec4 texel = vec4(0.0);
-    for (int i = 0; i < given.length(); ++i) texel[i] = given[i];
-    return MADE(from_texel(texel));
-}

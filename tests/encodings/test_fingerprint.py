@@ -1,0 +1,67 @@
+"""The fingerprint of an encoding: it changes with whatever makes its figures, and with nothing else."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.encodings.catalogue import ENCODINGS
+
+GLSL = """#include "scale.glsl"
+vec2 mine_encode(vec3 n, vec3 view) { return n.xy * SCALE; }
+vec3 mine_decode(vec2 e, vec3 view) { return vec3(e / SCALE, 1.0); }
+"""
+TWIN = """from normalbench.encodings.vec import Vec2, Vec3
+SCALE = 0.5
+def encode(n, view): return Vec2(n.x * SCALE, n.y * SCALE)
+def decode(e, view): return Vec3(e.x / SCALE, e.y / SCALE, 1.0)
+"""
+
+
+def fingerprint(folder: Path, glsl: str = GLSL, twin: str = TWIN, scale: str = "0.5") -> str:
+    folder.mkdir(exist_ok=True)
+    for name, text in (("mine.glsl", glsl), ("mine.py", twin), ("scale.glsl", f"const float SCALE = {scale};\n")):
+        (folder / name).write_text(text)
+    return read_encoding(folder / "mine.glsl").fingerprint
+
+
+def test_it_is_the_files_wherever_they_lie(tmp_path):
+    first = fingerprint(tmp_path / "one")
+    assert first == fingerprint(tmp_path / "other") and len(first) == 16 and int(first, 16)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"glsl": GLSL.replace("1.0", "0.9")},
+        {"twin": TWIN.replace("SCALE = 0.5", "SCALE = 0.25")},
+        {"scale": "0.25"},
+    ],
+    ids=("glsl", "twin", "included"),
+)
+def test_one_changed_constant_in_a_users_file_changes_it(tmp_path, changed):
+    assert fingerprint(tmp_path) != fingerprint(tmp_path, **changed)
+
+
+def test_a_twin_that_is_there_is_part_of_it(tmp_path):
+    before = fingerprint(tmp_path)
+    (tmp_path / "mine.py").unlink()
+    assert read_encoding(tmp_path / "mine.glsl").fingerprint != before
+
+
+def test_what_the_name_does_not_say_changes_it():
+    """Parameters, tables and precise rounding of one pair of files; the name alone does not."""
+    octahedral, stereographic, spherical = (ENCODINGS[n] for n in ("octahedral", "stereographic", "spherical_lut"))
+    (sampler, table), *_ = spherical.tables().items()
+    others = [
+        octahedral,
+        ENCODINGS["octahedral_precise"],
+        stereographic,
+        stereographic.with_parameters({"scale": 1.5}),
+        spherical,
+        replace(spherical, tables=lambda: {sampler: np.zeros_like(table)}),
+    ]
+    assert len({encoding.fingerprint for encoding in others}) == len(others)
+    assert replace(octahedral, name="mine", functions="octahedral").fingerprint == octahedral.fingerprint

@@ -1,0 +1,99 @@
+"""Every kind of encoding keeps the same rules, and a codec of any kind can be asked the same."""
+
+import inspect
+import re
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.encodings.catalogue import BY_KIND, LIGHT_BUFFERS, PRECISE
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, KINDS, LIGHT, NORMAL
+from normalbench.encodings.codecs.light_codec import LightCodec
+from normalbench.encodings.rotation import frame_of
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.storage import FRAME_STORAGES, LIGHT_STORAGES, STORAGES
+from normalbench.encodings.vec import Vec3, Vec4
+
+ROOT = Path(__file__).parents[2]
+EVERY = [pytest.param(e, id=f"{kind.name} {e.name}") for kind, found in BY_KIND.items() for e in found.values()]
+USUAL = {DEPTH: (DepthCodec, DEPTH_STORAGES), FRAME: (FrameCodec, FRAME_STORAGES), LIGHT: (LightCodec, LIGHT_STORAGES)}
+
+
+def number(x: float):
+    return jnp.full(1, x, jnp.float32)
+
+
+FORWARD, RIGHT = Vec3(number(0), number(0), number(1)), Vec3(number(1), number(0), number(0))
+# A codec of each kind, what it is asked to store, and how many bits and codes it has.
+CODECS = {
+    NORMAL: (Codec(BY_KIND[NORMAL]["octahedral"], STORAGES["rg8"]), (FORWARD, RIGHT), 16, 2**16),
+    DEPTH: (DepthCodec(BY_KIND[DEPTH]["linear"], DEPTH_STORAGES["packed24"]), (number(5), 1.0, number(9)), 24, 2**24),
+    FRAME: (
+        FrameCodec(BY_KIND[FRAME]["qtangent"], FRAME_STORAGES["rgba8"]),
+        (frame_of(FORWARD, RIGHT, number(1)),),
+        32,
+        2**32,
+    ),
+    LIGHT: (LIGHT_BUFFERS["linear"], (Vec4(*[number(1)] * 4),), 32, 2**32),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_the_catalogue_and_the_files_are_the_same(kind):
+    folder = ROOT / "encodings" / kind.folder
+    files = {suffix: {path.stem for path in folder.glob(f"*{suffix}")} for suffix in (".py", ".glsl")}
+    assert files[".py"] == files[".glsl"] == set(BY_KIND[kind]) - set(PRECISE)
+
+
+@pytest.mark.parametrize("encoding", EVERY)
+def test_an_encoding_is_complete(encoding):
+    assert encoding.title and encoding.citation and encoding.ulps_reason and len(encoding.ulps) == 2
+    for function in ("encode", "decode"):
+        assert inspect.getdoc(getattr(encoding, function)), f"{function}: shapes and special cases are said"
+    text = encoding.glsl.read_text()
+    assert [signature for signature in encoding.signatures if signature not in text] == []
+    assert f"{encoding.glsl.stem}.py" in text.splitlines()[0], "the twin is named"
+
+
+@pytest.mark.parametrize("encoding", EVERY)
+def test_the_twins_carry_the_same_formula(encoding):
+    """The formula stands above the line in both languages, in the same symbols."""
+    python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
+    assert python == set(re.findall(r"^    // (.+)$", encoding.glsl.read_text(), re.M))
+
+
+@pytest.mark.parametrize("kind", USUAL, ids=lambda kind: kind.name)
+def test_the_storages_that_an_encoding_is_usually_in_are_there_and_hold_it(kind):
+    codec, storages = USUAL[kind]
+    for encoding in BY_KIND[kind].values():
+        assert [codec(encoding, storages[name]).misfit for name in encoding.storages] == [None] * len(encoding.storages)
+        assert encoding.storages, encoding.name
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_a_codec_of_any_kind_is_asked_the_same(kind):
+    """What is stored is what a round trip decodes; nothing here depends on the kind."""
+    codec, given, bits, codes = CODECS[kind]
+    assert codec.misfit is None and codec.encoding.name in codec.name
+    assert (codec.bits, codec.codes) == (bits, codes)
+    leaves = [np.asarray(leaf) for made in (codec.stored(*given), codec.round_trip(*given)) for leaf in planes(made)]
+    assert all(leaf.shape == (1,) and np.isfinite(leaf).all() for leaf in leaves)
+
+
+def planes(made) -> list:
+    """The arrays of a number, a vector or a tangent frame."""
+    return [leaf for part in made for leaf in planes(part)] if isinstance(made, tuple) else [made]
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({path.parent for path in (ROOT / "encodings").rglob("*.py")}), ids=lambda path: path.name
+)
+def test_a_folder_can_be_taken_in_at_a_glance(folder):
+    """A pair counts as one; the encodings of normals are the exception."""
+    things = {path.stem for path in folder.iterdir() if path.name != "__pycache__"}
+    assert len(things) <= 14 or folder.name == NORMAL.folder, f"{folder.name} holds {len(things)} things"

@@ -1,0 +1,414 @@
+"""Passes and resources: what a pipeline refuses, what a resource can be, and how an effect is added."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawing import FP32, scene_of
+
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.contract import Pass, Pipeline, PipelineError
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.frame.resource import Resource
+from normalbench.gbuffer.frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, FINAL_DEPTH, GBUFFER, TERMS
+from normalbench.gbuffer.passes.forward import forward
+from normalbench.gbuffer.passes.geometry import geometry
+from normalbench.gbuffer.passes.lights import lights
+from normalbench.gbuffer.passes.linear_depth import linear_depth
+from normalbench.gbuffer.passes.material import material
+from normalbench.gbuffer.passes.screen import screen
+from normalbench.gbuffer.passes.shadow_map import shadow_map
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import bytes_per_pixel, rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+ROOT = Path(__file__).parents[2]
+SIZE = (48, 36)
+PLAN = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
+HEAD = '#version 430\n#include "frame.glsl"\n'
+
+
+def nothing(_):
+    return lambda: None
+
+
+def piped(*stages: Pass) -> Pipeline:
+    return Pipeline("mine", "a pipeline of a test", "this test", stages)
+
+
+def rendered(gl, *stages: Pass, scene=None):
+    """Passes behind forward shading of the room."""
+    return rendering(gl, piped(shadow_map(), forward(), *stages), scene or scene_of("room"), PLAN)
+
+
+# What a pipeline refuses
+
+HALF = Resource("half", "rgba16f", scale=0.5)
+WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FINAL,), nothing)
+
+
+@pytest.mark.parametrize(
+    "stages, said",
+    [
+        ((READS, WRITES), "pass second reads half, which no earlier pass writes"),
+        ((WRITES, WRITES), "pass first has the name of another pass"),
+        ((Pass("first", (), (), nothing),), "pass first writes nothing"),
+        (
+            (Pass("first", (), (replace(HALF, format="rgb565"),), nothing),),
+            "pass first has the resource half, which has the unknown format 'rgb565'; known: rgba8, ",
+        ),
+        (
+            (WRITES, Pass("second", (replace(HALF, scale=0.25),), (FINAL,), nothing)),
+            "pass second has a resource half that differs from an earlier pass's",
+        ),
+        (
+            (Pass("first", (), (replace(HALF, depth=8),), nothing),),
+            "pass first has the resource half, which is a volume, which has one sample and a size in pixels",
+        ),
+        (
+            (Pass("first", (), (replace(HALF, scale=(8, 8), depth=8, format="r11g11b10f"),), nothing),),
+            "pass first has the resource half, which is a volume, which cannot have the format 'r11g11b10f'",
+        ),
+        (
+            (Pass("first", (), (replace(HALF, kept=True),), nothing),),
+            "pass first has the resource half, which has 1 copies; what is kept needs 2",
+        ),
+        (
+            (Pass("first", (replace(HALF, kept=True, copies=2),), (FINAL,), nothing),),
+            "pass first reads half, which no pass writes",
+        ),
+        ((geometry(TERMS), screen()), "pass screen reads linear_depth, which no earlier pass writes"),
+        (
+            (shadow_map(), geometry(BY_KIND), linear_depth(), lights(COLOURS)),
+            "pass lights expects LIGHT_HOLDS 1, and is told 2",
+        ),
+        (
+            (shadow_map(), geometry(COLOURS), linear_depth(), lights(COLOURS), screen(), material("special")),
+            "pass material expects LIGHT_HOLDS 2, and is told 1",
+        ),
+        (
+            (shadow_map(), geometry(TERMS), linear_depth(), lights(TERMS), material("opaque", filters=True)),
+            "pass material expects FILTERS 1, and is told 0",
+        ),
+        (
+            (geometry(TERMS), Pass("own", (), (FINAL_DEPTH,), nothing), linear_depth()),
+            "pass linear_depth reads native_depth, whose place final_depth has taken",
+        ),
+        (
+            (geometry(TERMS), Pass("more", (), (FINAL,), nothing, tells={"FILTERS": 1})),
+            "pass more tells FILTERS 1, and an earlier pass 0",
+        ),
+    ],
+)
+def test_a_pipeline_that_does_not_fit_is_refused_in_one_line(stages, said):
+    with pytest.raises(PipelineError) as refused:
+        piped(*stages)
+    assert str(refused.value).startswith(f"pipeline mine: {said}") and "\n" not in str(refused.value), refused.value
+
+
+def test_an_effect_behind_no_pass_is_refused():
+    glow = Pass("glow", (FINAL,), (FINAL,), nothing, after="bloom")
+    with pytest.raises(
+        PipelineError, match=r"^pipeline forward: pass glow comes after 'bloom'; known: shadow_map, for"
+    ):
+        PIPELINES["forward"].with_effect([glow])
+
+
+def test_effects_follow_the_pass_they_name_in_the_order_they_are_added():
+    first, second = (Pass(name, (GBUFFER,), (HALF,), nothing, after="geometry") for name in ("one", "two"))
+    made = PIPELINES["hybrid"].with_effect([first]).with_effect([second])
+    assert [stage.name for stage in made.stages][:5] == ["shadow_map", "geometry", "one", "two", "linear_depth"]
+
+
+def test_what_a_pass_does_not_declare_it_cannot_use(gl, tmp_path):
+    (tmp_path / "mine.frag").write_text(
+        HEAD + "uniform sampler2D final;\nout vec4 o;\nvoid main() { o = texelFetch(final, ivec2(0), 0); }\n"
+    )
+    samples = Pass("mine", (), (HALF,), lambda canvas: canvas.over(tmp_path / "mine.frag", HALF))
+    with (
+        pytest.raises(PipelineError, match=r"^pass mine samples final, which it does not read$"),
+        rendered(gl, samples),
+    ):
+        pass
+    draws = Pass("mine", (), (HALF,), lambda canvas: canvas.target(FINAL).use)
+    with pytest.raises(PipelineError, match=r"^pass mine uses final, which it does not declare$"), rendered(gl, draws):
+        pass
+
+
+# What follows from passes
+
+
+def test_what_a_pipeline_needs_and_holds_follows_from_its_passes():
+    facts = {n: (p.light_targets, p.scaled, p.starts_light, "kind" in p.needs) for n, p in PIPELINES.items()}
+    assert facts == {
+        "forward": ((), False, False, False),
+        "forward_multipass": ((), False, False, False),
+        "deferred": ((1,), False, True, False),
+        "prepass": ((1, 2), False, False, False),
+        "inferred": ((1, 2), True, False, False),
+        "hybrid": ((1, 2), False, True, True),
+    }
+
+
+def test_a_resource_counts_in_the_bytes_of_a_pixel():
+    """Half the size a quarter; every copy that the next frame reads; not what has a size in pixels, nor the image."""
+    plain = bytes_per_pixel(piped(shadow_map(), forward()), PLAN)
+    assert plain == 5, "depth and stencil"
+    sizes = {
+        HALF: 8 / 4,
+        replace(HALF, copies=2): 8 / 4,
+        replace(HALF, copies=2, kept=True): 2 * 8 / 4,
+        replace(HALF, scale=(16, 16), depth=4): 0,
+        FINAL: 0,
+        replace(DEPTH, name="another"): 5,
+    }
+    for resource, expected in sizes.items():
+        made = piped(shadow_map(), forward(), Pass("mine", (), (resource,), nothing))
+        assert bytes_per_pixel(made, PLAN) == plain + expected, resource
+
+
+# What a resource can be
+
+
+def test_a_volume_is_drawn_by_slices_and_read_as_one(gl, tmp_path):
+    """Slice 2 is left as it was cleared; a later pass reads slice 3."""
+    volume, read = Resource("fog", "rgba32f", (8, 6), depth=4), Resource("seen", "rgba32f", (8, 6))
+    (tmp_path / "fill.frag").write_text(
+        HEAD + "uniform float at;\nout vec4 o;\nvoid main() { o = vec4(floor(gl_FragCoord.xy), at, 1); }\n"
+    )
+    (tmp_path / "read.frag").write_text(
+        HEAD
+        + "uniform sampler3D fog;\nout vec4 o;\nvoid main() { o = texelFetch(fog, ivec3(gl_FragCoord.xy, 3), 0); }\n"
+    )
+
+    def fill(canvas):
+        target, covers = canvas.target(volume), canvas.fullscreen(tmp_path / "fill.frag")
+
+        def run():
+            canvas.device.state(None)
+            for at in (0, 1, 3):
+                target.use(at=at)
+                covers.program["at"] = at
+                canvas.prepare(covers.program)
+                covers.render(vertices=3)
+
+        return run
+
+    stages = (
+        Pass("fill", (), (volume,), fill),
+        Pass("read", (volume,), (read,), lambda canvas: canvas.over(tmp_path / "read.frag", read)),
+    )
+    with rendered(gl, *stages) as made:
+        made.draw()
+        made.draw()
+        found = np.frombuffer(made.frame.textures(volume)[0].read(), np.float32).reshape(4, 6, 8, 4)
+        seen = made.read(read)[0][::-1]
+    y, x = np.mgrid[:6, :8].astype(np.float32)
+    expected = np.stack([np.stack([x, y, np.full_like(x, at), np.ones_like(x)], axis=-1) for at in range(4)])
+    expected[2] = 0
+    assert np.array_equal(found, expected), f"{(found != expected).sum()} of {found.size} numbers differ"
+    assert np.array_equal(seen, expected[3]), f"{(seen != expected[3]).sum()} of {seen.size} numbers differ"
+
+
+def one_more(tmp_path, name: str) -> Path:
+    """A shader that adds 1 to the copy before."""
+    path = tmp_path / "more.frag"
+    path.write_text(
+        f"{HEAD}uniform sampler2D {name}_before;\nout vec4 o;\n"
+        f"void main() {{ o = texelFetch({name}_before, ivec2(gl_FragCoord.xy), 0) + 1.0; }}\n"
+    )
+    return path
+
+
+def test_copies_are_read_and_written_in_turn(gl, tmp_path):
+    """Five turns that add 1 each make 5, in every frame anew."""
+    pong = Resource("pong", "rgba32f", scale=0.25, copies=2)
+
+    def build(canvas):
+        draw = canvas.over(one_more(tmp_path, "pong"), pong)
+
+        def run():
+            for _ in range(5):
+                canvas.swap(pong)
+                draw()
+
+        return run
+
+    with rendered(gl, Pass("turns", (), (pong,), build)) as made:
+        for _ in range(3):
+            made.draw()
+            found = made.read(pong)[0]
+            assert found.shape == (9, 12, 4) and np.all(found == 5), f"{found.min()} to {found.max()}"
+
+
+@pytest.mark.parametrize("copies", [2, 3])
+def test_what_is_kept_is_there_in_the_next_frame(gl, tmp_path, copies):
+    """A pass that adds 1 to the frame before counts the frames, from 0; an earlier pass reads the frame before."""
+    history = Resource("history", "rgba32f", copies=copies, kept=True)
+    late = Resource("late", "rgba32f")
+    counts = Pass("counts", (history,), (history,), lambda c: c.over(one_more(tmp_path, "history"), history))
+    before = Pass("before", (history,), (late,), lambda c: c.over(one_more(tmp_path, "history"), late))
+    with rendered(gl, before, counts) as made:
+        for frame in range(1, 6):
+            made.draw()
+            counted, read = made.read(history)[0], made.read(late)[0]
+            assert np.all(counted == frame), f"frame {frame}: {counted.min()} to {counted.max()}"
+            assert np.all(read == frame), f"frame {frame}, the pass before: {read.min()} to {read.max()}"
+
+
+@pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
+def test_a_scene_may_move_between_frames(gl, pipeline):
+    """Moments drawn one after the other are those that are drawn alone, bit for bit; another scene is refused."""
+    moments = [SCENES["room"].make(Setting(lights=4, time=time)) for time in (0.0, 0.3, 0.6)]
+    plan, alone = replace(PLAN, shadows=True), []
+    for moment in moments:
+        with rendering(gl, PIPELINES[pipeline], moment, plan) as made:
+            made.draw()
+            alone.append(made.image())
+    with rendering(gl, PIPELINES[pipeline], moments[0], plan) as made:
+        for number, moment in enumerate(moments):
+            made.draw(moment)
+            differ = np.mean(made.image() != alone[number])
+            assert differ == 0, f"{differ:.1%} of moment {number} differs"
+        with pytest.raises(ValueError, match="only a scene of the same meshes"):
+            made.draw(scene_of("objects"))
+    assert np.mean(alone[0] != alone[1]) > 0.3, "the scene stands still"
+
+
+def test_a_pass_may_look_from_anywhere(gl, tmp_path):
+    """From a view of its own a pass draws what it draws where the camera stands there: positions, bit for bit."""
+    room = scene_of("room")
+    turned = replace(room.view, eye=room.view.target, target=room.view.eye, fov=70.0)
+    seen, depth = Resource("seen", "rgba32f"), replace(DEPTH, name="own_depth")
+    (tmp_path / "positions.frag").write_text(
+        '#version 430\n#include "fragment.glsl"\nout vec4 o;\nvoid main() { o = vec4(shaded_surface().position, 1); }\n'
+    )
+
+    def looks(view):
+        def build(canvas):
+            target, drawn = canvas.target(seen, depth=depth), canvas.geometry("geometry.vert", shader)
+
+            def run():
+                target.use(view=view)
+                canvas.device.state("<")
+                canvas.prepare(drawn.program)
+                drawn.draw("opaque")
+
+            return run
+
+        return Pass("looks", (), (seen, depth), build)
+
+    shader, images = tmp_path / "positions.frag", []
+    for scene, view in ((room, turned), (replace(room, view=turned), None), (room, None)):
+        with rendered(gl, looks(view), scene=scene) as made:
+            made.draw()
+            images.append(made.read(seen)[0])
+    assert np.array_equal(images[0], images[1]), f"{np.abs(images[0] - images[1]).max():.3g} apart"
+    assert np.mean(images[0] != images[2]) > 0.3, "the two views show the same"
+
+
+# How an effect is added
+
+EFFECT = '''"""The image, darker with distance, by a target of half the size."""
+
+from ..frame.canvas import Canvas
+from ..frame.contract import Pass, Run
+from ..frame.resource import Resource
+from ..frame.resources import FINAL, SURFACE
+from ..gl.device import MULTIPLY
+
+NEARNESS = Resource("nearness", "r32f", scale=0.5)
+
+
+def _measure(canvas: Canvas) -> Run:
+    return canvas.over("dusk.frag", NEARNESS, TINTS=0)
+
+
+def _tint(canvas: Canvas) -> Run:
+    return canvas.over("dusk.frag", FINAL, blend=MULTIPLY, TINTS=1)
+
+
+PASSES = (
+    Pass("nearness", SURFACE, (NEARNESS,), _measure, after="linear_depth", tells={"HAS_NEARNESS": 1}),
+    Pass("dusk", (FINAL,), (FINAL,), _tint, after="transparent"),
+)
+'''
+SHADER = """#version 430
+// How near each surface is, and the image times that.
+#include "gbuffer.glsl"
+
+#if TINTS
+layout(location = 0) out vec4 colour;
+#ifdef HAS_NEARNESS
+uniform sampler2D nearness;
+void main() { colour = vec4(texelFetch(nearness, ivec2(gl_FragCoord.xy) / 2, 0).x); }
+#endif
+#else
+layout(location = 0) out float nearness;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy / target_size.xy * size.xy);
+    nearness = 1.0 / (1.0 - read_gbuffer(pixel).position.z);
+}
+#endif
+"""
+RENDERS = """
+import sys
+import numpy as np
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.effects.catalogue import EFFECTS
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.gl.device import device
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+plain, found = PIPELINES["deferred"], {}
+plan = Plan((48, 36), 1, LAYOUTS["hybrid"], LIGHT_BUFFERS["rgba16f"], 1, True, 1.0)
+for name, pipeline in (("plain", plain), ("dusk", plain.with_effect(EFFECTS["dusk"]))):
+    with rendering(device(), pipeline, SCENES["room"].make(Setting(lights=4)), plan) as made:
+        made.draw()
+        found |= {name: made.image(), f"{name}_depth": -made.gbuffer()[0][..., 2]}
+np.savez(sys.argv[1], **found)
+"""
+
+
+def copied_tree(folder: Path) -> Path:
+    """The rooms of the renderer in a package of their own."""
+    package = folder / "normalbench"
+    for room in ("encodings", "gbuffer"):
+        shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
+    (package / "__init__.py").touch()
+    return package
+
+
+@pytest.mark.usefixtures("gl")
+def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
+    """In a copy of the tree: the image is what it was, times what the effect says of the depth, to 6 digits."""
+    effects = copied_tree(tmp_path) / "gbuffer" / "effects"
+    (effects / "dusk.py").write_text(EFFECT)
+    (effects / "dusk.frag").write_text(SHADER)
+    registry = effects / "catalogue.py"
+    registry.write_text(
+        registry.read_text().replace("NAMES: tuple[str, ...] = (\n", 'NAMES: tuple[str, ...] = (\n    "dusk",\n')
+    )
+    command = [sys.executable, "-c", RENDERS, str(tmp_path / "found.npz")]
+    done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(tmp_path)})
+    assert done.returncode == 0, done.stderr
+    found = np.load(tmp_path / "found.npz")
+    # Rows are counted from the top here, and from the bottom where the half-size target reads every odd one.
+    depth = found["plain_depth"][::-1][1::2, 1::2].repeat(2, axis=0).repeat(2, axis=1)[::-1]
+    expected = found["plain"] / (1 + depth[..., None])
+    error = np.abs(found["dusk"] - expected).max() / expected.max()
+    assert error < 1e-6, f"{error:.2g} of the brightest pixel"
+    changed = np.mean(np.abs(found["dusk"] - found["plain"]).max(axis=2) > 0.01)
+    assert changed > 0.5, f"{changed:.0%} of the pixels changed"
