@@ -20,6 +20,8 @@ PSNR_DB = {
     "per_pixel_view": 38.730,
 }
 NORMALS, STORAGE = "playground", "rgba8"
+# Whose pictures come first: the article's methods, and the one that most people use today.
+PICTURED = (*PSNR_DB, "octahedral")
 
 SLOTS_BY = "ps_3_0 by d3dx9_42"
 RADEONS, GEFORCES = "GPU ShaderAnalyzer 1.53, Catalyst 9.12", "NVShaderPerf 2.0, 174.74"

@@ -125,12 +125,3 @@ def write(
 def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:
     """The rows less some of their columns."""
     return [{column: value for column, value in row.items() if column not in hidden} for row in rows]
-
-
-def say_skipped(rows: Sequence[dict[str, Any]]) -> None:
-    """Why rows have no figures, each reason once, to standard error. Raises UsageError where none has any."""
-    reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
-    if reasons and all(row.get("skipped") for row in rows):
-        raise UsageError(next(iter(reasons)))
-    for reason in reasons:
-        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)

@@ -32,8 +32,6 @@ from ..tables.table import Role, Table
 
 PAGE, CHARTS, IMAGES, MAPS, LISTINGS = "report.html", "charts", "images", "sphere", "disassembly"
 KINDS = ("encoded", "decoded", "error", "power")
-# The article's methods, and the one that most people use today.
-PREFERRED = (*published.PSNR_DB, "octahedral")
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
 # Rows that another version wrote, or somebody's hand.
@@ -116,7 +114,7 @@ def gathered(folder: Path, done: Done) -> Found:
         tables=tables,
         steps=len(done.steps),
         domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
-        preferred=[CodecKey(name, published.STORAGE, "nearest") for name in PREFERRED],
+        preferred=[CodecKey(name, published.STORAGE, "nearest") for name in published.PICTURED],
         pictures=list(_pictures(folder / IMAGES, quality)),
         originals=_originals(folder / IMAGES, quality),
         maps=list(_maps(folder / MAPS, quality)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.position import Camera
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import rendering
@@ -232,6 +233,16 @@ class Seen:
         return measure.Points(places, depths.ravel().astype(np.float32))
 
 
+@cache
+def _seen(device: Device) -> Seen:
+    """The pictures' scene, rendered once: it is asked for before anything is measured, and again for the pictures."""
+    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
+    scene = SCENE.make(Setting())
+    with rendering(device, PIPELINES["prepass"], scene, plan) as made:
+        made.draw()
+        return Seen(-made.gbuffer()[0][..., 2], scene.view.fov)
+
+
 def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
     """What the pictures show, rendered in 32-bit floats.
 
@@ -241,11 +252,7 @@ def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
     """
     device = require_device()
     check_folder(folder)
-    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
-    scene = SCENE.make(Setting())
-    with rendering(device, PIPELINES["prepass"], scene, plan) as made:
-        made.draw()
-        seen = Seen(-made.gbuffer()[0][..., 2], scene.view.fov)
+    seen = _seen(device)
     there = seen.depths[seen.depths > 0]
     for camera in dict.fromkeys(case.camera for case in cases):
         if not seen.within(camera).any():

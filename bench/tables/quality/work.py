@@ -29,8 +29,6 @@ from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
 from .table import TABLE, QualityOptions, QualityOutputs
 
-# What the contact sheet shows: the article's methods, and the one that most people use today.
-SHEET = (*published.PSNR_DB, "octahedral")
 # What a short summary leaves out first.
 SUMMARY_DROPS = ("p99", "psnr_db_glsl", "mean")
 
@@ -200,9 +198,10 @@ def _write_sheet(drawn: Pictures, folder: Path) -> None:
     sheet = {
         codec.encoding.name: four
         for (normals, codec), four in drawn.items()
-        if (normals, codec.storage.name) == (published.NORMALS, published.STORAGE) and codec.encoding.name in SHEET
+        if (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
+        and codec.encoding.name in published.PICTURED
     }
-    if len(sheet) == len(SHEET):
+    if len(sheet) == len(published.PICTURED):
         _write_png(folder / f"{published.NORMALS}-{published.STORAGE}.png", pictures.contact_sheet(sheet))
 
 
