@@ -1,18 +1,22 @@
 # make bench   set up what is missing, then measure the default suite
-# make test    set up what is missing, then run the tests
+# make test    set up what is missing, then run the tests that take little time
+# make slow    the other tests: whole runs, tables of the manual measured anew, exhaustive searches
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
 PYTHON ?= python3
 BIN = .venv/bin
 
-.PHONY: bench test setup lint
+.PHONY: bench test slow setup lint
 
 bench: .venv/ready
 	$(BIN)/normalbench run
 
 test: .venv/ready
 	$(BIN)/python -m pytest -n 2
+
+slow: .venv/ready
+	$(BIN)/python -m pytest -n 2 -m slow
 
 setup: .venv/ready
 

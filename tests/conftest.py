@@ -1,5 +1,7 @@
 """Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
 
+import fcntl
+import json
 import os
 import shutil
 import subprocess
@@ -16,6 +18,7 @@ import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import isa, spirv
+from normalbench.bench.metrics import published
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
@@ -63,15 +66,27 @@ def radv():
     assert not missing
 
 
+PICTURED = ",".join((*published.PICTURED, "octahedral_precise", "spheremap_classic"))
+SMALL_RUN = ("run", "--tables", "quality", "--encoding", PICTURED, "--storage", "rgba8", "--count", "65536")
+
+
 @pytest.fixture(scope="session")
 def results(tmp_path_factory):
-    """A run of the quality table as the command leaves it: its folder, and the finished process."""
-    folder = tmp_path_factory.mktemp("run") / "results"
-    arguments = ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
-    command = [sys.executable, "-m", "normalbench.bench", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return folder, done
+    """A run of the quality table as the command leaves it: its folder, and what it printed to stdout and stderr.
+
+    Workers share it.
+    """
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    folder, said = shared / "results", shared / "results.json"
+    with (shared / "results.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not said.exists():
+            command = [sys.executable, "-m", "normalbench.bench", *SMALL_RUN, "-o", str(folder)]
+            done = subprocess.run(command, capture_output=True, text=True)
+            assert done.returncode == 0, done.stderr
+            said.write_text(json.dumps([done.stdout, done.stderr]))
+    return folder, *json.loads(said.read_text())
 
 
 @pytest.fixture(scope="session")

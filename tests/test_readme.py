@@ -99,14 +99,22 @@ def test_every_example_is_used():
 
 @pytest.fixture(scope="module")
 def finished_run(tmp_path_factory):
-    """What `normalbench run --tables depth -o FOLDER` leaves."""
+    """A small run."""
     folder = tmp_path_factory.mktemp("finished") / "run"
-    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth", "-o", str(folder)]
-    subprocess.run(command, check=True, capture_output=True)
+    words = ["run", "--tables", "quality", "--encoding", "octahedral,xy", "--normals", "axes", "-o", str(folder)]
+    subprocess.run([sys.executable, "-m", "normalbench.bench", *words], check=True, capture_output=True)
     return folder
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+# What renders, tunes, draws or measures many rows.
+LONG = re.compile(
+    r"(render|lights|sweep|tune|run|report|frames) (?!--help)|lights$|frames$|--plot|--report|-m |all|check"
+)
+
+
+@pytest.mark.parametrize(
+    "command", [pytest.param(one, marks=[pytest.mark.slow] * bool(LONG.search(one))) for one in COMMANDS]
+)
 def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, request):
     monkeypatch.chdir(tmp_path)
     for name, text in FILES.items():
@@ -168,6 +176,7 @@ def measured(run, name: str) -> list[dict]:
     return found
 
 
+@pytest.mark.slow
 def test_the_headline_errors_are_what_is_measured(run):
     """To the digits shown, and above the bounds that the text states."""
     rows = {(row["storage"], row["encoding"]): row for row in measured(run, "quality")}
@@ -193,6 +202,7 @@ def test_the_headline_costs_are_what_is_measured(run):
         assert (int(encode), int(decode)) == (found[encoding, "encode"], found[encoding, "decode"]), encoding
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_headline_images_are_what_is_measured(run):
     rows = {(row["storage"], row["encoding"]): row["psnr_db"] for row in measured(run, "render")}
@@ -212,6 +222,7 @@ def test_the_article_table_is_what_is_measured(normalbench):
             assert float(figure) == pytest.approx(row["psnr_article_db"], abs=0.02), f"{name} by {backend}"
 
 
+@pytest.mark.slow
 def test_the_limit_table_is_what_is_measured(normalbench):
     """To the digits shown."""
     lines = re.findall(
@@ -230,6 +241,7 @@ def test_the_limit_table_is_what_is_measured(normalbench):
         assert [float(text) for text in (mean, rms, largest, bits)] == pytest.approx(found, rel=5e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
     shape = r"^\| `(\w+)` +\| +([\d.]+) \| +(\d) \| +([\d.]+) \| +(\d) \|$"
@@ -260,6 +272,7 @@ def test_the_light_table_is_what_is_measured():
             assert float(figure) == pytest.approx(found[count], abs=0.0005), f"{name}, {count} lights"
 
 
+@pytest.mark.slow
 def test_the_tune_table_is_what_is_measured(run):
     """Two of its rows, which stand for those that take longer."""
     named, figure = r"`(\w+)` +\| ", r" +([\d.]+) \|"
@@ -272,6 +285,7 @@ def test_the_tune_table_is_what_is_measured(run):
         assert status == 0 and [float(text) for text in figures] == pytest.approx(measured, abs=0.02), encoding
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_light_image_table_is_what_is_measured(run):
     shape = r"^\| `(\w+)` +\| +([\d.]+) \| +([\d.]*) \|$"
@@ -343,6 +357,7 @@ def test_the_pipelines_it_shows_are_those_there_are():
     assert shown == {p.name: ", ".join(stage.name for stage in p.stages) for p in PIPELINES.values()}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_tests_it_shows_pass(pytester):
     """With the encoding and the gates it shows, by its commands: the one that writes the baseline first."""
@@ -417,6 +432,7 @@ def test_an_encoding_is_added_as_it_says(tmp_path):
     assert [float(f) for f in figures] == pytest.approx([49.95, 49.95], abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "file, old, new, said",
     [

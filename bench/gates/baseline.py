@@ -37,7 +37,7 @@ def entry(table: Table, asked: Mapping[str, Any], row: Row) -> Entry:
 
 def _is_kept(table: Table, name: str) -> bool:
     column = table.column(name)
-    return column is None or column.role not in (Role.TIME, Role.RAW) or name == "skipped"
+    return column is None or column.role not in (Role.TIME, Role.RAW)
 
 
 def read_baseline(path: Path) -> dict[str, Entry]:

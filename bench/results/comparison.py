@@ -70,7 +70,7 @@ def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, 
     for column in dict.fromkeys([*one, *other]):
         known = table.column(column) if table else None
         before, after = one.get(column), other.get(column)
-        if _is_compared(table, known, column) and not same(before, after):
+        if _is_compared(table, known) and not same(before, after):
             yield _change(name, table, one, called, column, before, after, severity_of(known, before, after))
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
@@ -80,9 +80,9 @@ def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, 
             yield change | {"change": f"{100 * effect:+.1f} %"}
 
 
-def _is_compared(table: Table | None, known: Column | None, column: str) -> bool:
+def _is_compared(table: Table | None, known: Column | None) -> bool:
     """Figures are, and whether there are any; of a table that this version does not know, everything."""
-    return not table or column == "skipped" or (known is not None and known.role is Role.FIGURE)
+    return not table or (known is not None and known.role in (Role.FIGURE, Role.REASON))
 
 
 def severity_of(column: Column | None, before: Any, after: Any) -> float:

@@ -142,7 +142,7 @@ def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Sec
         rows=rows,
         summary=_summary(table, rows, remarks),
         conditions=tuple(column.name for column in table.of_role(Role.KEY, Role.HOW)),
-        not_shown=tuple(column.name for column in table.of_role(Role.RAW) if column.name != "skipped"),
+        not_shown=tuple(column.name for column in table.of_role(Role.RAW)),
         says=lambda name: _definition(table, name),
         drawings=_drawings(found, table, rows, remarks),
         asked=asked,

@@ -28,6 +28,7 @@ class Role(StrEnum):
     TIME = "time"  # what a clock says, which two runs never agree on
     HOW = "how"  # under what conditions it was measured
     RAW = "raw"  # what only a program reads
+    REASON = "reason"  # why there are no figures
 
 
 @dataclass(frozen=True)

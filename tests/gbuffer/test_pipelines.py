@@ -31,6 +31,7 @@ def test_all_pipelines_give_one_image(gl, name, shadows):
         assert found >= (55 if shadows else 70), f"{one} and {other} on {name}: {found:.1f} dB"
 
 
+@pytest.mark.slow
 def test_more_lights_than_the_stencil_counts(gl):
     """600 lamps, each lighting each pixel once, in passes and all at once: 120 dB."""
     scene = SCENES["playground"].make(Setting(lights=600))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from ...options.option import Encodings, Option, Plot, Seed
+from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
 
@@ -128,10 +129,10 @@ COLUMNS = (
     Column("repeats", "Repetitions that the median is of.", HOW),
     Column("software", "Whether the GL device is a software rasteriser.", HOW),
     Column("clock", "What timed it.", HOW, drops=15),
-    Column("device", "What it was measured on.", HOW, drops=2),
+    shared.DEVICE,
     Column("driver", "The compiler of the counts.", HOW, drops=1),
     Column("compiler", "What made SPIR-V of the GLSL.", HOW, drops=1),
-    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+    shared.SKIPPED,
 )
 ALSO = (
     Column("what", "An encoding, or a storage's packing of bit fields into channels.", KEY),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...options.option import Backends, Images, Names, Option, Plot, Seed
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
@@ -59,15 +60,10 @@ COLUMNS = (
     Column("half_step", "How far half a step of the storage moves the position at worst.", HOW),
     Column("bound", "How far half a step and float32 arithmetic can move the position at worst.", HOW),
     Column("signs_lost", "Signs stored with the depth that came back wrong.", better="less", drops=3),
-    Column("device", "What it was measured on.", HOW, drops=1),
-    Column(
-        "rounded_by",
-        "emulation, the device's own conversion, or the shader where the device rounds otherwise.",
-        HOW,
-        drops=2,
-    ),
-    Column("seed", "The random seed.", HOW),
-    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+    shared.DEVICE,
+    shared.ROUNDED_BY,
+    shared.SEED,
+    shared.SKIPPED,
 )
 ALSO = (
     Column("at_*", "The largest position error at that distance.", better="less"),

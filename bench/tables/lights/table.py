@@ -18,6 +18,7 @@ from ...options.option import (
     Seed,
     Size,
 )
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
@@ -56,13 +57,13 @@ class LightsOutputs:
 COLUMNS = (
     Column("experiment", "What was added up or drawn.", KEY),
     Column("light_buffer", "The code that light is added up in.", KEY),
-    Column("light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", KEY),
-    Column("pipeline", "The order of passes that rendered it.", KEY),
-    Column("scene", "What was rendered.", KEY),
+    shared.LIGHT_TARGETS,
+    shared.PIPELINE,
+    shared.SCENE,
     Column("power", "Specular power of every material.", KEY),
     Column("size", "Width and height in pixels.", HOW, drops=3),
     Column("samples", "Samples per pixel that the device gave.", KEY),
-    Column("samples_asked", "Samples per pixel that were asked for.", HOW),
+    shared.SAMPLES_ASKED,
     Column("backend", "model: JAX; gl: the GL device.", KEY),
     Column("sum", "What the lights add up to.", KEY),
     Column("lights", "How many lights.", KEY),
@@ -97,7 +98,7 @@ COLUMNS = (
     Column("psnr_db", "The displayed image against 32-bit floats, every pixel, peak 1.", unit="dB", better="more"),
     Column("held_psnr_db", "PSNR over pixels whose light the code can hold.", unit="dB", better="more"),
     Column("beyond_percent", "Pixels whose light the code cannot hold.", unit="%", better="less"),
-    Column("mse", "Mean squared error of the displayed image.", better="less", drops=2),
+    shared.MSE,
     Column("invalid", "Pixels that are NaN or infinite.", better="less", shown=False),
     Column(
         "code_psnr_db", "Antialiasing averaged by the hardware, against the right resolve.", unit="dB", better="more"
@@ -107,9 +108,9 @@ COLUMNS = (
     Column("wrong_percent", "Pixels that are off by more than 8/255.", unit="%", better="less"),
     Column("rounds", "How this device rounds when it blends.", HOW),
     Column("agree_percent", "Pixels that equal the model that rounds so.", HOW, "%", drops=7),
-    Column("device", "What it was measured on.", HOW, drops=1),
-    Column("seed", "The random seed.", HOW, drops=8),
-    Column("skipped", "Why the device's figures are missing.", Role.RAW, shown=False),
+    shared.DEVICE,
+    shared.SEED,
+    shared.SKIPPED,
 )
 ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
 

@@ -19,6 +19,7 @@ from ...options.option import (
     Seed,
     StorageNames,
 )
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
@@ -63,14 +64,12 @@ def _angle(name: str, says: str, drops: int = 0) -> Column:
 
 
 COLUMNS = (
-    Column("encoding", "How a normal becomes a few numbers.", KEY),
-    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    shared.ENCODING,
+    shared.STORAGE,
     Column("rounding", "How the storage rounds.", KEY),
     Column("normals", "The set of normals that was measured on.", KEY),
-    Column(
-        "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", KEY
-    ),
-    Column("bits", "Bits that the code occupies in its texel."),
+    shared.BACKEND,
+    shared.BITS,
     Column("count", "How many normals were measured.", HOW, drops=13),
     Column("background", "Pixels without a surface; they do not count.", HOW, drops=3),
     Column("not_finite", "Normals of the set that were NaN or infinite; they do not count.", HOW, drops=4),
@@ -127,18 +126,12 @@ COLUMNS = (
         HOW,
         drops=7,
     ),
-    Column("codes", "How many codes there are: every value that the stored numbers can take.", HOW),
+    shared.CODES,
     Column("limit_mean_deg", "The least mean angle that this many codes can have.", HOW, "degrees"),
     Column("limit_rms_deg", "The least RMS angle that this many codes can have.", HOW, "degrees"),
     Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees"),
-    Column("reached_mean_percent", "The bound's share of the mean; 100 is ideal.", unit="%", better="more", drops=5),
-    Column("reached_rms_percent", "The bound's share of the RMS; 100 is ideal.", unit="%", better="more"),
-    Column("reached_max_percent", "The bound's share of the maximum; 100 is ideal.", unit="%", better="more", drops=6),
-    Column(
-        "below_limit",
-        "Set when the error is below the theoretical minimum, which means the measurement is wrong.",
-        Role.RAW,
-    ),
+    *shared.REACHED,
+    shared.BELOW_LIMIT,
     Column(
         "codes_unused",
         "Codes that no normal of `domain` is given, as far as was tried: the middle, edges and corners of each cell, "
@@ -159,17 +152,11 @@ COLUMNS = (
         better="less",
         option="codes",
     ),
-    Column("exact", "Whether no error is left at all.", Role.RAW, shown=False),
-    Column("device", "What it was measured on.", HOW, drops=1),
-    Column(
-        "rounded_by",
-        "emulation; device, where the GL device rounds as asked; shader, where it does not and the shader rounds "
-        "first.",
-        HOW,
-        drops=2,
-    ),
-    Column("seed", "The random seed.", HOW),
-    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+    shared.EXACT,
+    shared.DEVICE,
+    shared.ROUNDED_BY,
+    shared.SEED,
+    shared.SKIPPED,
 )
 ALSO = (
     Column(

@@ -22,6 +22,7 @@ from ...options.option import (
     Shadow,
     Size,
 )
+from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
 
@@ -65,20 +66,20 @@ class RenderOutputs:
 
 
 COLUMNS = (
-    Column("pipeline", "The order of passes that rendered it.", KEY),
+    shared.PIPELINE,
     Column("layout", "Which bits of which targets hold what.", KEY),
-    Column("encoding", "How a normal becomes a few numbers.", KEY),
-    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    shared.ENCODING,
+    shared.STORAGE,
     Column("rounding", "How the storage rounds.", KEY, drops=4),
     Column("normal_bits", "Bits of the normal's code.", drops=9),
     Column("light_buffer", "The code that light is added up in.", KEY),
-    Column("light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", KEY),
-    Column("scene", "What was rendered.", KEY),
-    Column("shadow", "Whether the sun's shadow map was drawn.", KEY),
-    Column("scale", "Size of inferred's buffers relative to the image's.", KEY),
+    shared.LIGHT_TARGETS,
+    shared.SCENE,
+    shared.SHADOW,
+    shared.SCALE,
     Column("size", "Width and height in pixels.", HOW),
     Column("samples", "Samples per pixel that the device gave, which may be more than asked for.", HOW),
-    Column("samples_asked", "Samples per pixel that were asked for.", HOW),
+    shared.SAMPLES_ASKED,
     Column("lights", "Point lights.", HOW),
     Column("objects", "Objects in the scene.", HOW),
     Column("frames", "Moments that figures are averaged over.", HOW),
@@ -89,7 +90,7 @@ COLUMNS = (
         unit="bytes",
         better="less",
     ),
-    Column("mse", "Mean squared error of the displayed image.", better="less", drops=8),
+    shared.MSE,
     Column(
         "psnr_db",
         "The displayed image (clipped, sRGB, before 8 bits) against the same pipeline in 32-bit floats; every pixel, "
@@ -111,10 +112,10 @@ COLUMNS = (
     Column("ms_frame_spread", "Distance of the frame times' quartiles.", TIME, "ms", drops=17),
     Column("ms_*", "Milliseconds of that pass, median.", TIME, "ms", "less"),
     Column("clock", "What timed it. A software rasteriser's times compare passes and are not a GPU's.", HOW, drops=2),
-    Column("device", "What it was measured on.", HOW, drops=1),
-    Column("seed", "The random seed of the scene.", HOW),
-    Column("exact", "Whether no error is left at all.", Role.RAW, shown=False),
-    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+    shared.DEVICE,
+    shared.SCENE_SEED,
+    shared.EXACT,
+    shared.SKIPPED,
 )
 
 TABLE = Table(

@@ -19,6 +19,7 @@ from ...options.option import (
     Seed,
     Shadow,
 )
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
@@ -53,24 +54,22 @@ class SweepOutputs:
 
 
 COLUMNS = (
-    Column("pipeline", "The order of passes that rendered it.", KEY),
+    shared.PIPELINE,
     Column("layout", "Which bits of which targets hold what.", KEY, drops=6),
     Column("holds", "What the layout's targets hold.", HOW, drops=3),
     Column("light_buffer", "The code that light is added up in.", KEY, drops=5),
-    Column(
-        "light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", KEY, drops=4
-    ),
-    Column("scale", "Size of inferred's buffers relative to the image's.", KEY),
-    Column("scene", "What was rendered.", KEY),
+    shared.LIGHT_TARGETS,
+    shared.SCALE,
+    shared.SCENE,
     Column("objects", "Objects in the scene.", KEY),
     Column("lights", "Point lights.", KEY),
-    Column("shadow", "Whether the sun's shadow map was drawn.", KEY),
+    shared.SHADOW,
     Column("size", "Width and height in pixels.", KEY),
     Column("samples", "Samples per pixel that the device gave.", KEY),
-    Column("samples_asked", "Samples per pixel that were asked for.", HOW),
+    shared.SAMPLES_ASKED,
     Column("repeats", "Frames that the median is of.", HOW, drops=8),
-    Column("seed", "The random seed of the scene.", HOW, drops=7),
-    Column("device", "What it was measured on.", HOW, drops=1),
+    shared.SCENE_SEED,
+    shared.DEVICE,
     Column("ms_frame", "Milliseconds a frame, median.", TIME, "ms", "less"),
     Column("ms_frame_spread", "Distance of the frame times' quartiles.", TIME, "ms"),
     Column("ms_frame_each", "Every frame's milliseconds.", Role.RAW, "ms", shown=False),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...options.option import Backends, Names, Option, Seed
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
@@ -37,12 +38,10 @@ def _angle(what: str, says: str, *drops: int) -> tuple[Column, ...]:
 
 COLUMNS = (
     Column("encoding", "How a tangent frame becomes a few numbers.", KEY),
-    Column("storage", "The texel format that the numbers are stored in.", KEY),
+    shared.STORAGE,
     Column("frame_set", "The set of tangent frames that was measured on.", KEY),
-    Column(
-        "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", KEY
-    ),
-    Column("bits", "Bits that the code occupies in its texel."),
+    shared.BACKEND,
+    shared.BITS,
     Column("count", "How many tangent frames were measured.", HOW, drops=13),
     Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
     Column("hands_lost", "Tangent frames that came back with the other handedness.", better="less"),
@@ -55,28 +54,16 @@ COLUMNS = (
         unit="bits",
         better="more",
     ),
-    Column("codes", "How many codes there are: every value that the stored numbers can take.", HOW, drops=4),
+    shared.CODES,
     Column("limit_mean_deg", "The least mean rotation that this many codes can have.", HOW, "degrees", drops=7),
     Column("limit_rms_deg", "The least RMS rotation that this many codes can have.", HOW, "degrees", drops=14),
     Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees", drops=7),
-    Column("reached_mean_percent", "The bound's share of the mean; 100 is ideal.", unit="%", better="more", drops=6),
-    Column("reached_rms_percent", "The bound's share of the RMS; 100 is ideal.", unit="%", better="more"),
-    Column("reached_max_percent", "The bound's share of the maximum; 100 is ideal.", unit="%", better="more", drops=5),
-    Column(
-        "below_limit",
-        "Set when the error is below the theoretical minimum, which means the measurement is wrong.",
-        Role.RAW,
-        shown=False,
-    ),
-    Column("device", "What it was measured on.", HOW, drops=1),
-    Column(
-        "rounded_by",
-        "emulation, the device's own conversion, or the shader where the device rounds otherwise.",
-        HOW,
-        drops=2,
-    ),
-    Column("seed", "The random seed.", HOW, drops=3),
-    Column("skipped", "Why there are no figures.", Role.RAW, shown=False),
+    *shared.REACHED,
+    shared.BELOW_LIMIT,
+    shared.DEVICE,
+    shared.ROUNDED_BY,
+    shared.SEED,
+    shared.SKIPPED,
 )
 
 TABLE = Table(

@@ -157,6 +157,7 @@ def test_a_loop_that_does_not_end_is_named_and_spares_the_others(run, tmp_path, 
 
 
 @pytest.mark.usefixtures("gl")
+@pytest.mark.slow
 def test_loops_that_end_are_measured(run, tmp_path):
     """75000 turns in all, 251 at once; a break leaves the count where it is."""
     path = tmp_path / "mine.glsl"

@@ -127,18 +127,21 @@ def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
 
 
 def test_run_prints_the_articles_figures_beside_its_own(results):
-    _, done = results
+    _, out, err = results
     for name, figure in published.PSNR_DB.items():
-        table = done.stdout[done.stdout.index("playground, rgba8") :]
+        table = out[out.index("playground, rgba8") :]
         line = next(line for line in table.splitlines() if line.startswith(f"{name} "))
         assert f"{figure:.2f}" in line, line
-    assert done.stderr == ""
+    assert err == ""
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
-def test_run_leaves_a_results_folder(results):
-    folder, done = results
-    assert str(folder) in done.stdout
+def test_run_leaves_a_results_folder(tmp_path, run):
+    folder = tmp_path / "results"
+    arguments = ["run", "--tables", "quality", "--count", "65536", "-o", str(folder)]
+    status, out, err = run(*arguments)
+    assert status == 0 and str(folder) in out, err
     rows = json.loads((folder / "quality.json").read_text())
     two = [
         name for name in COMMON if ENCODINGS[name].components == 2 and Codec(ENCODINGS[name], STORAGES["rg16f"]).fits
@@ -151,7 +154,7 @@ def test_run_leaves_a_results_folder(results):
     assert len(list(csv.DictReader(io.StringIO((folder / "quality.csv").read_text())))) == len(rows)
     facts = json.loads((folder / "run.json").read_text())
     assert facts["machine"]["jax"] and facts["machine"]["GL"] and facts["finished"] and facts["sources"]
-    assert facts["command"] == ["run", "--tables", "quality", "--count", "300000", "-o", str(folder)]
+    assert facts["command"] == arguments
     assert len(list((folder / "images").iterdir())) == codecs * 4 + 2, "and the set itself, and the sheet"
     assert len(list((folder / "sphere").iterdir())) == codecs
     with Image.open(folder / "images" / "playground-rgba8.png") as sheet:
@@ -178,7 +181,7 @@ BAD = {
     "a command": (["mesure"], ["mesure", "quality"]),
     "no folder": ([*QUICK, "-o", "/proc/nowhere/rows.csv"], ["/proc/nowhere"]),
     "a folder": ([*QUICK, "-o", "/"], ["is a folder"]),
-    "pictures nowhere": (["quality", "--images", "/proc/nowhere"], ["/proc/nowhere"]),
+    "pictures nowhere": ([*QUICK, "--images", "/proc/nowhere"], ["/proc/nowhere"]),
     "no image": ([*QUICK, "--images", "somewhere"], ["--images", "playground"]),
     "run nowhere": (["run", "-o", "/proc/nowhere/results"], ["/proc/nowhere"]),
     "run onto": (["run", "-o", "/usr"], ["/usr exists already"]),
@@ -199,7 +202,8 @@ def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path
 def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, tmp_path, monkeypatch):
     """A full disk where the tables are written: one line; run again, nothing is measured a second time."""
     folder = tmp_path / "results"
-    command = ("run", "--tables", "depth", "-o", str(folder))
+    words = ("--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    command = ("run", "--tables", "quality", *words, "-o", str(folder))
 
     def full(*_):
         raise OSError(28, "No space left on device")
@@ -208,7 +212,7 @@ def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, 
         patched.setattr(tables, "to_csv", full)
         status, _, err = run(*command)
     assert status == 2 and "No space left on device" in err and err.count("\n") == 1
-    assert {path.name for path in folder.iterdir()} == {"rows.jsonl", "run.json", "depth.json"}
+    assert {path.name for path in folder.iterdir()} == {"rows.jsonl", "run.json", "quality.json"}
     steps = (folder / "rows.jsonl").read_bytes().count(b"\n")
     status, _, err = run(*command)
     assert status == 0 and f"{steps} of {steps} steps are there" in err
@@ -239,6 +243,7 @@ def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
     assert pipe.is_fifo()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM])
 def test_an_ended_run_keeps_its_rows_and_says_how_to_go_on(tmp_path, ended):
     folder = tmp_path / "results"
@@ -330,7 +335,13 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "command", [QUICK, ("lights",), ("depth",), ("frames",), ("render",), ("sweep",), ("run",)], ids=lambda c: c[0]
+    "command",
+    [
+        QUICK,
+        *(pytest.param((name,), marks=pytest.mark.slow) for name in ("lights", "depth", "frames", "render", "sweep")),
+        ("run",),
+    ],
+    ids=lambda c: c[0],
 )
 def test_a_platform_jax_does_not_know_is_one_line(command):
     done = in_a_process(*command, JAX_PLATFORMS="bogus")
@@ -369,6 +380,7 @@ def test_doctor_says_what_this_machine_has(run):
         assert facts["GL rounds rgba8"] == "nearest"
 
 
+@pytest.mark.slow
 def test_throughput_prints_ratios_of_one_run():
     command = [sys.executable, "-m", "normalbench.bench.throughput", "--count", "262144", "--encoding", "spheremap"]
     done = subprocess.run(command, capture_output=True, text=True)

@@ -1,5 +1,7 @@
 """The cost table where a cache is cold, warm or damaged, and where something is missing, fails or never ends."""
 
+import contextlib
+import io
 import itertools
 import json
 import shutil
@@ -11,6 +13,7 @@ from pathlib import Path
 import pytest
 from costing import glsl
 
+from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import isa, radv, radv_files, spirv
 from normalbench.bench.isa import process as isa_process
 from normalbench.bench.machine import devices
@@ -37,17 +40,32 @@ def test_two_runs_give_identical_rows_from_the_cache_or_without(run, own_cache):
     assert json.loads(first[1])[0]["driver"].startswith("Mesa ")
 
 
-@pytest.mark.usefixtures("radv", "own_cache")
-def test_the_second_run_compiles_nothing(run, monkeypatch):
-    first = run(*SMALL)
+@pytest.fixture(scope="module")
+def compiled_once(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers)
+    """A cache with all of SMALL, and what the command prints."""
+    folder, out = tmp_path_factory.mktemp("filled"), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out):
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        patch.setattr(sys, "argv", ["normalbench", *SMALL])
+        status = cli.main()
+    return folder, (status, out.getvalue(), "")
+
+
+@pytest.fixture
+def first(compiled_once, own_cache):
+    """What SMALL prints; everything that it compiles is in this test's cache."""
+    folder, printed = compiled_once
+    shutil.copytree(folder, own_cache)
+    return printed
+
+
+def test_the_second_run_compiles_nothing(run, first, monkeypatch):
     monkeypatch.setattr(isa_process, "CHILD", ["false"])
     monkeypatch.setattr(spirv, "_run", lambda *_: pytest.fail("compiled again"))
     assert run(*SMALL) == first
 
 
-@pytest.mark.usefixtures("radv")
-def test_a_damaged_cache_is_computed_again(run, own_cache):
-    first = run(*SMALL)
+def test_a_damaged_cache_is_computed_again(run, first, own_cache):
     files, damages = list(own_cache.rglob("*.json")), (b"", b"{", b"[1]", b'{"key": "", "value": {}}', b"\xff\x00")
     assert len(files) > len(damages)
     for path, damage in zip(files, itertools.cycle(damages), strict=False):
@@ -62,7 +80,6 @@ def in_the_cache(folder, kind: str) -> list[tuple[str, dict]]:
     return [(kept["key"], kept["value"]) for kept in found if ("binary" in kept["value"]) == (kind == "spirv")]
 
 
-@pytest.mark.usefixtures("radv")
 @pytest.mark.parametrize(
     "kind, wrong",
     [
@@ -77,9 +94,8 @@ def in_the_cache(folder, kind: str) -> list[tuple[str, dict]]:
         ("spirv", {"instructions": "12"}),
     ],
 )
-def test_what_is_kept_whole_but_is_wrong_is_computed_again(run, own_cache, kind, wrong):
+def test_what_is_kept_whole_but_is_wrong_is_computed_again(run, first, own_cache, kind, wrong):
     """Of the right form, under the right key, with a digest of its own."""
-    first = run(*SMALL)
     kept = in_the_cache(own_cache, kind)
     assert kept
     for key, value in kept:
@@ -88,9 +104,7 @@ def test_what_is_kept_whole_but_is_wrong_is_computed_again(run, own_cache, kind,
     assert dict(in_the_cache(own_cache, kind)) == dict(kept)
 
 
-@pytest.mark.usefixtures("radv")
-def test_what_was_changed_after_it_was_kept_is_computed_again(run, own_cache):
-    first = run(*SMALL)
+def test_what_was_changed_after_it_was_kept_is_computed_again(run, first, own_cache):
     files = [path for path in own_cache.rglob("*.json") if '"Instructions": ' in path.read_text()]
     for path in files:
         path.write_text(path.read_text().replace('"Instructions": ', '"Instructions": 1'))

@@ -335,6 +335,7 @@ def test_writing_keeps_the_other_rows_and_what_is_no_baseline(inside, written, p
         assert result.ret == 4 and said in result.stderr.str(), "before anything is measured"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("loaded")
 def test_two_workers_measure_and_write_one_baseline(pytester):
     """Rows of both are in the file, which the process that started them writes once."""

@@ -48,7 +48,12 @@ def test_half_the_sphere_is_held_to_half_the_area():
     assert half.max_deg == pytest.approx(whole.max_deg / math.sqrt(2), rel=1e-4)
 
 
-@pytest.mark.parametrize("name", STORAGES)
+FIRST = ("rg8", "rgb10a2", "rg16f")
+
+
+@pytest.mark.parametrize(
+    "name", [*FIRST, *(pytest.param(name, marks=pytest.mark.slow) for name in STORAGES if name not in FIRST)]
+)
 def test_no_row_is_below_its_limit(name):
     """The whole catalogue: every encoding that fits, on the sphere and on half of it."""
     codecs = [Codec(encoding, STORAGES[name]) for encoding in ENCODINGS.values()]
@@ -117,6 +122,7 @@ def settled(directions: np.ndarray, count: int) -> np.ndarray:
     return points
 
 
+@pytest.mark.slow
 def test_directions_that_are_not_uniform_are_caught():
     """A code made for a set that crowds the poles beats there what is possible on a uniform one, and there does not."""
     side = 24

@@ -201,8 +201,10 @@ def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
         return made.image()
 
 
-@pytest.mark.parametrize("samples", [1, 4])
-@pytest.mark.parametrize("pipeline", LIGHT_PIPELINES)
+@pytest.mark.parametrize("samples", [1, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "pipeline", [pytest.param(name, marks=[pytest.mark.slow] * (name != "hybrid")) for name in LIGHT_PIPELINES]
+)
 def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples):
     """Near the reference, and finite: by blending and by reading, with one target and two, also at several samples."""
     samples = gl.given_samples(samples)
@@ -242,6 +244,7 @@ def resolves(gl):
     return {n: Resolves(gl, shot, list(LIGHT_BUFFERS.values()), n) for n in {1, gl.given_samples(4)}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EVERY)
 def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
     """The hardware averages texels: the model of that gives its picture, where the device stores as the model does."""
@@ -258,6 +261,7 @@ def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
             assert abs(found[figure] - model[figure]) < 0.1, (figure, found, model)
 
 
+@pytest.mark.slow
 def test_codes_that_do_not_average_show_it_at_edges(gl, resolves):
     """J. Ols, 2010: NAO32 and RGBM gain colour artefacts under antialiasing; linear and float codes do not."""
     made = resolves[gl.given_samples(4)]
@@ -306,6 +310,7 @@ def test_tables_are_one_for_each_experiment(run):
     assert tuple(next(csv.reader(out.splitlines()))) == tuple(TABLES["lights"].empty())
 
 
+@pytest.mark.slow
 def test_pictures_and_plot_are_written(run, tmp_path):
     from PIL import Image
 

@@ -90,6 +90,7 @@ def test_it_is_a_command_with_help_and_formats(copy):
     assert "echo" in command(copy, "run", "--help").stdout
 
 
+@pytest.mark.slow
 def test_a_run_of_it_that_is_killed_goes_on(copy):
     words = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "echo", "-o", "killed"]
     process = subprocess.Popen(words, cwd=copy, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

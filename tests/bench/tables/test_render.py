@@ -210,7 +210,7 @@ def test_samples_smooth_edges(gl, pipeline):
     assert four < share * one, f"{four:.2e} at 4 samples, {one:.2e} at 1"
 
 
-@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+@pytest.mark.parametrize("pipeline", [pytest.param("deferred", marks=pytest.mark.slow), "hybrid"])
 def test_every_codec_gives_a_finite_image(gl, pipeline):
     """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""
     scene = SCENES["room"].make(Setting(lights=2))

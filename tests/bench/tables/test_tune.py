@@ -95,6 +95,7 @@ def test_gradients_are_those_of_differences(name, values, goal):
             assert float(found) == pytest.approx((above - below) / 2e-6, rel=2e-3), (name, goal, step)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "view, farthest_deg",
     # The outline of a ball that fills a view of 60 degrees is where rays, 30 degrees off the axis, touch it.
@@ -118,6 +119,7 @@ def test_the_stereographic_scale_is_that_of_theory(view, farthest_deg):
     assert theory * (1 - 7 / 255) <= coarse <= theory * (1 + 1 / 255), (coarse, theory)
 
 
+@pytest.mark.slow
 def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
     """Every step of stereographic is as wide as the scale, so nothing is gained beyond the last normal."""
     for goal, view in itertools.product(("psnr", "mean"), (ball_that_fills_the_view, anything_in_the_view)):
@@ -147,6 +149,7 @@ def test_bits_are_split_as_the_closed_form_says():
     assert wanted[0] + wanted[1] == 32
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cap_deg", [5.0, 60.0, 180.0])
 def test_the_best_split_of_all_is_found(cap_deg):
     """Near the pole longitude needs few bits, far from it more: of all splits the one with the least error is found."""
@@ -189,6 +192,7 @@ def rows_of(run, *arguments: str) -> tuple[dict[str, dict], str]:
     return {row["quantity"]: row for row in json.loads(out)}, err
 
 
+@pytest.mark.slow
 def test_the_gain_is_of_the_held_out_half(run):
     """The figures of both codecs measured anew on that half, by the names that the rows give them."""
     rows, err = rows_of(run, "spherical", "--storage", "rg8", "--seed", "5")
@@ -242,6 +246,7 @@ def test_a_look_up_has_the_best_of_all_scales_for_its_normals(storage):
     assert errors[found] <= min(errors.values()) * 1.001, (found, errors[found], min(errors.values()))
 
 
+@pytest.mark.slow
 def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
     """The published one is for UNORM8: in 10 bits another is worth 10 dB; it is written and read, and measured anew."""
     path = tmp_path / "scales.npy"

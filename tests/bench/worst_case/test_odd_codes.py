@@ -67,6 +67,7 @@ def test_beyond_24_bits_nobody_counts():
     assert odd_codes(Codec(ENCODINGS["octahedral"], STORAGES["rg16"])) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("storage", [*STORAGES.values(), R11G11B10F], ids=lambda s: s.name)
 def test_a_storages_numbers_are_what_it_gives_back(storage):
     """Each is stored as itself in float32 and in float64, and there are as many as are said to be."""

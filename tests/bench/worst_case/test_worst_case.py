@@ -69,6 +69,7 @@ def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
     assert worst.found_by == "climbing" and worst.moved_deg < 1e-9
 
 
+@pytest.mark.slow
 def test_a_lattices_worst_is_its_covering_radius():
     """Of points that are looked up, the largest circle between them (by SciPy's Voronoi diagram of the sphere)."""
     from scipy.spatial import SphericalVoronoi
@@ -81,6 +82,7 @@ def test_a_lattices_worst_is_its_covering_radius():
     assert worst.found_by == "nearest codes"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("encoding", "where", "sup"),
     [
@@ -119,20 +121,25 @@ def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_si
 
 
 SEARCHED = [
-    *(
-        codec_of(name, "rg8")
-        for name in ("octahedral", "spherical", "spheremap_classic", "cryengine3", "spherical_lut")
-    ),
+    codec_of("octahedral", "rg8"),
+    codec_of("spherical_lut", "rg8"),
+    codec_of("octahedral_precise", "rg8"),
+]
+SEARCHED_LONG = [
+    *(codec_of(name, "rg8") for name in ("spherical", "spheremap_classic", "cryengine3")),
     codec_of("octahedral", "rg16f", "truncate"),
     codec_of("spherical", "rg8_snorm", "truncate"),
     codec_of("octahedral", "rg16"),
     codec_of("best_fit", "rgba8"),
-    codec_of("octahedral_precise", "rg8"),
     codec_of("equal_area_octahedral_precise", "rg8_snorm"),
 ]
 
 
-@pytest.mark.parametrize("codec", SEARCHED, ids=lambda codec: codec.name)
+@pytest.mark.parametrize(
+    "codec",
+    [*SEARCHED, *(pytest.param(codec, marks=pytest.mark.slow) for codec in SEARCHED_LONG)],
+    ids=lambda codec: codec.name,
+)
 def test_no_sample_is_worse(codec):
     """Of two million random directions; 10^8 have been tried by hand, on these and fifty others."""
     exact, worst = ExactCodec(codec, False), worst_case(codec)
@@ -144,6 +151,7 @@ def test_no_sample_is_worse(codec):
     assert 0.9 * worst.angle_deg < degrees(largest) <= worst.angle_deg * (1 + 1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["octahedral", "spherical"])
 def test_24_bits_take_less_than_five_seconds_on_two_cores(encoding):
     """Processor time, for other work may be going on; what was searched before is not kept."""
