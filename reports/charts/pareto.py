@@ -9,6 +9,7 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
 
+from ..ties import TIE_DB, TIE_SHARE
 from .plots import COLOURS, MARKERS, drawn_off_screen
 
 # Where a label may stand around its point, the nearest first: in points, at so many angles.
@@ -71,15 +72,15 @@ class Error:
 
 def decibels(label: str) -> Error:
     """Decibels of what a label says."""
-    return Error(f"{label}, dB", True, 0.05)
+    return Error(f"{label}, dB", True, TIE_DB)
 
 
 # The columns of quality that codecs are compared by.
 ERRORS = MappingProxyType(
     {
         "psnr": ("psnr_db", decibels("PSNR")),
-        "mean": ("angle_mean_deg", Error("mean angle, degrees", False, 0.01)),
-        "max": ("angle_max_deg", Error("largest angle, degrees", False, 0.01)),
+        "mean": ("angle_mean_deg", Error("mean angle, degrees", False, TIE_SHARE)),
+        "max": ("angle_max_deg", Error("largest angle, degrees", False, TIE_SHARE)),
     }
 )
 

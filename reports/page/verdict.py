@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..ties import TIE_DB, TIE_SHARE
+
 Row = dict[str, Any]
 
-# Figures closer than this are a tie: in dB, and as a share of an angle.
-TIE_DB, TIE_SHARE = 0.05, 0.005
 WHOLE_SPHERE = "sphere"
 MADE_FOR = {"hemisphere": "normals with z >= 0", "view": "normals that face the viewer"}
 LEADING = "psnr_db"
