@@ -14,16 +14,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:  # As users' type checkers see it: in the checkout these lie elsewhere.
-    from .bench.python.codecs import Codes as Codes  # pyright: ignore[reportMissingImports]
-    from .bench.python.codecs import decode as decode  # pyright: ignore[reportMissingImports]
-    from .bench.python.codecs import encode as encode  # pyright: ignore[reportMissingImports]
-    from .bench.python.codecs import encoding as encoding  # pyright: ignore[reportMissingImports]
-    from .encodings.codecs.codec import Codec as Codec  # pyright: ignore[reportMissingImports]
-    from .encodings.codecs.encoding import Encoding as Encoding  # pyright: ignore[reportMissingImports]
-    from .encodings.storages.storage import Storage as Storage  # pyright: ignore[reportMissingImports]
+from typing import Any
 
 # In an editable install this file lies in bench/api, and the rooms of the package are those of the checkout.
 _ROOT = Path(__file__).parents[2]

@@ -1,6 +1,7 @@
 """`import normalbench`: tables as functions, and codecs on arrays, held to what GLSL stores bit for bit."""
 
 import inspect
+from pathlib import Path
 
 import jax
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import normalbench as nb
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.output.errors import UsageError
+from normalbench.bench.python import stub
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
 
@@ -101,6 +103,11 @@ def test_misuse_is_one_line(call, said):
     with pytest.raises(UsageError, match=said) as error:
         call()
     assert "\n" not in str(error.value)
+
+
+def test_type_checkers_are_told_the_same():
+    """bench/api/__init__.pyi is what the registry makes; bench/python/stub.py says how."""
+    assert (Path(stub.__file__).parents[1] / "api/__init__.pyi").read_text() == stub.stub()
 
 
 def test_there_is_nothing_else():

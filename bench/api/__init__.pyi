@@ -1,0 +1,312 @@
+"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/python/stub.py."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .bench.python.codecs import Codes as Codes
+from .bench.python.codecs import decode as decode
+from .bench.python.codecs import encode as encode
+from .bench.python.codecs import encoding as encoding
+from .bench.python.tables import Rows as Rows
+from .encodings.codecs.codec import Codec as Codec
+from .encodings.codecs.encoding import Encoding as Encoding
+from .encodings.storages.storage import Storage as Storage
+
+Named = str | Encoding | Storage
+Names = Named | Sequence[Named | float] | Mapping[str, Any]
+
+def quality(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    normals: Names = ...,
+    backend: Names = ...,
+    count: int = ...,
+    seed: int = ...,
+    worst_case: bool = ...,
+    codes: bool = ...,
+    channels: Names | None = ...,
+    unpack: bool | None = ...,
+    normalise: bool = ...,
+    space: Names = ...,
+    view_matrix: Names | None = ...,
+    mask: Names | None = ...,
+    nan_share: float = ...,
+    fov: float | None = ...,
+    size: Names = ...,
+) -> Rows:
+    """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
+
+    A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).
+
+    Args:
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
+        backend: jax, glsl; comma-separated, or all.
+        count: Normals in a uniform set.
+        seed: The random seed of uniform sets, points and scenes.
+        worst_case: The true supremum and where it is, in float64; seconds a codec.
+        codes: Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.
+        channels: Captures: a layer, or the channels of x,y,z by name.
+        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        normalise: Captures: accept normals of any length.
+        space: Captures: view, view-left-handed, world.
+        view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
+        mask: Captures: a file or a channel that is 0 on the background.
+        nan_share: Captures: the share of NaN that is masked and counted.
+        fov: Captures: vertical degrees, for per-pixel view space.
+        size: WIDTHxHEIGHT of the picture of a mesh.
+    """
+
+def render(
+    *,
+    pipeline: Names = ...,
+    layout: Names | None = ...,
+    encoding: Names | None = ...,
+    storage: Names | None = ...,
+    rounding: Names | None = ...,
+    light_buffer: Names = ...,
+    light_targets: Names = ...,
+    scene: Names = ...,
+    shadow: Names = ...,
+    size: Names = ...,
+    samples: int = ...,
+    scale: float = ...,
+    objects: int = ...,
+    lights: int = ...,
+    frames: int = ...,
+    repeats: int = ...,
+    seed: int = ...,
+    flip: bool = ...,
+) -> Rows:
+    """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
+
+    Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of --encoding, --storage and --rounding the layouts are measured as they are.
+
+    Args:
+        pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
+        layout: Layouts: names or TOML files.
+        encoding: Encodings or files to put into each layout, comma-separated, or all.
+        storage: And their storages. Default: rgba8.
+        rounding: And how those round. Default: nearest.
+        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_targets: 1, 2; comma-separated, or all.
+        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        shadow: on, off; comma-separated, or all.
+        size: WIDTHxHEIGHT of the image.
+        samples: Samples per pixel; the device may give more.
+        scale: Size of inferred's buffers relative to the image's, up to 1.
+        objects: Objects in the scene `objects`.
+        lights: Point lights.
+        frames: Moments to average over. 0: as the scene has it.
+        repeats: Frames that times are taken over; of render, 0 takes none.
+        seed: The random seed of uniform sets, points and scenes.
+        flip: FLIP as well, a perceptual difference; a second a row.
+    """
+
+def cost(
+    *,
+    encoding: Names = ...,
+    isa: bool = ...,
+    time: bool = ...,
+    jax: bool = ...,
+    article: bool = ...,
+    family: Names = ...,
+    stage: Names = ...,
+    operation: Names = ...,
+    storage: Names = ...,
+    size: Names | None = ...,
+    repeats: int = ...,
+    count: int = ...,
+    seed: int = ...,
+    normals: Names = ...,
+    error: Names = ...,
+) -> Rows:
+    """What encoding and decoding cost: instructions on five GPU families, and time; all of it by default.
+
+    Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.
+
+    Args:
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        isa: Instructions that compilers make of the GLSL; needs no GPU.
+        time: Nanoseconds a megapixel on the GL device.
+        jax: Million normals a second in JAX.
+        article: The figures of Pranckevicius' article next to them.
+        family: GPUs: polaris10, vega10, navi10, navi21, navi31; comma-separated, or all.
+        stage: fragment, compute; comma-separated, or all.
+        operation: encode, decode; comma-separated, or all.
+        storage: Storages and packings whose own cost is shown, comma-separated, or all.
+        size: WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024.
+        repeats: Repetitions that medians are taken over.
+        count: Normals, for JAX and in uniform sets.
+        seed: The random seed of uniform sets, points and scenes.
+        normals: --plot: normal sets, comma-separated, or all; `normalbench list` shows them.
+        error: --plot: psnr, mean or max, the largest angle.
+    """
+
+def lights(
+    *,
+    experiment: Names = ...,
+    light_buffer: Names = ...,
+    light_targets: Names = ...,
+    sums: Names = ...,
+    counts: Names = ...,
+    peaks: Names = ...,
+    samples: Names = ...,
+    pipeline: Names = ...,
+    scene: Names = ...,
+    power: Names = ...,
+    size: Names = ...,
+    objects: int = ...,
+    lights: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.
+
+    The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.
+
+    Args:
+        experiment: equal, random, banding, chromaticity, resolve, image; or all.
+        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_targets: 1, 2; comma-separated, or all.
+        sums: equal: what the lights sum to; random: the least.
+        counts: equal, random: numbers of lights.
+        peaks: banding: the light at a lamp's centre.
+        samples: resolve: samples per pixel.
+        pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
+        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        power: image: specular powers.
+        size: WIDTHxHEIGHT of the image.
+        objects: Objects in the scene `objects`.
+        lights: Point lights.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
+def depth(
+    *,
+    depth: Names = ...,
+    storage: Names | None = ...,
+    rebuild: Names | None = ...,
+    near: Names = ...,
+    far: Names = ...,
+    distance: Names | None = ...,
+    fov: float = ...,
+    backend: Names = ...,
+    count: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.
+
+    Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther.
+
+    Args:
+        depth: Depth codes, comma-separated, or all; `normalbench list` shows them.
+        storage: Depth storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        rebuild: inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual.
+        near: Near planes, comma-separated.
+        far: Far planes, comma-separated.
+        distance: Distances, comma-separated. Default: every power of ten.
+        fov: Vertical field of view in degrees, of a 16:9 image.
+        backend: jax, glsl; comma-separated, or all.
+        count: Points at each distance.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
+def frames(
+    *,
+    encoding: Names = ...,
+    storage: Names | None = ...,
+    frames: Names = ...,
+    backend: Names = ...,
+    count: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost handedness.
+
+    A set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along its uv.
+
+    Args:
+        encoding: Tangent frame codes, comma-separated, or all; `normalbench list` shows them.
+        storage: Tangent frame storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        frames: Tangent frame sets or mesh files, whose vertices are taken, comma-separated, or all; `normalbench list` shows them.
+        backend: jax, glsl; comma-separated, or all.
+        count: Tangent frames in a uniform set.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
+def sweep(
+    *,
+    pipeline: Names = ...,
+    objects: Names = ...,
+    shadow: Names = ...,
+    layout: Names | None = ...,
+    light_buffer: Names = ...,
+    light_targets: Names = ...,
+    size: Names = ...,
+    samples: int = ...,
+    scale: float = ...,
+    lights: int = ...,
+    repeats: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.
+
+    Args:
+        pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
+        objects: Numbers of objects, comma-separated.
+        shadow: on, off; comma-separated, or all.
+        layout: Layouts: names or TOML files.
+        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_targets: 1, 2; comma-separated, or all.
+        size: WIDTHxHEIGHT of the image; auto: 640x480, or 320x240 on a software rasteriser.
+        samples: Samples per pixel; the device may give more.
+        scale: Size of inferred's buffers relative to the image's, up to 1.
+        lights: Point lights.
+        repeats: Frames that times are taken over; of render, 0 takes none.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
+def tune(
+    *,
+    encoding: Names = ...,
+    normals: Names = ...,
+    storage: Names = ...,
+    parameter: Names = ...,
+    error: Names = ...,
+    count: int = ...,
+    seed: int = ...,
+    channels: Names | None = ...,
+    unpack: bool | None = ...,
+    normalise: bool = ...,
+    space: Names = ...,
+    view_matrix: Names | None = ...,
+    mask: Names | None = ...,
+    nan_share: float = ...,
+    fov: float | None = ...,
+    size: Names = ...,
+) -> Rows:
+    """Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out.
+
+    What is found has a name that --encoding and --storage take in every command, such as stereographic:scale=1.31.
+
+    Args:
+        encoding: An encoding; `normalbench list encodings` shows them.
+        normals: A normal set or a file of one.
+        storage: A storage.
+        parameter: An encoding's own; bits, table; comma-separated. Default: all there are.
+        error: psnr, rms, mean or max, the largest angle.
+        count: Normals in a uniform set.
+        seed: The random seed of uniform sets, points and scenes.
+        channels: Captures: a layer, or the channels of x,y,z by name.
+        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        normalise: Captures: accept normals of any length.
+        space: Captures: view, view-left-handed, world.
+        view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
+        mask: Captures: a file or a channel that is 0 on the background.
+        nan_share: Captures: the share of NaN that is masked and counted.
+        fov: Captures: vertical degrees, for per-pixel view space.
+        size: WIDTHxHEIGHT of the picture of a mesh.
+    """
