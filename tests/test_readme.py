@@ -57,7 +57,6 @@ def table(marker: str) -> str:
 
 def users_files(folder: Path) -> None:
     """A frame in every format, its mask, a matrix, and a scene, as the commands name them."""
-    pytest.importorskip("OpenEXR")
     n = some_normals()
     for name in ("frame.exr", "world.exr"):
         write_exr(folder / name, planes_of(n))

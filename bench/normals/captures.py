@@ -37,7 +37,6 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
 
     Raises:
         UsageError: it cannot be read, or does not hold unit normals as `reading` says.
-        MissingError: reading it needs a package that is not installed.
     """
     to_view = view_matrix(reading)
     _check_numbers(reading)

@@ -28,7 +28,6 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
 
     Raises:
         UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
-        MissingError: reading a file needs a package that is not installed.
     """
 
     typed = [Path(word.strip()).suffix.lower() for word in names.split(",")]

@@ -1,4 +1,4 @@
-"""Pixels of users' files by the names of their channels: EXR, PNG, NPY.
+"""Pixels of users' files by the names of their channels: images by OpenImageIO, and NPY.
 
 Sizes are taken from headers and refused before anything is allocated.
 """
@@ -8,13 +8,13 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -22,15 +22,37 @@ from typing import Any
 import numpy as np
 
 from ...gbuffer.scenes.files.source import SceneFileError, file_bytes
-from ..output.errors import MissingError, UsageError
+from ..output.errors import UsageError
 from . import png
 
-# An 8K frame; and all the channels of a file together, which EXR's library reads at once.
+# An 8K frame; and all the channels of a file together, which the library reads at once.
 MAX_PIXELS = 2**25
 MAX_NUMBERS = 2**29
+SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are read: crop it"
 SECONDS = 120
-EXR_MAGIC = b"\x76\x2f\x31\x01"
-DEEP = ("deep",)
+EXR = "openexr"
+TIFF = rb"(II|MM)(\*\0|\0\*|\+\0|\0\+)"
+# By a file's ending: OpenImageIO's name of the format, and how such a file starts.
+FORMATS: Mapping[str, tuple[str, bytes]] = MappingProxyType(
+    {
+        ".exr": (EXR, rb"\x76\x2f\x31\x01"),
+        ".png": ("png", rb"\x89PNG\r\n\x1a\n.{4}IHDR"),
+        ".tif": ("tiff", TIFF),
+        ".tiff": ("tiff", TIFF),
+        ".dds": ("dds", rb"DDS "),
+        ".hdr": ("hdr", rb"#\?"),
+        ".webp": ("webp", rb"RIFF.{4}WEBP"),
+    }
+)
+# The library's names of types of numbers.
+TYPES = ("uint8", "uint16", "half", "float", "double")
+# What a status of `pixel_process.py` says, and the remedy; any other is a damaged file.
+FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
+    {
+        2: ("a channel has fewer samples than pixels", "save it in full"),
+        3: ("its header says far more pixels than it can hold", SMALLER),
+    }
+)
 
 # From the names of a file's channels to those that are wanted.
 Choice = Callable[[Sequence[str]], Sequence[str]]
@@ -58,7 +80,6 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
 
     Raises:
         UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` raises.
-        MissingError: reading it needs a package that is not installed.
     """
     return READERS[path.suffix.lower()](path, choose)
 
@@ -78,41 +99,70 @@ def _bytes(path: Path) -> bytes:
 def check_pixels(path: Path, pixels: int, channels: int) -> None:
     """Raises UsageError where an image is larger than is read."""
     if pixels > MAX_PIXELS or pixels * channels > MAX_NUMBERS:
-        raise refused(
-            path, f"{pixels} pixels of {channels} channels", f"at most {MAX_PIXELS} pixels (2^25) are read: crop it"
-        )
+        raise refused(path, f"{pixels} pixels of {channels} channels", SMALLER)
 
 
-# PNG
+# Images
 
 
-def _read_png(path: Path, choose: Choice) -> Pixels:
+def _read_image(path: Path, choose: Choice) -> Pixels:
+    kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
+    if not re.match(start, data, re.DOTALL):
+        raise refused(path, f"no {path.suffix[1:].upper()} file, by its first bytes")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out"
+        _in_a_process(path, kind, out, "header")
+        parts = json.loads(out.read_text(encoding="utf-8"))
+        chosen = list(choose(_checked_parts(path, kind, parts)))
+        _check_alike(path, kind, parts, chosen)
+        _in_a_process(path, kind, out, "pixels", *chosen)
+        found = np.load(out, allow_pickle=False)
+    if kind == "png" and png.has_surplus(data):
+        raise refused(path, "it holds more rows than its header says: it is damaged")
+    # Whole numbers of an EXR file are identities and counts.
+    full = np.iinfo(found.dtype).max if found.dtype.kind == "u" and kind != EXR else None
+    return Pixels(_planes(np.moveaxis(found, 0, -1), range(len(found))), full)
+
+
+def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
+    """Runs `pixel_process.py`. Raises UsageError where it cannot read the file."""
+    script = Path(__file__).with_name("pixel_process.py")
+    command = [sys.executable, "-P", str(script), mode, kind, str(path.resolve()), str(out), *names]
     try:
-        head = png.header(data)
-        check_pixels(path, head.width * head.height, 4)
-        found = png.pixels(data) if head.depth == 16 else _by_pillow(data)
-    except png.PngError as error:
-        raise refused(path, f"{error}") from error
-    names = "LA" if found.shape[2] < 3 else "RGBA"
-    chosen = [names.index(name) for name in choose(names[: found.shape[2]])]
-    return Pixels(_planes(found, chosen), np.iinfo(found.dtype).max)
+        done = subprocess.run(command, capture_output=True, timeout=SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise refused(path, f"not read within {SECONDS} seconds") from error
+    if done.returncode:
+        # What the library says of a damaged file is another matter each time, and mostly of an index.
+        raise refused(path, *FAILURES.get(done.returncode, ("it is cut off or damaged",)))
 
 
-def _by_pillow(data: bytes) -> np.ndarray:
-    from PIL import Image
+def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]]) -> list[str]:
+    """The names of all channels. Raises UsageError for what is too large or of a kind that is not read."""
+    for part in parts:
+        where = f"part {part['name']!r}: " if len(parts) > 1 else ""
+        if part["deep"]:
+            raise refused(path, f"{where}deep samples", "flatten it")
+        width, height, depth = part["sides"]
+        if depth != 1 or min(width, height) < 1:
+            raise refused(path, f"{where}an image of {width} x {height} x {depth}", "one of width x height is read")
+        check_pixels(path, width * height, len(part["names"]))
+        other = [word for word in part["types"] if word not in (*TYPES, *(["uint"] if kind == EXR else []))]
+        if other:
+            raise refused(path, f"{where}numbers of type {other[0]}", f"{', '.join(TYPES)} are read")
+    names = [name for part in parts for name in part["names"]]
+    if not names or len(set(names)) < len(names):
+        raise refused(path, "no channels, or two of one name")
+    return names
 
-    try:
-        with warnings.catch_warnings():
-            # It warns of metadata, and of sizes that have been looked at.
-            warnings.simplefilter("ignore")
-            with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
-                if image.mode not in ("L", "LA", "RGB", "RGBA"):
-                    image = image.convert("RGBA" if image.mode == "P" else "L")
-                found = np.asarray(image)
-    except Exception as error:  # of a dozen kinds, by what is damaged
-        raise png.PngError(f"it is damaged ({error})") from error
-    return found if found.ndim == 3 else found[..., None]
+
+def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
+    """Raises UsageError where channels are of parts that do not lie over each other, or whose 1 is another."""
+    used = [part for part in parts if set(chosen) & set(part["names"])]
+    found = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
+    if any(one != found[0] for one in found):
+        raise refused(path, f"{', '.join(chosen)} lie in parts of different sizes or types")
 
 
 def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
@@ -160,66 +210,6 @@ def _npy_header(path: Path, stream: io.BytesIO) -> tuple[tuple[int, ...], bool, 
     return shape, in_columns, kind
 
 
-# EXR
-
-
-def _read_exr(path: Path, choose: Choice) -> Pixels:
-    if find_spec("OpenEXR") is None:
-        raise MissingError(f"reading {path.name} needs OpenEXR: pip install OpenEXR, or normalbench[exr]")
-    if not _bytes(path).startswith(EXR_MAGIC):
-        raise refused(path, "no EXR file, by its first bytes")
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "out"
-        _in_a_process(path, out, "header")
-        parts = json.loads(out.read_text(encoding="utf-8"))
-        names = _checked_parts(path, parts)
-        chosen = list(choose(names))
-        _check_windows(path, parts, chosen)
-        _in_a_process(path, out, "pixels", *chosen)
-        with np.load(out, allow_pickle=False) as stored:
-            planes = [stored[key] for key in stored.files]
-    return Pixels(_planes(np.stack(planes, axis=-1), range(len(planes))), None)
-
-
-def _in_a_process(path: Path, out: Path, mode: str, *names: str) -> None:
-    """Runs `exr_process.py`. Raises UsageError where it cannot read the file."""
-    script = Path(__file__).with_name("exr_process.py")
-    command = [sys.executable, "-P", str(script), mode, str(path.resolve()), str(out), *names]
-    try:
-        done = subprocess.run(command, capture_output=True, timeout=SECONDS)
-    except subprocess.TimeoutExpired as error:
-        raise refused(path, f"not read within {SECONDS} seconds") from error
-    if done.returncode:
-        # What the library says of it is another matter each time, and mostly of an index.
-        raise refused(path, "it is cut off or damaged")
-
-
-def _checked_parts(path: Path, parts: list[dict[str, Any]]) -> list[str]:
-    """The names of all channels. Raises UsageError for what is too large or of a kind that is not read."""
-    for part in parts:
-        where = f"part {part['name']!r}: " if len(parts) > 1 else ""
-        if any(word in part["kind"].lower() for word in DEEP):
-            raise refused(path, f"{where}deep samples", "flatten it")
-        if part["subsampled"]:
-            raise refused(
-                path, f"{where}channel {part['subsampled'][0]!r} has fewer samples than pixels", "save it in full"
-            )
-        sides = [high - low + 1 for low, high in zip(part["low"], part["high"], strict=True)]
-        if min(sides) < 1:
-            raise refused(path, f"{where}a data window of {sides[0]} x {sides[1]}")
-        check_pixels(path, math.prod(sides), len(part["names"]))
-    names = [name for part in parts for name in part["names"]]
-    if not names or len(set(names)) < len(names):
-        raise refused(path, "no channels, or two of one name")
-    return names
-
-
-def _check_windows(path: Path, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
-    windows = {(*part["low"], *part["high"]) for part in parts if set(chosen) & set(part["names"])}
-    if len(windows) > 1:
-        raise refused(path, f"{', '.join(chosen)} lie in parts of different sizes")
-
-
 READERS: Mapping[str, Callable[[Path, Choice], Pixels]] = MappingProxyType(
-    {".exr": _read_exr, ".png": _read_png, ".npy": _read_npy}
+    dict.fromkeys(FORMATS, _read_image) | {".npy": _read_npy}
 )

@@ -18,7 +18,7 @@ ROUNDS = {
     "truncate": "truncate (nearest is rounded in the shader)",
     "other": "neither nearest nor truncate (both are rounded in the shader)",
 }
-PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan")
+PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan", "openimageio")
 
 
 def _cpu() -> str:

@@ -1,6 +1,7 @@
 """Users' meshes as scenes: normals under every transform, the formats, cameras, and what bad files get."""
 
 import json
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -172,6 +173,24 @@ def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
     assert status == 0 and "smooth ones were made" in err and "no camera in it" in err, err
     (row,) = json.loads(out)
     assert row["normals"] == "ball.obj" and row["count"] + row["background"] == 64 * 48 and row["count"] > 1000
+
+
+def test_a_note_of_an_obj_is_said_once(tmp_path):
+    (tmp_path / "a.obj").write_text(OBJ)
+    (tmp_path / "colours.mtl").write_text("newmtl red\nmap_Kd a.png\nmap_Ks b.png\nnewmtl blue\nmap_Kd c.png\n")
+    assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: colours alone",)
+
+
+def test_obj_takes_time_for_what_it_holds_and_no_more(tmp_path):
+    """Neither vertices for each of many materials nor the beginning of a line for each of its ends."""
+    square = [f"v {i % 200} {i // 200} 0" for i in range(40_000)]
+    faces = [f"usemtl {i}\nf {i + 1} {i + 2} {i + 202}" for i in range(300)]
+    long = "f " + " \\\n".join(map(str, range(1, 40_001)))
+    (tmp_path / "a.obj").write_text("\n".join([*square, *faces, long]))
+    start = time.process_time()
+    file = read_mesh_file(tmp_path / "a.obj")
+    assert time.process_time() - start < 3
+    assert len(file.pieces) == 300 and sum(len(piece.mesh.triangles) for piece in file.pieces) > 39_000
 
 
 @pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])

@@ -6,16 +6,14 @@ import base64
 import json
 import struct
 import zlib
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
+import OpenImageIO as oiio  # noqa: N813
 
 NORMALS = np.array([(1, 2, 2), (1, 2, 2), (1, 2, 2)], np.float32)
 TRIANGLE = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
-needs_exr = pytest.mark.skipif(find_spec("OpenEXR") is None, reason="no OpenEXR, which the extra exr installs")
 POSITIONS = np.array([(1, 1, 2), (3, 0, 2), (1, 3, 1)], np.float32)
 
 
@@ -160,13 +158,53 @@ def ply(order: str, faces: list[list[int]], vertices: np.ndarray = POSITIONS, no
     return (head + "end_header\n").encode() + body
 
 
-def write_exr(path: Path, planes: dict[str, np.ndarray], **header) -> Path:
-    import OpenEXR
+NAMED = {"float16": "half", "float32": "float", "float64": "double", "uint32": "uint"}
 
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage} | header
-    with OpenEXR.File(header, {name: np.ascontiguousarray(plane) for name, plane in planes.items()}) as file:
-        file.write(str(path))
+
+def image_spec(height: int, width: int, channels: list[tuple[str, Any]], **attributes) -> oiio.ImageSpec:
+    """What OpenImageIO is to write: channels by name and type."""
+    kinds = [oiio.TypeDesc(NAMED.get(str(kind), str(kind))) for _, kind in channels]
+    spec = oiio.ImageSpec(width, height, len(channels), kinds[0])
+    spec.channelnames, spec.channelformats = [name for name, _ in channels], kinds
+    for key, value in ({"oiio:UnassociatedAlpha": 1} | attributes).items():
+        spec.attribute(key, value)
+    return spec
+
+
+def write_image(path: Path, pixels: np.ndarray, **attributes) -> Path:
+    """A file of (height, width, channels) by OpenImageIO."""
+    file, names = oiio.ImageOutput.create(str(path)), "RGBA" if pixels.shape[2] > 1 else "Y"
+    spec = image_spec(*pixels.shape[:2], [(name, pixels.dtype) for name in names[: pixels.shape[2]]], **attributes)
+    assert file.open(str(path), spec) and file.write_image(pixels) and file.close(), file.geterror()
     return path
+
+
+def write_exr(path: Path, planes: dict[str, Any], **attributes) -> Path:
+    """An EXR file of planes by name, or of several parts of them."""
+    parts = planes if isinstance(next(iter(planes.values())), dict) else {"": planes}
+    specs = []
+    for name, part in parts.items():
+        channels = [(channel, plane.dtype) for channel, plane in part.items()]
+        named = {"oiio:subimagename": name} if name else {}
+        specs.append(image_spec(*next(iter(part.values())).shape, channels, **named, **attributes))
+        # All parts of a file have one display window.
+        specs[-1].full_width, specs[-1].full_height = specs[0].width, specs[0].height
+    file = oiio.ImageOutput.create(str(path))
+    assert file.open(str(path), tuple(specs)), file.geterror()
+    for number, (spec, part) in enumerate(zip(specs, parts.values(), strict=True)):
+        assert number == 0 or file.open(str(path), spec, "AppendSubimage"), file.geterror()
+        assert file.write_image(np.stack([*part.values()], axis=-1)), file.geterror()
+    file.close()
+    return path
+
+
+def dds_bytes(pixels: np.ndarray) -> bytes:
+    """A DDS file of uint8 pixels (height, width, 4), not compressed, as Direct3D's A8R8G8B8."""
+    height, width, _ = pixels.shape
+    masks = (0xFF0000, 0xFF00, 0xFF, 0xFF000000)
+    head = struct.pack("<4s7I44x", b"DDS ", 124, 0x100F, height, width, 4 * width, 0, 0)
+    head += struct.pack("<8I", 32, 0x41, 0, 32, *masks) + struct.pack("<5I", 0x1000, 0, 0, 0, 0)
+    return head + pixels[..., [2, 1, 0, 3]].tobytes()
 
 
 def planes_of(n: np.ndarray, names: tuple[str, ...] = ("N.X", "N.Y", "N.Z")) -> dict[str, np.ndarray]:

@@ -3,6 +3,9 @@ the first camera.
 
 A node's transform goes to its vertices as it stands: mirrored and of three scales if need be, normals by the inverse
 transpose, tangents as positions.
+
+Read here and not by trimesh (5.2), which drops tangents, gives a mirrored mesh no normals of the file's, and takes
+indices that are out of range and nodes that are their own ancestors.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""Wavefront OBJ files, and the colours of their MTL files."""
+"""Wavefront OBJ files, and the colours of their MTL files.
+
+Read here and not by trimesh (5.2), which counts negative indices from the end of the file and not from the line they
+are in, takes index 0 for a vertex, leaves out all normals where one index is beyond them, passes over lines that it
+does not know, and names no line of a damaged file.
+"""
 
 from __future__ import annotations
 
@@ -19,28 +24,7 @@ VERTEX_DATA = {"v": 3, "vn": 3, "vt": 2}
 KINDS = ("v", "vt", "vn")
 # What a file may hold and this reader does not draw.
 PASSED_OVER = frozenset(
-    (
-        "g",
-        "o",
-        "s",
-        "l",
-        "p",
-        "vp",
-        "cstype",
-        "deg",
-        "surf",
-        "end",
-        "parm",
-        "curv",
-        "curv2",
-        "trim",
-        "hole",
-        "scrv",
-        "sp",
-        "con",
-        "mg",
-        "lod",
-    )
+    "g o s l p vp cstype deg surf end parm curv curv2 trim hole scrv sp con mg lod".split()  # noqa: SIM905 # to be read
 )
 COLOURS = {"Kd": "albedo", "Ks": "specular", "Ke": "emissive"}
 NUMBERS = {"Ns": "power", "d": "alpha"}
@@ -86,27 +70,27 @@ def read_obj(path: Path) -> MeshFile:
             raise SceneFileError(f"{path}: line {number}: {shown!r}: {error}; export it again") from error
     notes: list[str] = []
     known = _materials(path, obj.libraries, notes)
+    tables = {kind: _table(rows, VERTEX_DATA[kind]) for kind, rows in obj.data.items()}
+    vertices = np.array(obj.vertices, np.int64).reshape(-1, 3)
     pieces = []
     for index, (name, corners) in enumerate(obj.corners.items()):
-        mesh, made_up = _mesh(path, f"material {name!r}" if name else "the mesh", obj, corners)
+        mesh, made_up = _mesh(path, f"material {name!r}" if name else "the mesh", tables, vertices, corners)
         notes += made_up
         pieces.append(Piece(mesh, np.eye(4), index))
     materials = tuple(known.get(name, Material()) for name in obj.corners)
     kept = checked_pieces(path, pieces, notes)
-    return MeshFile(path, kept, materials, (True,) * len(materials), None, tuple(notes))
+    return MeshFile(path, kept, materials, (True,) * len(materials), None, tuple(dict.fromkeys(notes)))
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
     """The words of each line that has any, with its number; a line may go on after a backslash."""
-    before = ""
+    words: list[str] = []
     for number, line in enumerate(data.decode("utf-8", "replace").split("\n"), 1):
-        text = before + line.partition("#")[0].rstrip()
-        if text.endswith("\\"):
-            before = text[:-1] + " "
-            continue
-        before = ""
-        if words := text.split():
+        text = line.partition("#")[0].rstrip()
+        words += text.removesuffix("\\").split()
+        if words and not text.endswith("\\"):
             yield number, words
+            words = []
 
 
 def _take(obj: _Obj, words: list[str]) -> None:
@@ -163,21 +147,18 @@ def _index(word: str, count: int) -> int:
     return index
 
 
-def _mesh(path: Path, place: str, obj: _Obj, corners: list[int]):
+def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.ndarray, corners: list[int]):
     """A mesh whose vertices are the corners that differ; normals where any corner has one."""
     used, triangles = np.unique(np.array(corners, np.int64), return_inverse=True)
     checked_size(path, len(used), len(triangles) // 3, place)
-    position, uv, normal = np.array([obj.vertices[corner] for corner in used], np.int64).T
-    normals = _looked_up(obj.data["vn"], normal, 3) if (normal >= 0).any() else None
-    positions = _looked_up(obj.data["v"], position, 3)
-    return mesh_of(path, place, positions, triangles.reshape(-1, 3), normals, _looked_up(obj.data["vt"], uv, 2))
+    position, uv, normal = vertices[used].T
+    normals = tables["vn"][normal] if (normal >= 0).any() else None
+    return mesh_of(path, place, tables["v"][position], triangles.reshape(-1, 3), normals, tables["vt"][uv])
 
 
-def _looked_up(rows: list[tuple[float, ...]], index: np.ndarray, width: int) -> np.ndarray:
-    """Rows by index, zero where that is -1."""
-    table = np.zeros((len(rows) + 1, width))
-    table[:-1] = np.array(rows).reshape(-1, width)
-    return table[index]
+def _table(rows: list[tuple[float, ...]], width: int) -> np.ndarray:
+    """Rows of numbers, and a last one of zeros for the index -1."""
+    return np.concatenate([np.array(rows).reshape(-1, width), np.zeros((1, width))])
 
 
 def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, Material]:

@@ -1,5 +1,9 @@
 """PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and uv, faces of any number of
-corners."""
+corners.
+
+Read here and not by trimesh (5.2), which refuses binary files of triangles and quads together, takes a text that is cut
+off for a whole one, and splits and merges vertices that have uv.
+"""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ ANSWERS = {
     "truncated or corrupt EXR, glTF, OBJ, PLY: refused with file, place, remedy": {
         "test_bad_captures": [
             "test_a_truncated_exr_is_one_line",
-            "test_damaged_exr_files_are_read_or_refused_and_nothing_else",
+            "test_damaged_images_are_read_or_refused_and_nothing_else",
             "test_damaged_images_are_read_or_refused_and_nothing_else",
         ],
         "test_bad_scene_files": [

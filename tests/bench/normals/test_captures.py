@@ -1,20 +1,32 @@
 """Captured frames as sets of normals: channels, packing, spaces, masks, and what bad files get."""
 
-import io
 import json
+import struct
 import time
+import zlib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from damaged import refusal
+from damaged import in_this_process, refusal
 from PIL import Image
-from written import given, needs_exr, packed, planes_of, png_bytes, some_normals, write_exr
+from written import (
+    chunk,
+    dds_bytes,
+    given,
+    packed,
+    planes_of,
+    png_bytes,
+    some_normals,
+    write_exr,
+    write_image,
+)
 
-from normalbench.bench.normals import captures, png
+from normalbench.bench.normals import captures, pixel_files, pixel_process
 from normalbench.bench.normals.captures import Reading, chosen_channels, view_matrix
 from normalbench.bench.normals.normal_sets import NormalSet, playground
+from normalbench.bench.normals.pixel_files import read_pixels
 from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
@@ -41,7 +53,6 @@ def figures(made, codec: Codec = RG8) -> dict:
 # Round trips
 
 
-@needs_exr
 def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):
     """To the bit, by EXR in float and NPY in float32 and float64; the counts are its own too."""
     n = rendered().normals
@@ -53,7 +64,6 @@ def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path)
         assert figures(capture(tmp_path / name, Reading())) == expected, name
 
 
-@needs_exr
 @pytest.mark.parametrize("how, angle", [("half", 0.03), ("half npy", 0.03), ("png16", 0.002), ("png8", 0.4)])
 def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how, angle):
     """Half steps of half floats are 2^-12 beside 1, of 16 bits 2^-16, of 8 bits 1/255; up to sqrt 3 of that is lost."""
@@ -138,7 +148,7 @@ def test_the_channels_that_are_normals_are_found(what):
         (["N.X", "N.Y", "N.Z", "normal.R", "normal.G", "normal.B"], None, ["N, normal", "--channels N"]),
         (["R", "G", "B"], "N", ["no channels 'N'", "it has R, G, B"]),
         (["R", "G", "B"], "R,G", ["no channels 'R,G'"]),
-        (["L"], None, ["it has L"]),
+        (["Y"], None, ["it has Y"]),
     ],
 )
 def test_channels_that_cannot_be_found_are_listed(names, asked, said):
@@ -147,25 +157,14 @@ def test_channels_that_cannot_be_found_are_listed(names, asked, said):
     assert all(part in str(error.value) for part in ("f.exr: ", *said)), error.value
 
 
-@needs_exr
 def test_layers_and_parts_of_an_exr_by_name(tmp_path):
-    import OpenEXR
-
     n, other = some_normals(), some_normals(seed=1)
     planes = planes_of(other, ("R", "G", "B")) | planes_of(n.astype(np.float16), ("Nx", "Ny", "Nz"))
-    write_exr(tmp_path / "layers.exr", planes, compression=OpenEXR.PIZ_COMPRESSION)
+    write_exr(tmp_path / "layers.exr", planes, compression="piz")
     assert np.allclose(given(capture(tmp_path / "layers.exr", Reading()))[0], n.reshape(-1, 3), atol=1e-3)
     made = given(capture(tmp_path / "layers.exr", Reading(channels="B,G,R")))[0]
     assert np.array_equal(made, other.reshape(-1, 3)[:, ::-1])
-    kind = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
-    parts = [
-        OpenEXR.Part(
-            kind | {"name": name}, {c: np.ascontiguousarray(p) for c, p in planes_of(data, tuple("XYZ")).items()}
-        )
-        for name, data in (("beauty", other), ("normal", n))
-    ]
-    with OpenEXR.File(parts) as file:
-        file.write(str(tmp_path / "parts.exr"))
+    write_exr(tmp_path / "parts.exr", {"beauty": planes_of(other, tuple("XYZ")), "normal": planes_of(n, tuple("XYZ"))})
     assert np.array_equal(given(capture(tmp_path / "parts.exr", Reading()))[0], n.reshape(-1, 3))
     made = given(capture(tmp_path / "parts.exr", Reading(channels="beauty")))[0]
     assert np.array_equal(made, other.reshape(-1, 3))
@@ -252,9 +251,9 @@ def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix
     assert "\n" not in str(error.value)
 
 
-@needs_exr
-def test_masks_by_file_and_by_channel(tmp_path):
+def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
     """Garbage under the mask is never looked at."""
+    monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
     n, surface = some_normals(), np.zeros((48, 64), bool)
     surface[10:30, 5:60] = True
     n[~surface] = np.nan
@@ -305,31 +304,101 @@ def test_normals_of_no_length_are_background(tmp_path):
         assert np.isfinite(n_made).all()
 
 
-# PNG
+# Formats
+
+
+def all_of(path: Path):
+    """Every channel of a file, (channels, height, width), and what stands for 1."""
+    made = read_pixels(path, lambda names: names)
+    return made.planes, made.full
+
+
+# Of each format: the type of its numbers, and how OpenImageIO is to write it.
+FORMATS = {
+    "a.png": (np.uint16, {}),
+    "b.png": (np.uint8, {}),
+    "a.tif": (np.uint8, {"compression": "lzw"}),
+    "b.tif": (np.uint16, {"compression": "zip"}),
+    "c.tif": (np.float16, {"compression": "zip"}),
+    "d.tiff": (np.float32, {"compression": "none"}),
+    "e.tiff": (np.float64, {"compression": "zip", "planarconfig": "separate"}),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_numbers_of_every_format_come_back_as_they_are(tmp_path, name):
+    """Colour is neither multiplied by alpha nor converted, and 16 bits stay 16."""
+    kind, how = FORMATS[name]
+    pixels = np.random.default_rng(0).integers(0, 2**16, (9, 7, 4))
+    pixels = pixels.astype(kind) if np.issubdtype(kind, np.integer) else (pixels / 2**16 - 0.5).astype(kind)
+    pixels[0, :, 3] = 0
+    planes, full = all_of(write_image(tmp_path / name, pixels, **how))
+    assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)), abs(planes - np.moveaxis(pixels, -1, 0)).max()
+    assert full == (np.iinfo(kind).max if np.issubdtype(kind, np.integer) else None)
+    assert planes.dtype == (np.float64 if kind is np.float64 else np.float32)
+
+
+def test_dds_webp_and_radiance_files_are_read(tmp_path):
+    """Whole numbers to the last one, also under an alpha of 0; Radiance's to the 8 bits that it has."""
+    pixels = np.random.default_rng(0).integers(0, 256, (9, 7, 4), np.uint8)
+    (tmp_path / "a.dds").write_bytes(dds_bytes(pixels))
+    Image.fromarray(pixels).save(tmp_path / "a.webp", lossless=True, exact=True)
+    for name in ("a.dds", "a.webp"):
+        planes, full = all_of(tmp_path / name)
+        assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)) and full == 255, name
+    exact = pixels[..., :3].astype(np.float32) / 256
+    exact[..., 2] = np.maximum(exact[..., 2], 0.5)
+    planes, full = all_of(write_image(tmp_path / "a.hdr", exact))
+    assert np.array_equal(planes, np.moveaxis(exact, -1, 0)) and full is None
+
+
+def test_pages_of_a_file_are_layers(tmp_path):
+    pages = [np.random.default_rng(seed).integers(1, 256, (9, 7, 3), np.uint8) for seed in range(2)]
+    Image.fromarray(pages[0]).save(tmp_path / "a.tif", save_all=True, append_images=[Image.fromarray(pages[1])])
+    seen = []
+    made = read_pixels(tmp_path / "a.tif", lambda names: seen.extend(names) or ["2.R", "G"])
+    assert seen == ["R", "G", "B", "2.R", "2.G", "2.B"]
+    assert np.array_equal(made.planes, [pages[1][..., 0], pages[0][..., 1]])
+    assert chosen_channels(tmp_path / "a.tif", seen, None) == ["R", "G", "B"]
+
+
+def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
+    """An object's number is no share of 2^32."""
+    objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
+    planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
+    assert np.array_equal(planes, [objects]) and full is None
 
 
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16])
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_png_of_every_filter_and_depth(kind, channels):
+def test_png_of_every_filter_and_depth(tmp_path, kind, channels):
     """Written byte by byte as the specification has it; noise on a ramp, so that every predictor is taken."""
     rng = np.random.default_rng(0)
     ramp = np.arange(21 * 17 * channels).reshape(21, 17, channels) * (np.iinfo(kind).max // 4000)
     pixels = (ramp + rng.integers(0, np.iinfo(kind).max // 3, ramp.shape)).astype(kind)
-    assert np.array_equal(png.pixels(png_bytes(pixels, [4, 3, 2, 1, 0, 4, 4])), pixels)
+    (tmp_path / "a.png").write_bytes(png_bytes(pixels, [4, 3, 2, 1, 0, 4, 4]))
+    names = [["Y"], ["Y", "A"], list("RGB"), list("RGBA")][channels - 1]
+    found = pixel_process.read_pixels("png", str(tmp_path / "a.png"), names)
+    assert found.dtype == kind and np.array_equal(found, np.moveaxis(pixels, -1, 0))
 
 
-def test_png_as_pillow_writes_it():
-    """Its own choice of filters, at 8 bits in colour and at 16 in grey."""
-    ramp = np.add.outer(np.arange(50) * 3, np.arange(40) * 2)
-    colour = np.stack([ramp % 256, ramp // 2, 255 - ramp % 200], axis=-1).astype(np.uint8)
-    for pixels in (colour, (ramp * 150).astype(np.uint16)):
-        stream = io.BytesIO()
-        Image.fromarray(pixels).save(stream, "PNG")
-        assert np.array_equal(png.pixels(stream.getvalue()).reshape(pixels.shape), pixels)
+@pytest.mark.parametrize("size", [(9, 13), (1, 1), (3, 2)])
+def test_an_interlaced_png_is_read(tmp_path, size):
+    """Its seven passes one after the other, each as an image of its own."""
+    pixels = np.random.default_rng(0).integers(0, 2**16, (*size, 3), np.uint16)
+    passes = [(0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1)]
+    parts = [pixels[y::down, x::across].astype(">u2") for y, x, down, across in passes]
+    rows = b"".join(b"\0" + row.tobytes() for part in parts if part.size for row in part)
+    head = struct.pack(">IIBBBBB", size[1], size[0], 16, 2, 0, 0, 1)
+    body = chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n" + body)
+    assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(pixels, -1, 0))
 
 
-def test_a_full_hd_frame_of_16_bits_is_read_in_seconds():
-    n = np.random.default_rng(0).integers(0, 2**16, (1080, 1920, 3), np.uint16)
-    start = time.process_time()
-    assert np.array_equal(png.pixels(png_bytes(n)), n)
-    assert time.process_time() - start < 20
+@pytest.mark.parametrize("shape", [(1080, 1920, 3), (1, 262144, 3), (262144, 1, 3)])
+def test_16_bits_of_any_shape_are_read_in_seconds(tmp_path, shape):
+    n = np.random.default_rng(0).integers(0, 2**16, shape, np.uint16)
+    (tmp_path / "a.png").write_bytes(png_bytes(n))
+    start = time.perf_counter()
+    assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(n, -1, 0))
+    assert time.perf_counter() - start < 10

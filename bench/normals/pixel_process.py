@@ -1,0 +1,127 @@
+"""Reads image files by OpenImageIO in a process of its own.
+
+A file may be made to crash the library, to fill the memory or never to end, and the library writes warnings of its own:
+all of that stays in here. Run as a script, not imported:
+
+    python pixel_process.py header KIND FILE OUT            # a JSON list of the parts
+    python pixel_process.py pixels KIND FILE OUT NAME ...   # an NPY file of the channels, in that order
+
+KIND is the library's name of the format. The status is 0, or one of FAILURES.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
+
+MAX_MEMORY = 2**33
+DAMAGED = 1
+# Words of the library's errors that say more than that a file is damaged, and the status for them.
+FAILURES: Mapping[str, int] = MappingProxyType(
+    {"Subsampled": 2, " may not exceed ": 3, "exceeds the": 3, " claims a ": 3}
+)
+# Numbers as they are stored: colour is not multiplied by alpha, and not converted.
+AS_STORED = ("oiio:UnassociatedAlpha", "oiio:RawColor")
+
+
+class UnreadableError(ValueError):
+    """The library's own words."""
+
+
+def opened(kind: str, path: str) -> oiio.ImageInput:
+    """An image file of that format. Raises UnreadableError."""
+    wishes = oiio.ImageSpec()
+    for wish in AS_STORED:
+        wishes.attribute(wish, 1)
+    file = oiio.ImageInput.open(path, wishes)
+    # Where the format of the name fails, the library tries all others.
+    if file is None or file.format_name() != kind:
+        raise UnreadableError(oiio.geterror())
+    return file
+
+
+def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
+    """What the header says of each part, layer or page: its name, sides, place, channels and their types."""
+    found: list[dict[str, Any]] = []
+    while file.seek_subimage(len(found), 0):
+        spec = file.spec()
+        kinds = [str(kind) for kind in spec.channelformats] or [str(spec.format)] * spec.nchannels
+        channels = [(name, channel) for channel, name in enumerate(spec.channelnames)]
+        if file.format_name() == "openexr":
+            channels.sort()  # as the file has them; the library brings R, G, B and A to the front
+        found.append({"name": spec.get_string_attribute("oiio:subimagename"), "deep": spec.deep, "types": kinds})
+        found[-1] |= {
+            "place": [spec.x, spec.y],
+            "sides": [spec.width, spec.height, spec.depth],
+            "channels": dict(channels),
+        }
+    return found
+
+
+def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
+    """Each part's channels by names that differ: a part's name, or its number from 2 on, comes first where there are
+    several parts."""
+    stems = [part["name"] or (str(number) if number > 1 else "") for number, part in enumerate(parts, 1)]
+    if len(parts) == 1:
+        stems = [""]
+    return [
+        [c if not stem or c.startswith(f"{stem}.") else f"{stem}.{c}" for c in part["channels"]]
+        for stem, part in zip(stems, parts, strict=True)
+    ]
+
+
+def read_pixels(kind: str, path: str, wanted: list[str]) -> np.ndarray:
+    """Channels by their full names, (channels, height, width). Raises UnreadableError where one cannot be read."""
+    file = opened(kind, path)
+    parts = parts_of(file)
+    places = {
+        name: (number, part["types"][channel], channel)
+        for number, (part, names) in enumerate(zip(parts, full_names(parts), strict=True))
+        for name, channel in zip(names, part["channels"].values(), strict=True)
+    }
+    planes = {}
+    # Channels of one part and type are read at once: the library unpacks all of them each time.
+    for number, stored in dict.fromkeys(places[name][:2] for name in wanted):
+        channels = {name: places[name][2] for name in wanted if places[name][:2] == (number, stored)}
+        first = min(channels.values())
+        block = file.read_image(number, 0, first, max(channels.values()) + 1, stored)
+        if block is None:
+            raise UnreadableError(file.geterror())
+        planes |= {name: block[..., channel - first] for name, channel in channels.items()}
+    return np.stack([planes[name] for name in wanted])
+
+
+def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None:
+    """Write what is asked for. Raises whatever the library makes of a damaged file."""
+    if mode == "header":
+        parts = parts_of(opened(kind, path))
+        found = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]
+        out.write_text(json.dumps(found), encoding="utf-8")
+    else:
+        with out.open("wb") as file:
+            np.save(file, read_pixels(kind, path, names))
+
+
+def main() -> int:
+    """Do what the arguments say."""
+    mode, kind, path, out, *names = sys.argv[1:]
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
+    # Each thread takes address space, and processes beside this one take the cores.
+    oiio.attribute("threads", 1)
+    try:
+        answer(mode, kind, path, Path(out), names)
+    except Exception as error:
+        return next((status for words, status in FAILURES.items() if words in str(error)), DAMAGED)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
