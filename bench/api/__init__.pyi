@@ -38,7 +38,7 @@ def quality(
 ) -> Rows:
     """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
 
-    A set may be a file: a captured frame (EXR, PNG, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY).
+    A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY, STL, OFF).
 
     Args:
         encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.

@@ -2,6 +2,7 @@
 
 import json
 import os
+import struct
 import time
 from pathlib import Path
 
@@ -115,6 +116,9 @@ def test_nothing_is_read_outside_the_folder_or_from_the_network(tmp_path, run, o
     assert opened and not any(name.endswith(("secret.bin", "hostname", "pipe")) for name in opened), opened
 
 
+OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n"
+FACET = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+STL = f"solid a part\n{FACET}endsolid a part\nsolid b\n{FACET}endsolid b\n"
 BAD_TEXTS = {
     "an OBJ index": ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ["line 4", "index 4", "there are 3"]),
     "OBJ index 0": ("a.obj", "v 0 0 0\nf 0 1 1\n", ["line 2", "index 0"]),
@@ -127,6 +131,16 @@ BAD_TEXTS = {
         "mtllib ../a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
         ["leaves the file's folder"],
     ),
+    "an OFF that is cut off": ("a.off", OFF[:-4], ["cut off or damaged"]),
+    "an OFF face of two": ("a.off", OFF.replace("3 0 1 2", "3 0 1"), ["cut off or damaged"]),
+    "an OFF index": ("a.off", OFF.replace("3 0 1 2", "3 0 1 9"), ["cut off or damaged"]),
+    "an OFF of too many": ("a.off", OFF.replace("4 2", "99999999 2"), ["cut off or damaged"]),
+    "an OFF of another kind": ("a.off", "4" + OFF, ["no OFF file"]),
+    "an STL that is cut off": ("a.stl", STL[:-12], ["cut off or damaged"]),
+    "an STL without a vertex": ("a.stl", STL.replace("vertex 0 1 0\n", ""), ["cut off or damaged"]),
+    "an STL word": ("a.stl", STL.replace("1 0 0", "1 zero 0"), ["cut off or damaged"]),
+    "an STL NaN": ("a.stl", STL.replace("1 0 0", "1 nan 0"), ["position of vertex 1", "nan"]),
+    "no STL": ("a.stl", "", ["no STL file"]),
     "flat triangles": ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ["no triangle with an area"]),
     "no PLY": ("a.ply", "plywood", ["no PLY header"]),
     "a PLY without faces": (
@@ -195,13 +209,18 @@ def specimens(tmp_path: Path) -> dict[str, bytes]:
         "gltf": document.write(tmp_path / "x.gltf", "data").read_bytes(),
         "obj": OBJ.replace("mtllib", "mtllib colours.mtl\nmtllib").encode(),
         "mtl": b"newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nd 0.5\nmap_Kd a.png\n",
+        "off": OFF.encode(),
+        "text stl": STL.encode(),
+        "stl": bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 7),
         "ply": ply("ascii", faces, ball.positions, ball.normals),
         "little ply": ply("binary_little_endian", faces, ball.positions, ball.normals),
         "big ply": ply("binary_big_endian", [*faces, [0, 1, 2, 3]], ball.positions, ball.normals),
     }
 
 
-@pytest.mark.parametrize("kind", ["glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply"])
+@pytest.mark.parametrize(
+    "kind", ["glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply", "off", "text stl", "stl"]
+)
 def test_damaged_files_are_read_or_refused_and_nothing_else(tmp_path, opened, kind, monkeypatch):
     """250 seeded changes each: a scene that can be drawn, or one line, soon; nothing opened outside the folder."""
     change = revalued if "values" in kind else mutated

@@ -189,7 +189,7 @@ TABLE = Table(
     package=__package__ or "",
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
     "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by "
-    "a camera (glTF, GLB, OBJ, PLY).",
+    "a camera (glTF, GLB, OBJ, PLY, STL, OFF).",
     options=QualityOptions,
     outputs=QualityOutputs,
     columns=COLUMNS,

@@ -42,7 +42,6 @@ WORDS = {
 @pytest.fixture
 def runs(run, tmp_path, monkeypatch):
     """`before` and `after`: a constant of the encoder is another, nothing else."""
-    pytest.importorskip("OpenEXR")
     monkeypatch.chdir(tmp_path)
     write_exr(tmp_path / "frame.exr", planes_of(some_normals()))
     as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
