@@ -17,11 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.codecs.codec_passes import exact_values
-from ...gbuffer.gl.device import NoDeviceError, device
+from ...gbuffer.codecs.loops import loop_limit, loops_ended
+from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError
 from ..output.errors import UsageError
-from .loops import endless
 from .user_encodings import read_encoding
 
 RANDOM = 4096
@@ -47,14 +48,20 @@ def first_look(path: Path) -> dict[str, Any]:
         encoding, gl = read_encoding(path), device()
         codes, _ = exact_values(gl, encoding, given, view, given)
         _, decoded = exact_values(gl, encoding, given, view, codes)
-        stuck = endless(gl, encoding, given, view)
+        broken = _ended(gl, encoding, given, view)
     except NoDeviceError as error:
         return {"missing": str(error)}
     except (ShaderError, UsageError) as error:
         return {"error": str(error)}
-    if stuck:
-        return {"broken": stuck}
-    return _judged(n, codes[:, : encoding.components], decoded[:, :3])
+    return broken or _judged(n, codes[:, : encoding.components], decoded[:, :3])
+
+
+def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> dict[str, Any]:
+    for what, flags in zip(("encode", "decode"), loops_ended(gl, encoding, n, view), strict=True):
+        if flags.any():
+            said = f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+            return {"broken": f"the loops of {what} for {n[np.argmax(flags), :3].tolist()} do not end here: {said}"}
+    return {}
 
 
 def _judged(n: np.ndarray, codes: np.ndarray, decoded: np.ndarray) -> dict[str, Any]:

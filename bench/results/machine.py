@@ -10,6 +10,7 @@ from pathlib import Path
 import jax
 
 from ...encodings.storages.storage import STORAGES
+from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 
@@ -54,6 +55,7 @@ def _gl() -> dict[str, str]:
         "GL largest texture": str(gl.max_size),
         "GL targets at once": str(gl.max_targets),
         "GL samples a pixel": str(gl.max_samples),
+        "GL loops": f"ended after {most} turns" if (most := loop_limit(gl)) else f"make {MANY} turns and more",
         **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
 
