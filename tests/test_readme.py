@@ -96,18 +96,10 @@ def test_every_example_is_used():
         assert used or name.startswith("test_") or Path(name).with_suffix(".glsl").name in FILES, name
 
 
-@pytest.fixture(scope="module")
-def finished_run(tmp_path_factory):
-    """A small run."""
-    folder = tmp_path_factory.mktemp("finished") / "run"
-    words = ["run", "--tables", "quality", "--encoding", "octahedral,xy", "--normals", "axes", "-o", str(folder)]
-    subprocess.run([sys.executable, "-m", "normalbench.bench", *words], check=True, capture_output=True)
-    return folder
-
-
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(render|lights|sweep|tune|run|report|frames) (?!--help)|lights$|frames$|--plot|--report|-m |all|check"
+    r"(render|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
 
@@ -120,7 +112,7 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, r
         (tmp_path / name).write_text(text)
     words = shlex.split(command)
     for name in {"before", "after"} & set(words) if words[1] != "run" else ():
-        shutil.copytree(request.getfixturevalue("finished_run"), tmp_path / name)
+        shutil.copytree(request.getfixturevalue("results")[0], tmp_path / name)
     if re.search(r"\.(glb|exr|png|npy)\b", command):
         users_files(tmp_path)
     if words[0] == "python":
@@ -247,7 +239,7 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
     lines = re.findall(shape, table("normalbench render"), re.M)
     assert len(lines) == 8
     names = ",".join(line[0] for line in lines)
-    command = ["normalbench", "render", "--encoding", names, "--repeats", "1", "--format", "json"]
+    command = ["normalbench", "render", "--encoding", names, "--repeats", "0", "--format", "json"]
     monkeypatch.setattr(sys, "argv", command)
     assert cli.main() == 0
     rows = {row["encoding"]: row for row in json.loads(capsys.readouterr().out)}
@@ -415,6 +407,7 @@ def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_an_encoding_is_added_as_it_says(tmp_path):
     """A copy of the tree, a pair of files, a line: the table has a new row in both languages."""
     package = a_copy_of_the_rooms(tmp_path)

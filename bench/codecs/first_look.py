@@ -1,31 +1,42 @@
-"""A first look at a user's GLSL, in a process that may hang or die.
+"""A first look at a user's code, in a process that may hang or die.
 
-    python -m normalbench.bench.codecs.first_look FILE
+    python -m normalbench.bench.codecs.first_look glsl FILE
+    python -m normalbench.bench.codecs.first_look twin FILE
 
-Prints one line of JSON: `error`, what the compiler says; `broken`, where it is not finite or does not end; `missing`,
-that there is no GL device; else by domain how far a direction is off on average without any storage, and the worst with
-what it becomes.
+Prints one line of JSON. Of the GLSL: `error`, what the compiler says; `broken`, where it is not finite or does not end;
+`missing`, that there is no GL device; else by domain how far a direction is off on average without any storage, and the
+worst with what it becomes. Of the Python twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
 
 import itertools
 import json
+import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.codecs.loops import loop_limit, loops_ended
 from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError
+from ..machine import children
 from ..output.errors import UsageError
+from .names import check_twin
 from .user_encodings import read_encoding
 
 RANDOM = 4096
+NOT_ASKED = "the twin is looked at by itself"
+# Twins whose numbers are farther apart, for more than this share of directions, are two encodings.
+APART, APART_SHARE = 1e-3, 0.01
 
 
 def directions() -> np.ndarray:
@@ -45,15 +56,23 @@ def first_look(path: Path) -> dict[str, Any]:
     view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
     given = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
     try:
-        encoding, gl = read_encoding(path), device()
+        encoding, gl = read_encoding(path, NOT_ASKED), device()
         codes, _ = exact_values(gl, encoding, given, view, given)
         _, decoded = exact_values(gl, encoding, given, view, codes)
         broken = _ended(gl, encoding, given, view)
     except NoDeviceError as error:
         return {"missing": str(error)}
-    except (ShaderError, UsageError) as error:
+    except UsageError as error:
         return {"error": str(error)}
+    except ShaderError as error:
+        return {"error": _of_compiler(path, str(error))}
     return broken or _judged(n, codes[:, : encoding.components], decoded[:, :3])
+
+
+def _of_compiler(path: Path, said: str) -> str:
+    """A compiler's message with the user's file at its begin."""
+    line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
+    return line if path.name in line else f"{path}: {line}"
 
 
 def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> dict[str, Any]:
@@ -79,5 +98,62 @@ def _judged(n: np.ndarray, codes: np.ndarray, decoded: np.ndarray) -> dict[str, 
     }
 
 
+def twin_look(path: Path) -> dict[str, Any]:
+    """What there is to say of a file's Python twin; see above."""
+    n = directions()
+    view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
+    try:
+        encoding = read_encoding(path)
+        check_twin(encoding)
+        codes = _by_twin(encoding.encode, n, view)
+        decoded = _by_twin(encoding.decode, codes, view)
+    except NoDeviceError:
+        return {}
+    except BaseException as error:  # whatever a user's own file raises
+        where = path.with_suffix(".py")
+        said = str(error) if isinstance(error, UsageError) else f"{where}: {type(error).__name__}: {error}"
+        return {"error": " ".join(said.split())[:300]}
+    return _apart(encoding, n, view, codes, decoded)
+
+
+def _by_twin(function: Callable[..., Any], given: np.ndarray, view: np.ndarray) -> np.ndarray:
+    """What a twin's function makes of arrays of shape (count, 2 or 3), which it sees as it does when it is measured."""
+    kind = {2: Vec2, 3: Vec3}[given.shape[1]]
+    made = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
+    return np.stack([np.broadcast_to(np.asarray(one, np.float32), len(given)) for one in made], axis=1)
+
+
+def _apart(
+    encoding: Encoding, n: np.ndarray, view: np.ndarray, codes: np.ndarray, decoded: np.ndarray
+) -> dict[str, Any]:
+    try:
+        gl = device()
+    except NoDeviceError:
+        return {}
+    by_gl, by_gl_decoded = exact_values(gl, encoding, _widened(n), view, _widened(codes))
+    for what, given, one, other in (("encode", n, codes, by_gl), ("decode", codes, decoded, by_gl_decoded)):
+        far = ~(np.abs(one - other[:, : one.shape[1]]) <= APART).all(axis=1)
+        if far.mean() > APART_SHARE:
+            at = int(np.argmax(far))
+            values = [row[at, : one.shape[1]].round(4).tolist() for row in (one, other)]
+            share = f"{100 * far.mean():.0f} % of directions, of {given[at].round(4).tolist()}"
+            return {"apart": f"{what} is another than the GLSL's for {share}: {values[0]}, by GLSL {values[1]}"}
+    return {}
+
+
+def _widened(array: np.ndarray) -> np.ndarray:
+    return np.concatenate([array, np.zeros((len(array), 4 - array.shape[1]), np.float32)], axis=1)
+
+
+def _alone() -> int:
+    """A file for what is to be said; whatever users' code prints goes to stderr."""
+    said = os.dup(1)
+    os.dup2(2, 1)
+    return said
+
+
 if __name__ == "__main__":
-    print(json.dumps(first_look(Path(sys.argv[1]))))
+    children.limit_this_process()
+    answer = _alone()
+    look = {"glsl": first_look, "twin": twin_look}[sys.argv[1]]
+    os.write(answer, json.dumps(look(Path(sys.argv[2]))).encode())

@@ -17,14 +17,17 @@ from typing import Any
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ..machine import children
+from ..machine.cores import on_all_cores
 from ..options.words import given_in
 from ..output.errors import UsageError, pick
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
 ENCODE = re.compile(r"\bvec([23])\s+(\w+)_encode\s*\(\s*vec3\s+\w+\s*,\s*vec3\s+\w+\s*\)")
+MAIN = re.compile(r"\bvoid\s+main\s*\(")
 ENDING = ".glsl"
-# A first look takes a second or two; a shader that does not end takes for ever.
+# A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 # Farther off than that on average it is hardly the decoder of this encoder.
 STRANGE_DEG = 15.0
@@ -58,17 +61,27 @@ def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str]]:
     """The encodings of files, and why others are left out: a line for each."""
     found: dict[str, Encoding] = {}
     complaints: list[str] = []
-    for word in words:
+    for word, looked in zip(words, on_all_cores(_looked_at, map(Path, words)), strict=True):
         try:
-            found[word] = _looked_at(Path(word), [encoding.name for encoding in found.values()])
+            found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
         except UsageError as error:
             complaints.append(str(error))
     return found, complaints
 
 
-def _looked_at(path: Path, taken: list[str]) -> Encoding:
-    """A file's encoding after the first look. Raises UsageError where rows could not tell its name from another's."""
-    encoding = replace(read_encoding(path), domain=_domain(path, _look(path)))
+def _looked_at(path: Path) -> Encoding | UsageError:
+    """A file's encoding after the first look, or why there is none."""
+    try:
+        domain = _domain(path, _look(path, "glsl"))
+        return replace(read_encoding(path, _twins_fault(path.with_suffix(".py"), path)), domain=domain)
+    except UsageError as error:
+        return error
+
+
+def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) -> Encoding:
+    """The encoding. Raises UsageError where there is none, or rows could not tell its name from another's."""
+    if isinstance(encoding, UsageError):
+        raise encoding
     if encoding.name in ENCODINGS:
         raise UsageError(f"{path}: there is an encoding named {encoding.name} already; rename its two functions")
     if encoding.name in taken:
@@ -76,8 +89,12 @@ def _looked_at(path: Path, taken: list[str]) -> Encoding:
     return encoding
 
 
-def read_encoding(path: Path) -> Encoding:
+def read_encoding(path: Path, fault: str = "") -> Encoding:
     """An encoding from its GLSL file, and from the Python file of the same name where there is one.
+
+    Args:
+        path: of the GLSL file.
+        fault: why the Python file is not to be used; what it would measure says so.
 
     Raises:
         UsageError: it cannot be read, or does not define its two functions.
@@ -86,10 +103,15 @@ def read_encoding(path: Path) -> Encoding:
         text = read_shader(path.resolve())
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    match = ENCODE.search(re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S))
+    code = re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S)
+    if "/*" in code:
+        raise UsageError(f"{path}: a comment that begins with /* is not closed")
+    if MAIN.search(code):
+        raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
+    match = ENCODE.search(code)
     if not match:
         raise UsageError(f"{path}: no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)")
-    encode, decode = _twin(path.with_suffix(".py"))
+    encode, decode = _lacking(fault) if fault else _twin(path.with_suffix(".py"))
     return Encoding(
         name=match[2],
         title=str(path),
@@ -105,14 +127,19 @@ def read_encoding(path: Path) -> Encoding:
     )
 
 
+def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """An encode and a decode that raise NoTwinError."""
+
+    def lacking(*_: Any) -> Any:
+        raise NoTwinError(reason)
+
+    return lacking, lacking
+
+
 def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
     if not path.exists():
-
-        def missing(*_: Any) -> Any:
-            raise NoTwinError(f"{path} is not there: this encoding is in GLSL only")
-
-        return missing, missing
+        return _lacking(f"{path} is not there: this encoding is in GLSL only")
     try:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader
@@ -125,20 +152,38 @@ def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
         raise UsageError(f"{path}: {type(error).__name__}: {error}") from error
 
 
-def _look(path: Path) -> dict[str, Any]:
+def _look(path: Path, which: str) -> dict[str, Any]:
     """A first look in a process of its own, see first_look.py. Raises UsageError where it does not end well."""
-    command = [sys.executable, "-m", "normalbench.bench.codecs.first_look", str(path)]
+    what = {"glsl": "its shader", "twin": "its Python twin"}[which]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT)
+        done = children.finished(children.python("normalbench.bench.codecs.first_look", which, str(path)), TIME_LIMIT)
     except subprocess.TimeoutExpired as error:
-        raise UsageError(f"{path}: its shader did not end within {TIME_LIMIT:g} s") from error
-    if done.returncode < 0:
-        raise UsageError(f"{path}: its shader killed the process ({signal.Signals(-done.returncode).name})")
+        raise UsageError(f"{path}: {what} did not end within {TIME_LIMIT:g} s") from error
     try:
-        return json.loads(done.stdout)
-    except ValueError as error:
-        last = done.stderr.strip().splitlines()[-1:] or [f"status {done.returncode}"]
-        raise UsageError(f"{path}: the first look failed: {last[0]}") from error
+        return json.loads(done.stdout.splitlines()[-1])
+    except (ValueError, IndexError) as error:
+        raise UsageError(f"{path}: {what} {_how_it_ended(done)}") from error
+
+
+def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
+    limits = f"it may use {children.MEMORY >> 20} MiB of memory and {children.SECONDS} s of processor time"
+    if done.returncode < 0:
+        return f"killed the process ({signal.Signals(-done.returncode).name}); {limits}"
+    last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
+    return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
+
+
+def _twins_fault(twin: Path, path: Path) -> str:
+    """Why a Python twin cannot be measured; empty where it can be. One that contradicts its GLSL is named."""
+    if not twin.exists():
+        return ""
+    try:
+        found = _look(path, "twin")
+    except UsageError as error:
+        return str(error)
+    if "apart" in found:
+        print(f"normalbench: {twin}: {found['apart']}", file=sys.stderr)
+    return found.get("error", "")
 
 
 def _domain(path: Path, found: dict[str, Any]) -> str:

@@ -6,7 +6,6 @@ import json
 import queue
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -16,9 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from ..machine.children import python
 from .radv_files import environment
 
-CHILD: Sequence[str] = (sys.executable, "-m", "normalbench.bench.isa.child")
+CHILD: Sequence[str] = python("normalbench.bench.isa.child")
 # Of one job, and of a driver that starts: a thousand times what they take.
 SECONDS = 10.0
 

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from ..machine import children
+
 DRIVER = "libvulkan_radeon"
 NO_DRIVER = (
     f"no RADV: no Vulkan driver file names {DRIVER}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
@@ -46,7 +48,7 @@ def _library(path: Path) -> str:
 
 def environment(path: Path, family: str | None) -> dict[str, str]:
     """A process's environment in which the loader knows RADV alone, for a family or for what is there."""
-    usual = {key: value for key, value in os.environ.items() if not key.startswith(UNWANTED)}
+    usual = {key: value for key, value in children.environment().items() if not key.startswith(UNWANTED)}
     driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
     driver |= {"RADV_FORCE_FAMILY": family} if family else {}
     # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.

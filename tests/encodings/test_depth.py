@@ -283,6 +283,7 @@ def test_the_device_stores_numbers_as_the_emulation_says(gl, name):
     assert_same_bits(depths, numbers_by_jax(codec, UNIT, depths), numbers_by_gl(gl, codec, UNIT, depths), name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, s in DEPTH_STORAGES.items() if s.is_signed])
 def test_the_device_stores_signed_numbers_as_the_emulation_says(gl, name):
     codec = DepthCodec(DEPTH_ENCODINGS["linear_sign"], DEPTH_STORAGES[name])

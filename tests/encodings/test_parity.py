@@ -145,8 +145,8 @@ def codecs(storages, roundings=("nearest",), names=EVERY, marks=()) -> list:
 @pytest.mark.parametrize(
     "codec",
     [
-        *codecs(["rgba8", "rgb10a2", "rg16_snorm", "rg16f", "r11g11b10f"]),
-        *codecs(["rg8_snorm", "rg16"], marks=pytest.mark.slow),
+        *codecs(["rgba8", "rgb10a2", "rg16f"]),
+        *codecs(["rg8_snorm", "rg16", "rg16_snorm", "r11g11b10f"], marks=pytest.mark.slow),
         *codecs(PACKED, names=ACROSS),
     ],
 )

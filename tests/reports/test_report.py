@@ -187,6 +187,7 @@ def test_bad_input_is_one_line(run, tmp_path, arguments, said):
     assert {path.name for path in folder.iterdir()} == {"run.json", "rows.jsonl"}
 
 
+@pytest.mark.slow
 def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
     folder, out, _ = results
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}

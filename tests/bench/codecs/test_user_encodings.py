@@ -91,15 +91,24 @@ def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
     assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
 
 
-def test_a_missing_file_and_a_twin_that_fails_are_one_line(run, tmp_path):
+def test_a_missing_file_is_one_line(run, tmp_path):
     status, _, err = run("quality", "--encoding", str(tmp_path / "none.glsl"), *QUICK)
     assert status == 2 and "cannot be read as a shader" in err and err.count("\n") == 1
-    (tmp_path / "mine.py").write_text("def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n")
-    status, _, err = run("quality", "--encoding", written(tmp_path), *QUICK)
-    assert status == 2 and "mine.py: AttributeError" in err and err.count("\n") == 1
-    (tmp_path / "mine.py").write_text("print('hello')\nraise SystemExit(0)\n")
+
+
+@pytest.mark.parametrize(
+    "twin, said",
+    [
+        ("def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n", "mine.py: AttributeError"),
+        ("print('hello')\nraise SystemExit(0)\n", "mine.py: SystemExit"),
+    ],
+)
+def test_a_twin_that_fails_costs_the_rows_by_jax(run, tmp_path, twin, said):
+    (tmp_path / "mine.py").write_text(twin)
     status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
-    assert (status, out) == (2, "") and "mine.py: SystemExit" in err
+    by_jax, by_gl = json.loads(out)
+    assert status == 0 and said in by_jax["skipped"] and by_gl["psnr_db"]
+    assert said in err and err.count("\n") == 1, err
 
 
 def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):

@@ -104,6 +104,7 @@ def test_what_no_codes_can_do_is_said():
     assert frame_effective_bits(0.0) == np.inf and frame_effective_bits(170.0) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 def test_every_code_keeps_its_hand_and_its_limit(request, backend):
     if backend == "glsl":

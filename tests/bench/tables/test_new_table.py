@@ -113,6 +113,7 @@ def test_a_run_of_it_that_is_killed_goes_on(copy):
     ]
 
 
+@pytest.mark.slow
 def test_a_gate_and_a_test_may_hold_it(copy):
     (copy / "gates.toml").write_text('[[gate]]\ntable = "echo"\nword = "three"\nletters = "at most 4"\n')
     done = command(copy, "check", "gates.toml")
@@ -127,6 +128,7 @@ def test_a_gate_and_a_test_may_hold_it(copy):
     assert "2 passed" in done.stdout, done.stdout
 
 
+@pytest.mark.slow
 def test_compare_names_its_rows_and_the_page_shows_it(copy):
     for name, letters in (("before", "len(word)"), ("after", "len(word) + (word == 'c')")):
         path = copy / "normalbench/bench/tables/echo/work.py"

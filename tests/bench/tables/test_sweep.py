@@ -137,6 +137,7 @@ def test_two_sweeps_do_not_share_an_output(run, tmp_path):
     assert status == 2 and "another process writes" in err and err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_an_interrupted_process_leaves_its_journal(tmp_path):
     output = tmp_path / "rows.csv"
     command = [sys.executable, "-m", "normalbench.bench", "sweep", *SMALL, "--objects", "2000", "--repeats", "50"]
@@ -177,6 +178,7 @@ def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
     """As JAX's does in the garbage collector: no traceback, and the next step ends."""
     program = (

@@ -1,0 +1,76 @@
+"""Processes of this program's own, for code and files that may do anything. Imports nothing heavy.
+
+Nothing of the current folder is imported in them. Those that run users' code limit themselves.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+# Of a process that runs users' code: bytes of memory, seconds of processor time, bytes of a file.
+MEMORY, SECONDS, FILE = 1536 << 20, 10, 16 << 20
+
+
+def python(module: str, *words: str) -> list[str]:
+    """The command that runs a module of this program; `-P` keeps the current folder out of the search path."""
+    return [sys.executable, "-P", "-m", module, *words]
+
+
+def environment() -> dict[str, str]:
+    """This process's, less the folders of PYTHONPATH that stand for the current one."""
+    found = [word for word in os.environ.get("PYTHONPATH", "").split(os.pathsep) if Path(word).is_absolute()]
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | (
+        {"PYTHONPATH": os.pathsep.join(found)} if found else {}
+    )
+
+
+def limit_this_process() -> None:
+    """Memory, processor time and files; what goes beyond ends this process and no other."""
+    import resource
+
+    limits = {
+        resource.RLIMIT_DATA: MEMORY,
+        resource.RLIMIT_CPU: SECONDS,
+        resource.RLIMIT_FSIZE: FILE,
+        resource.RLIMIT_CORE: 0,
+    }
+    for limit, most in limits.items():
+        hard = resource.getrlimit(limit)[1]
+        resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+
+def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
+    """A command's status and what it printed. It and what it started are ended after some seconds.
+
+    What it prints goes to files, whose size it limits itself.
+
+    Raises:
+        TimeoutExpired: it took longer.
+    """
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environment(), start_new_session=True
+        )
+        try:
+            status = process.wait(seconds)
+        finally:
+            _end(process)
+            process.wait()
+        out.seek(0)
+        err.seek(0)
+        said = (file.read().decode(errors="replace") for file in (out, err))
+        return subprocess.CompletedProcess(list(command), status, *said)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """The process and those of its group that are left."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        return
