@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,6 +15,11 @@ GAP = 2
 PROSE = 40
 # What no column of whole numbers counts up to.
 LARGEST_WHOLE = 2**63
+CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+# Text that reads as itself in Markdown, and calls nobody.
+PLAIN, CODE = re.compile(r"[\w .,+%():;>=<'/-]*"), re.compile(r"`[^`\n]*`")
+# What a spreadsheet takes for a formula.
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def text_of(value: Any) -> str:
@@ -22,7 +28,23 @@ def text_of(value: Any) -> str:
         return ""
     if isinstance(value, float) and math.isfinite(value):
         return f"{value:.2e}" if 0 < abs(value) < 1e-3 else f"{value:#.4g}".removesuffix(".")
-    return str(value)
+    return visible(str(value))
+
+
+def visible(text: str) -> str:
+    """Text whose control characters, which a terminal would obey, are written as escapes."""
+    return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
+def markdown_text(text: str) -> str:
+    """Text as it is, or as code where Markdown would read something into it."""
+    is_plain = PLAIN.fullmatch(text) and "://" not in text and "www." not in text.lower() and "<" not in text
+    return text if is_plain or CODE.fullmatch(text) else code_text(text)
+
+
+def code_text(text: str) -> str:
+    """Text as Markdown's code."""
+    return f"`{' '.join(text.replace('`', chr(39)).split())}`"
 
 
 def _plain(value: Any) -> Any:
@@ -45,7 +67,13 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
     """A header and a line for each row."""
     import pandas as pd
 
-    return pd.DataFrame(list(rows), dtype=object).to_csv(index=False)
+    made = [{name: _no_formula(value) for name, value in row.items()} for row in rows]
+    return pd.DataFrame(made, dtype=object).to_csv(index=False)
+
+
+def _no_formula(value: Any) -> Any:
+    """A spreadsheet shows text behind an apostrophe, and computes nothing."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
 
 def has_parquet() -> bool:
@@ -71,7 +99,7 @@ def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
     """A table for a pull request, columns aligned as text so that the source reads too."""
     rows, caption = without_constants(rows)
     columns = list(rows[0])
-    cells = [[text_of(row[c]).replace("|", "\\|") for c in columns] for row in rows]
+    cells = [[markdown_text(text_of(row[c])).replace("|", "\\|") for c in columns] for row in rows]
     widths = [max(len(c), *(len(line[i]) for line in cells)) for i, c in enumerate(columns)]
     numeric = [is_numeric(rows, column) for column in columns]
 

@@ -19,7 +19,7 @@ from typer.exceptions import Abort, TyperException
 
 from ...encodings.errors import CatalogueError
 from ...reports.charts.plots import PlotError
-from ..output.errors import MissingError, UsageError
+from ..output.errors import MissingError, UsageError, tell
 from ..output.progress import ending
 from ..output.writing import abandon_output, write
 from ..suite.run_options import RunOptions
@@ -155,7 +155,7 @@ def report(
 
 
 def _say(message: str) -> None:
-    print(f"normalbench: {' '.join(message.split())}", file=sys.stderr)
+    tell(message)
 
 
 def _end(by: BaseException) -> None:

@@ -20,7 +20,7 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
-from ..output.errors import UsageError, pick
+from ..output.errors import UsageError, pick, tell
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
@@ -52,7 +52,7 @@ def encodings_named(names: str) -> list[Encoding]:
     if complaints and not rest:
         raise UsageError(complaints[0])
     for line in complaints:
-        print(f"normalbench: left out: {' '.join(line.split())}", file=sys.stderr)
+        tell(f"left out: {line}")
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
     return pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
 
@@ -182,7 +182,7 @@ def _twins_fault(twin: Path, path: Path) -> str:
     except UsageError as error:
         return str(error)
     if "apart" in found:
-        print(f"normalbench: {twin}: {found['apart']}", file=sys.stderr)
+        tell(f"{twin}: {found['apart']}")
     return found.get("error", "")
 
 
@@ -200,9 +200,8 @@ def _domain(path: Path, found: dict[str, Any]) -> str:
         if mean <= STRANGE_DEG:
             return domain
     if "mean_deg" in found:
-        print(
-            f"normalbench: {path}: decode(encode(n)) is {found['mean_deg']['sphere']:.0f} degrees off on average, "
-            f"without any storage; {found['worst']} comes back as {found['becomes']}",
-            file=sys.stderr,
+        tell(
+            f"{path}: decode(encode(n)) is {found['mean_deg']['sphere']:.0f} degrees off on average, "
+            f"without any storage; {found['worst']} comes back as {found['becomes']}"
         )
     return "sphere"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from ..output.errors import tell
 from ..output.progress import progress
 from ..output.writing import check_writable, without, write
 from .gates import checked, read_gates
@@ -18,12 +18,12 @@ def check_command(gates: Path, run: Path | None, format: str, output: Path | Non
     with progress(len(found)) as tick:
         rows = list(checked(found, run, tick))
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
-        print(f"normalbench: rows without figures: {' '.join(reason.split())}", file=sys.stderr)
+        tell(f"rows without figures: {reason}")
     if format == "table":
         hidden = ("skipped",) if any(row["worst_normal"] for row in rows) else ("skipped", "worst_normal")
         rows = without(rows, hidden)
     write(rows, format, output, ("table",))
     failed = sum(row["holds"] == "FAIL" for row in rows)
     if failed:
-        print(f"normalbench: {failed} of {len(rows)} limits do not hold", file=sys.stderr)
+        tell(f"{failed} of {len(rows)} limits do not hold")
     return int(failed > 0)

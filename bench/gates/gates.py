@@ -83,7 +83,10 @@ def measured_for(gate: Gate) -> list[Found]:
 
 
 def _rows_of_run(run: Path) -> Measure:
-    tables = read_run(run).tables
+    done = read_run(run)
+    if done.damage:
+        raise UsageError(f"{done.damage}; measure it anew")
+    tables = done.tables
 
     def rows(gate: Gate) -> list[Found]:
         name = gate.table.name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -11,7 +10,7 @@ from ...gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ...gbuffer.scenes.files.mesh_file import MeshFile
 from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
 from ...gbuffer.scenes.files.source import SceneFileError
-from ..output.errors import UsageError, pick_or_read
+from ..output.errors import UsageError, pick_or_read, tell
 
 
 def scenes_named(names: str) -> list[SceneMaker]:
@@ -44,4 +43,4 @@ def say_notes(notes: Mapping[Path, Sequence[str]]) -> None:
     """What is to be said of files, a line each, on standard error; once all are read, as an error is one line alone."""
     for path, said in notes.items():
         if said:
-            print(f"normalbench: {path}: {'; '.join(said)}", file=sys.stderr)
+            tell(f"{path}: {'; '.join(said)}")

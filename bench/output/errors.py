@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TypeVar
+
+from ...reports import tables
 
 T = TypeVar("T")
 
@@ -19,6 +22,11 @@ class MissingError(Exception):
     """This machine lacks something: one line that says what to install. Exit status 3."""
 
     exit_code = 3
+
+
+def tell(line: str) -> None:
+    """A line to standard error. Whatever names of files hold, it is one line and leaves the terminal as it is."""
+    print(f"normalbench: {tables.visible(' '.join(line.split()))}", file=sys.stderr)
 
 
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:

@@ -15,6 +15,9 @@ from ...reports import tables
 from ...reports.charts import plots
 from .errors import UsageError
 
+# Of a run's rows, facts and tables.
+OWN_SUFFIXES = (".json", ".jsonl", ".csv", ".parquet")
+
 
 def check_writable(path: Path) -> None:
     """Raises UsageError where a file of this name cannot be written; asked before anything is measured."""
@@ -23,11 +26,19 @@ def check_writable(path: Path) -> None:
             raise UsageError(f"{path} is a folder; name a file")
         if is_special(path):
             return
+        _check_own(path.resolve())
         # Asked of what it will be called while it is written, so that a name that is too long is noticed.
         _partial(path).exists()
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     check_folder(path.resolve().parent)
+
+
+def _check_own(path: Path) -> None:
+    """Raises UsageError where a file is one of a run's own, which nothing but the run writes."""
+    is_own = path.suffix in OWN_SUFFIXES and (path.parent / "run.json").exists() and path.exists()
+    if is_own:
+        raise UsageError(f"{path} belongs to the run in its folder; name another file")
 
 
 def _partial(path: Path) -> Path:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from ..output.errors import tell
 from ..output.writing import check_writable, without, write
 from .comparison import compared, in_short
 from .runs import read_run
@@ -23,11 +23,13 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     ours, theirs = read_run(before), read_run(after)
     if output:
         check_writable(output)
+    for damage in filter(None, (ours.damage, theirs.damage)):
+        tell(f"{damage}")
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
-        print("normalbench: the machines differ; times are not compared", file=sys.stderr)
+        tell("the machines differ; times are not compared")
     if not changes:
-        print(f"normalbench: no change in {len(ours.steps)} steps", file=sys.stderr)
+        tell(f"no change in {len(ours.steps)} steps")
     rows = in_short(changes) if format in ("table", "markdown") else without(changes, FOR_PROGRAMS)
     write(rows, format, output)
     failing = [change for change in changes if change["verdict"] in FAILS[fail_on]]

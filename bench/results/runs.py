@@ -26,10 +26,17 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 @dataclass(frozen=True)
 class Done:
-    """A folder's content: what run.json says, and the finished steps in their order, each `table`, `key` and `rows`."""
+    """A folder's content.
+
+    Attributes:
+        facts: what run.json says.
+        steps: the finished steps in their order, each `table`, `key` and `rows`.
+        damage: what happened to the rows since the run finished; empty where nothing did, or nobody can know.
+    """
 
     facts: Row
     steps: list[Row]
+    damage: str = ""
 
     @property
     def tables(self) -> dict[str, list[Row]]:
@@ -86,7 +93,25 @@ def read_run(folder: Path) -> Done:
     odd = next((at for at, line in enumerate(lines, 1) if not _is_step(line)), None)
     if odd:
         raise UsageError(f"{folder / ROWS}: line {odd} is no step of a run; take the line out, or run again")
-    return Done(_facts(folder), lines)
+    facts = _facts(folder)
+    return Done(facts, lines, _damage(folder, facts))
+
+
+def _seal(folder: Path) -> Row:
+    """What a finished run remembers of its rows."""
+    data = (folder / ROWS).read_bytes()
+    return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
+
+
+def _damage(folder: Path, facts: Row) -> str:
+    if not facts.get("finished") or "digest" not in facts:
+        return ""
+    now = _seal(folder)
+    if now["digest"] == facts["digest"]:
+        return ""
+    if now["lines"] != facts["lines"]:
+        return f"{folder / ROWS} has {now['lines']} of the {facts['lines']} lines that it had when the run finished"
+    return f"{folder / ROWS} was changed after the run finished"
 
 
 def _facts(folder: Path) -> Row:
@@ -138,7 +163,7 @@ class Run:
 
     def finish(self) -> None:
         """Every step has its rows."""
-        self.facts["finished"] = True
+        self.facts |= {"finished": True, **_seal(self.folder)}
         _write_facts(self.folder, self.facts)
 
 
@@ -205,6 +230,8 @@ def _begun(folder: Path, facts: Row) -> Row:
     kept = _facts(folder)
     if not same_place(kept, facts):
         raise UsageError(f"{folder} holds a run of other sources or another machine; name another folder")
+    if damage := _damage(folder, kept):
+        raise UsageError(f"{damage}; name another folder")
     return kept if same_work(kept, facts) else _extended(folder, kept, facts)
 
 

@@ -21,6 +21,7 @@ from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..metrics import published
+from ..output.errors import tell
 from ..output.writing import check_folder, check_writable, say, whole_file
 from ..results.runs import Done, Row, read_run, sources
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
@@ -41,8 +42,11 @@ UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 def report_command(folder: Path, as_markdown: bool, output: Path | None) -> None:
     """Write a run's page and charts, or a text for a pull request; the run's own files stay as they are."""
     done = read_run(folder)
+    if done.damage:
+        tell(f"{done.damage}")
     if not as_markdown:
-        say(f"{write_report(folder, done, output or folder / PAGE)}\n")
+        charts = f"{output.stem}-{CHARTS}" if output else CHARTS
+        say(f"{write_report(folder, done, output or folder / PAGE, charts)}\n")
         return
     if output:
         check_writable(output)
@@ -101,7 +105,7 @@ def gathered(folder: Path, done: Done) -> Found:
     """Everything that a page shows of a run; nothing is measured."""
     tables = {str(plain_text(name)): _clean(rows) for name, rows in done.tables.items()}
     facts = plain_text(done.facts)
-    remarks: list[str] = []
+    remarks: list[str] = [f"{plain_text(done.damage)}."] if done.damage else []
     unknown = [name for name in tables if name not in TABLES]
     if unknown:
         remarks.append(f"This version does not know these tables, which are in the run's folder: {', '.join(unknown)}.")

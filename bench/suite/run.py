@@ -12,7 +12,7 @@ from typing import Any
 
 from ...reports import tables
 from ..options.option import fields_of
-from ..output.errors import MissingError, UsageError, pick
+from ..output.errors import MissingError, UsageError, pick, tell
 from ..output.writing import say, whole_file
 from ..results.measuring import Asked, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
@@ -65,7 +65,7 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     if not made:
         raise MissingError("; ".join(reasons))
     for reason, names in reasons.items():
-        print(f"normalbench: left out: {', '.join(names)}: {reason}", file=sys.stderr)
+        tell(f"left out: {', '.join(names)}: {reason}")
     return made
 
 
@@ -95,13 +95,13 @@ def run_command(request: Any, output: Path | None) -> int:
     total = sum(len(ask.steps) for ask in asks)
     with opened(folder, facts) as run:
         if run.kept:
-            print(f"normalbench: {folder} goes on: {_there(run, asks)} of {total} steps are there", file=sys.stderr)
+            tell(f"{folder} goes on: {_there(run, asks)} of {total} steps are there")
         try:
             failed = [_measure(run, ask) for ask in asks]
             done = [one for one, _ in failed]
             _complete(run, asks, done)
         except (KeyboardInterrupt, SystemExit):
-            print(f"normalbench: {run.kept} of {total} steps are kept; the same command goes on", file=sys.stderr)
+            tell(f"{run.kept} of {total} steps are kept; the same command goes on")
             raise
     return int(any(one for _, one in failed))
 

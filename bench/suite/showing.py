@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ...reports import tables
-from ..output.errors import UsageError
+from ..output.errors import UsageError, tell
 from ..output.writing import check_writable, say, whole_file
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
@@ -80,7 +79,7 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
     for reason in told:
         rest = any(_has_figures(table, row) for row in rows if row.get("skipped") == reason)
         what = "some of their figures" if rest else "figures"
-        print(f"normalbench: rows without {what}: {' '.join(reason.split())}", file=sys.stderr)
+        tell(f"rows without {what}: {reason}")
 
 
 def _has_figures(table: Table, row: Row) -> bool:
@@ -92,5 +91,5 @@ def say_lines(lines: Iterable[str]) -> bool:
     """Lines to standard error; whether there are any."""
     said = [" ".join(line.split()) for line in lines]
     for line in said:
-        print(f"normalbench: {line}", file=sys.stderr)
+        tell(f"{line}")
     return bool(said)

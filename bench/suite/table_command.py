@@ -11,7 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..output.errors import MissingError, UsageError
+from ..output.errors import MissingError, UsageError, tell
 from ..output.writing import check_writable, say
 from ..results.measuring import Asked, Beside, Nothing, asked, beside, measured
 from ..results.plain import plain
@@ -65,7 +65,7 @@ def _measured(ask: Asked, kept: Beside | None) -> Measured:
         if found < len(kept):
             other = f"{kept.path} keeps {len(kept)} steps of another {ask.table.name}"
             raise UsageError(f"{other}; run that one, delete it, or name another file")
-        print(f"normalbench: {found} of {len(ask.steps)} steps were measured before", file=sys.stderr)
+        tell(f"{found} of {len(ask.steps)} steps were measured before")
     try:
         return measured(ask, Nothing() if kept is None else kept)
     except (KeyboardInterrupt, SystemExit):
@@ -75,9 +75,9 @@ def _measured(ask: Asked, kept: Beside | None) -> Measured:
 
 def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
     if kept is not None:
-        print(f"normalbench: {len(kept)} of {total} steps are kept; the same command goes on", file=sys.stderr)
+        tell(f"{len(kept)} of {total} steps are kept; the same command goes on")
     else:
-        print("normalbench: nothing is kept; with -o FILE a stopped command goes on", file=sys.stderr)
+        tell("nothing is kept; with -o FILE a stopped command goes on")
 
 
 def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import html
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,8 +14,6 @@ from .sections import whole
 
 # What GitHub takes of a comment, less room for a word of one's own.
 LONGEST = 60_000
-# Text that reads as itself in Markdown, and calls nobody.
-PLAIN = re.compile(r"[\w .,+%():;>=<'/-]*")
 CUT = "More tables than a comment holds; `normalbench report` draws them all.\n"
 
 
@@ -45,11 +43,11 @@ def _blocks(found: Found) -> Iterator[str]:
         if at == 0:
             yield tables.to_markdown(contest.rows)
     for sheet in (sheet for section in found.sections for sheet in section.summary if sheet.rows):
-        heading = f"<details><summary>{_plain(sheet.title)}</summary>\n"
+        heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])
     machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
     versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
-    yield f"Measured by {_code(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"
+    yield f"Measured by {tables.code_text(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"
 
 
 def _rows(rows: Sequence[Row]) -> list[Row]:
@@ -61,11 +59,4 @@ def _value(value: Any) -> Any:
 
 
 def _plain(text: Any) -> str:
-    """Text as it is, or as code where Markdown would read something into it."""
-    text = str(text)
-    is_plain = PLAIN.fullmatch(text) and "://" not in text and "www." not in text.lower() and "<" not in text
-    return text if is_plain else _code(text)
-
-
-def _code(text: str) -> str:
-    return f"`{' '.join(text.replace('`', chr(39)).split())}`"
+    return tables.markdown_text(str(text))

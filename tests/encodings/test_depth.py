@@ -275,6 +275,7 @@ def numbers_by_jax(codec: DepthCodec, camera: Camera, depths: np.ndarray) -> np.
     return np.concatenate([np.asarray(codec.stored(jnp.asarray(part), near, far)) for part in parts])[: len(depths)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DEPTH_STORAGES)
 def test_the_device_stores_numbers_as_the_emulation_says(gl, name):
     """Bit for bit, for numbers that linear depth at a far plane of 1 hands on as they are."""

@@ -61,6 +61,7 @@ PUBLISHED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
 def test_published_maxima_are_those_of_samples(codec, mean, largest):
     """Some hundred thousand samples have the published maximum, give or take; the supremum is 1.0 to 1.4 % above it."""
@@ -87,6 +88,7 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     assert 10 < largest["spheremap"] < 100 and max(largest["spheremap_classic"], largest["cryengine3"]) < 0.2, largest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(ENCODINGS))
 def test_no_row_is_better_than_its_codes_allow(normalbench, name):
     """The RMS of N codes cannot beat the hexagonal quantiser's: effective bits never exceed the bits stored."""

@@ -31,6 +31,7 @@ def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
         return np.array([query.samples for query in lights.run.queries]), surfaces(scene, r.gbuffer())
 
 
+@pytest.mark.slow
 def test_bounds_shade_little_more_than_lights_reach(gl):
     """64 point lights over the objects at 640 x 480: never fewer pixels than lie within each radius, and together at
     most half as many again."""

@@ -287,6 +287,7 @@ def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
     assert made.normals[int(rows.mean()), 40, 2] > 0.8
 
 
+@pytest.mark.slow
 def test_the_playground_as_a_file_is_measured_as_the_playground(tmp_path):
     """By its own camera. Vertices are rounded to float32, which moves edges by a few pixels and figures by 0.01 dB."""
     document = as_document(in_view_space())

@@ -101,6 +101,7 @@ AXE = """async () => {
 }"""
 
 
+@pytest.mark.slow
 def test_axe_finds_nothing_that_keeps_readers_out(seen):
     """WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings; details closed and open."""
     from axe_playwright_python.base import AXE_FILE_PATH
@@ -157,6 +158,7 @@ def column(opened: Opened, index: int) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
     names = [text.strip() for text in headers.all_text_contents()]
@@ -183,6 +185,7 @@ def test_what_is_empty_is_last_whichever_way(opened):
         assert any(filled) and filled == sorted(filled, reverse=True), texts
 
 
+@pytest.mark.slow
 def test_infinite_figures_sort_as_the_largest(browser, tmp_path, run):
     figures = {"xyz": 51.1, "octahedral": math.inf, "spheremap": 48.1}
     rows = [quality_row(name, psnr_db=figure) for name, figure in figures.items()]
@@ -218,6 +221,7 @@ def picked(opened: Opened, side: str, codec: str, kind: str) -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_divider_moves_by_keyboard_and_shows_one_picture_on_either_side(opened):
     picked(opened, "left", "the normals of playground", "normals")
     picked(opened, "right", "spherical rgba8", "error")
@@ -236,6 +240,7 @@ def test_the_divider_moves_by_keyboard_and_shows_one_picture_on_either_side(open
     assert opened.page.locator("#divider").input_value() == "0"
 
 
+@pytest.mark.slow
 def test_a_zoom_shows_the_pictures_own_pixels_as_squares(opened, results):
     picked(opened, "left", "octahedral rgba8", "error")
     picked(opened, "right", "spheremap rgba8", "error")
@@ -260,6 +265,7 @@ def test_a_zoom_shows_the_pictures_own_pixels_as_squares(opened, results):
     assert values == f"At 200, 150: left {shown['left']}; right {shown['right']}"
 
 
+@pytest.mark.slow
 def test_pointing_at_a_place_zooms_there_and_a_thumbnail_is_a_button(opened):
     stage = opened.page.locator("[data-stage]")
     stage.scroll_into_view_if_needed()
@@ -273,6 +279,7 @@ def test_pointing_at_a_place_zooms_there_and_a_thumbnail_is_a_button(opened):
     assert opened.page.locator('[data-pick="right-kind"]').input_value() == "decoded"
 
 
+@pytest.mark.slow
 def test_the_theme_is_the_systems_until_the_button_says_another(opened):
     def paper() -> float:
         found = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")

@@ -198,7 +198,7 @@ def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run
     assert time.process_time() - begin < 60, "seconds of all cores"
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
     assert (tmp_path / "page.html").read_bytes() == before[folder / "report.html"]
-    names = {path.name for path in (tmp_path / "charts").iterdir()}
+    names = {path.name for path in (tmp_path / "page-charts").iterdir()}
     assert {"angles-0.png", "angles-0.svg", "sphere-16-bits.png", "sphere-16-bits.svg"} <= names
 
 
@@ -234,6 +234,7 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
     assert "the other way round" not in read.text and "spherical" in read.text
 
 
+@pytest.mark.slow
 def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
     folder, *_ = results
     found = report_command.gathered(folder, read_run(folder))
@@ -248,6 +249,7 @@ def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
             assert np.array_equal(np.asarray(Image.open(data).convert("RGB")), np.asarray(kept.convert("RGB"))), name
 
 
+@pytest.mark.slow
 def test_pictures_that_do_not_fit_are_named_and_the_articles_come_first(results, tmp_path):
     found = report_command.gathered(results[0], read_run(results[0]))
     made = embedded.gallery(found, 3 * 2**20)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -15,6 +14,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage
 from ....reports.charts import pareto, plots
 from ...normals.normal_sets import NormalSet
+from ...output.errors import tell
 from ...output.writing import whole_file
 from ..quality import measure as quality
 from .codec_costs import Costs, LeftOutError, Where
@@ -59,7 +59,7 @@ def draw(
     drawing = Drawing(rows, encodings, error)
     made = [panel for want in wanted[:MOST_PANELS] if (panel := drawing.panel(want)).points]
     for line in (*drawing.left_out(), *_beyond(wanted[MOST_PANELS:])):
-        print(f"normalbench: --plot: {line}", file=sys.stderr)
+        tell(f"--plot: {line}")
     if not made:
         return False
     with whole_file(path) as partial:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -20,7 +19,7 @@ from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, pick
+from ...output.errors import UsageError, pick, tell
 from ...output.writing import check_folder, whole_file, without
 from ..charts import having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
@@ -51,7 +50,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     for line in left_out:
-        print(f"normalbench: left out: {line}", file=sys.stderr)
+        tell(f"left out: {line}")
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
     normal_sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     return measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +20,7 @@ from ...codecs.user_encodings import encodings_named
 from ...machine.devices import require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, pick
+from ...output.errors import UsageError, pick, tell
 from ...output.writing import check_writable, whole_file
 from ..quality import measure as quality
 from ..table import Measured, Sheet, Step, Tick, Work, each
@@ -217,7 +216,7 @@ def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals
     else:
         names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name, "--normals", normals]
         said = f"elsewhere: normalbench quality {shlex.join(names)}"
-    print(f"normalbench: {said}", file=sys.stderr)
+    tell(f"{said}")
 
 
 def _summary(found: Sequence[Row]) -> Iterator[Sheet]:

@@ -162,6 +162,7 @@ def test_a_loop_that_the_device_ends_is_named(gl, tmp_path, what):
     assert found.startswith("the loops of encode for [") and f"after {most} turns in all this device ends" in found
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_a_loop_that_does_not_end_spares_the_others(run, tmp_path):
     path = tmp_path / "mine.glsl"

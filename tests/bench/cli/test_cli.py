@@ -95,6 +95,7 @@ def test_rows_go_to_a_file_whole(run, tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["rows.json"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_pictures_show_the_scene(run, tmp_path):
     """Not black, not all alike: the decoded picture is the scene, the error picture of XY is blue where z was lost."""
@@ -199,6 +200,7 @@ def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
+@pytest.mark.slow
 def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, tmp_path, monkeypatch):
     """A full disk where the tables are written: one line; run again, nothing is measured a second time."""
     folder = tmp_path / "results"
@@ -355,6 +357,7 @@ def test_what_does_not_fit_is_named_and_the_rest_measured(run):
     assert status == 0 and "xyz/rg8" in err and "xy" in out
 
 
+@pytest.mark.slow
 def test_without_a_gl_driver_jax_measures_all_the_same():
     done = in_a_process(*QUICK, "--format", "json", **NO_GL)
     rows = json.loads(done.stdout)
@@ -391,6 +394,7 @@ def test_throughput_prints_ratios_of_one_run():
         assert row["share_of_reading"] == pytest.approx(row["project"] / report["reading"], rel=0.02, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_throughput_refuses_bad_input_in_one_line():
     for arguments, said in ((["--encoding", "no"], "unknown encoding"), (["--count", "3"], "--count 3")):
         command = [sys.executable, "-m", "normalbench.bench.throughput", *arguments]

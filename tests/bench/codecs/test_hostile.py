@@ -114,6 +114,7 @@ def test_two_dozen_that_are_hostile_spare_the_others(tmp_path):
     assert len(lines) == len(TWINS) + len(SHADERS)
 
 
+@pytest.mark.slow
 def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
     twin = TWIN.replace("BODY", "return Vec2(n.y, n.x)").replace("TOP", "")
     rows, said = measured(tmp_path, written(tmp_path, "turned", twin=twin))
@@ -121,6 +122,7 @@ def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
     assert said.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_nothing_of_the_current_folder_is_imported(tmp_path):
     """A module of every name of the standard library lies beside the user's shader."""
     for name in sorted(sys.stdlib_module_names - {"__main__"}):

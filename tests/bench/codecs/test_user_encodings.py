@@ -57,6 +57,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     assert by_gl["psnr_db"] == gl_row["psnr_db"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text, said",
     [
@@ -77,12 +78,14 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
     assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
     assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
 
 
+@pytest.mark.slow
 def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
     """A session of tests, or a file of gates, measures the same in any order."""
     path = written(tmp_path)
@@ -96,6 +99,7 @@ def test_a_missing_file_is_one_line(run, tmp_path):
     assert status == 2 and "cannot be read as a shader" in err and err.count("\n") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "twin, said",
     [

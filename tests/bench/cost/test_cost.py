@@ -47,6 +47,7 @@ IDENTITIES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_an_encoding_that_does_nothing_costs_exactly_nothing(tmp_path):
     """Encode and decode, fragment and compute, every family, every figure; whatever it moves where."""
@@ -66,12 +67,14 @@ def costs_of(encode: str, before: str, folder: Path, families=tuple(isa.FAMILIES
     return [row for row, _ in cost.isa_rows(chosen, list(STAGES), list(families), [], lambda _: None)]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_two_multiply_adds_cost_two_slots_everywhere(tmp_path):
     for row in costs_of("n.xy * view.x + n.z", "", tmp_path):
         assert (row["instructions"], row["full_rate"], row["issue_slots"]) == (2, 2, 2), row
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_loop_of_a_known_length_costs_what_it_does_written_out(tmp_path):
     turns = "vec2 turned(vec2 e, vec3 n) { for (int i = 0; i < 4; ++i) e = e * n.yz + n.zx; return e; }\n"
@@ -83,6 +86,7 @@ def test_a_loop_of_a_known_length_costs_what_it_does_written_out(tmp_path):
         assert (row["issue_slots"], row["loops"], row["branches"]) == (8, 0, 0) and row["spirv_instructions"] > 8
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_loop_that_stays_and_a_branch_are_told(tmp_path):
     """Of either stage and each generation; the kernel's own branch is not one of them."""
@@ -108,6 +112,7 @@ def test_names_of_the_kernels_are_free_for_users(tmp_path):
     assert [row["skipped"] for row in rows] == [None, None] and {row["instructions"] for row in rows} == {0}
 
 
+@pytest.mark.slow
 def test_every_encoding_stage_and_family_has_its_row(whole_table):
     keys = [tuple(row[c] for c in ("encoding", "storage", "operation", "stage", "family")) for row, _ in whole_table]
     assert len(set(keys)) == len(keys)
@@ -121,6 +126,7 @@ def test_every_encoding_stage_and_family_has_its_row(whole_table):
         assert assembly
 
 
+@pytest.mark.slow
 def test_the_kinds_add_up_to_the_drivers_own_count(whole_table):
     for row, assembly in whole_table:
         assert sum(row[kind] for kind in KINDS) == row["instructions"], row
@@ -130,6 +136,7 @@ def test_the_kinds_add_up_to_the_drivers_own_count(whole_table):
 STORE = re.compile(r"^\s+buffer_store_\w+ v\d+, (v\d+), s\[[\d:]+\], (\S+) offen", re.M)
 
 
+@pytest.mark.slow
 def test_no_kernel_computes_addresses(whole_table):
     """Every store of a compute kernel is by the lane's one register and an offset within the instruction."""
     for row, assembly in whole_table:
@@ -141,6 +148,7 @@ def test_no_kernel_computes_addresses(whole_table):
             )
 
 
+@pytest.mark.slow
 def test_slots_are_what_the_drivers_model_says_where_arithmetic_is_all_there_is(whole_table):
     """Navi's fragment shaders, wave of 64: two cycles a slot, from one kernel of two numbers to another."""
     for family in ("navi10", "navi21", "navi31"):
@@ -155,6 +163,7 @@ def test_slots_are_what_the_drivers_model_says_where_arithmetic_is_all_there_is(
             assert cycles == 2 * slots > 0, (family, name)
 
 
+@pytest.mark.slow
 def test_stages_have_one_count_of_spirv(whole_table):
     found = {}
     for row, _ in whole_table:
@@ -172,6 +181,7 @@ def instructions(table, operation: str, stage: str = "fragment") -> dict[str, di
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stage", STAGES)
 def test_known_orders_hold_in_every_family(whole_table, stage):
     for family, count in instructions(whole_table, "encode", stage).items():
@@ -185,6 +195,7 @@ def test_known_orders_hold_in_every_family(whole_table, stage):
         assert count["octahedral"] < count["spherical"] < count["per_pixel_view"], (family, count)
 
 
+@pytest.mark.slow
 def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
     """ps_3_0: mad, rsq, mad, mov. Here mad, rsq, two mul, and cmp and two cndmask for n.z = -1; no scale and bias."""
     for row, assembly in whole_table:
@@ -193,6 +204,7 @@ def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
             assert sum(name.startswith(("v_cmp", "v_cndmask")) for name in names(assembly)) == 3
 
 
+@pytest.mark.slow
 def test_storages_cost_what_their_conversion_is(whole_table):
     """UNORM one multiply-add a number, SNORM nothing, packed words more."""
     for stage, operation in itertools.product(STAGES, ("pack", "unpack")):
@@ -203,6 +215,7 @@ def test_storages_cost_what_their_conversion_is(whole_table):
             assert count["rgba8 signed depth 8:8:8"] > count["rgba8 depth 8:8:8"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
     """Of four codes of two numbers each is decoded: what a lane pays to round so."""
@@ -219,11 +232,13 @@ def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
         assert rows["octahedral_precise", "decode", stage]["instructions"] == decode
 
 
+@pytest.mark.slow
 def test_the_far_plane_is_no_lanes_work(whole_table):
     for row, _ in whole_table:
         assert row["transcendental"] == 0 or "depth" not in str(row["storage"]), row
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_instructions_wait_for_no_import_of_jax_or_pandas():
     """From the cache the table is there in two seconds, of which JAX would take one more."""
@@ -237,6 +252,7 @@ def test_instructions_wait_for_no_import_of_jax_or_pandas():
     assert "spheremap" in done.stdout and done.stdout.strip().endswith("light"), done.stdout[-200:]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv")
 def test_disassembly_and_plot_are_written(run, tmp_path):
     out, plot = tmp_path / "listings", tmp_path / "plot.svg"

@@ -30,6 +30,7 @@ WORDS = ["--encoding", "spheremap", "--family", "navi21", "--storage", "rgba8", 
 SMALL = ["cost", *EVERY, *WORDS]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_two_runs_give_identical_rows_from_the_cache_or_without(run, own_cache):
     first = run(*SMALL)
@@ -59,12 +60,14 @@ def first(compiled_once, own_cache):
     return printed
 
 
+@pytest.mark.slow
 def test_the_second_run_compiles_nothing(run, first, monkeypatch):
     monkeypatch.setattr(isa_process, "CHILD", ["false"])
     monkeypatch.setattr(spirv, "_run", lambda *_: pytest.fail("compiled again"))
     assert run(*SMALL) == first
 
 
+@pytest.mark.slow
 def test_a_damaged_cache_is_computed_again(run, first, own_cache):
     files, damages = list(own_cache.rglob("*.json")), (b"", b"{", b"[1]", b'{"key": "", "value": {}}', b"\xff\x00")
     assert len(files) > len(damages)
@@ -111,6 +114,7 @@ def test_what_was_changed_after_it_was_kept_is_computed_again(run, first, own_ca
     assert files and run(*SMALL) == first
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_another_driver_compiles_again(run, monkeypatch):
     """What a Mesa made is not what another makes, under the same file's name and date."""
@@ -155,6 +159,7 @@ def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):
     assert len({first, other_id, radv._fingerprint(file)}) == 3
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_driver_that_is_named_without_its_folder_is_kept_all_the_same(run, monkeypatch, tmp_path):
     """As a description may: the loader looks for the library as the system does."""
@@ -168,6 +173,7 @@ def test_a_driver_that_is_named_without_its_folder_is_kept_all_the_same(run, mon
     assert run(*SMALL) == first
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 @pytest.mark.parametrize("tool", [spirv.COMPILER, spirv.OPTIMISER])
 def test_another_version_of_a_tool_compiles_again(run, monkeypatch, tool):
@@ -191,6 +197,7 @@ def test_the_environment_of_the_driver_is_everybodys(monkeypatch, tmp_path):
         assert found["HOME"] == "/home/somebody" and found["VK_DRIVER_FILES"] == str(tmp_path / "radeon.json")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_nothing_is_left_in_the_folder_for_what_is_temporary(run, monkeypatch, tmp_path):
     """However a process ends: files there have no names."""
@@ -225,6 +232,7 @@ sys.exit(isa_child.main())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 @pytest.mark.parametrize(
     "what, reason",
@@ -262,6 +270,7 @@ def test_a_driver_that_always_fails_is_given_up(run, monkeypatch):
     assert all(other["family"] is None and other["instructions"] is None for other in others)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_family_that_this_mesa_refuses_has_one_row(run, monkeypatch):
     monkeypatch.setattr(isa, "FAMILIES", {"navi99": ("navi99", "gfx9999"), "navi21": ("navi21",)})
@@ -298,6 +307,7 @@ def without_compiler(monkeypatch, _):
     monkeypatch.setattr(spirv, "version", lambda _: None)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 @pytest.mark.parametrize(
     "take, package, column",
@@ -345,6 +355,7 @@ def test_a_compiler_that_crashes_is_one_line(run, monkeypatch):
     assert err == "normalbench: rows without figures: glslangValidator ended with status -11 and said nothing\n"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_rows_are_written_before_anything_is_drawn(run, tmp_path):
     """Here there is nothing to draw: the rows are there all the same."""

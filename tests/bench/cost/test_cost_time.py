@@ -80,6 +80,7 @@ def test_each_turn_computes_again(gl):
         assert np.allclose(made[..., :numbers], expected, atol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
     words = ["--encoding", "spheremap,per_pixel_view", "--storage", "rgba8,12:12", "--size", "64x64", "--repeats", "3"]

@@ -29,6 +29,7 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_an_image_may_be_a_gate(run, tmp_path):
     path = tmp_path / "gates.toml"

@@ -173,6 +173,7 @@ def test_every_option_of_the_tables_is_an_option_of_the_plugin(pytester):
             assert field.option.help.split(";")[0].rstrip(".") in re.sub(r"\s+", " ", shown), name
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_a_users_own_encoding_lies_beside_the_test(inside, pytester):
     """In a folder that is not the one pytest was started in; what is typed lies where it is typed."""
@@ -241,6 +242,7 @@ BOTH = """
 """
 
 
+@pytest.mark.slow
 def test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped(pytester, monkeypatch):
     for name, value in NO_GL.items():
         monkeypatch.setenv(name, value)

@@ -53,6 +53,7 @@ def figures(made, codec: Codec = RG8) -> dict:
 # Round trips
 
 
+@pytest.mark.slow
 def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):
     """To the bit, by EXR in float and NPY in float32 and float64; the counts are its own too."""
     n = rendered().normals
@@ -157,6 +158,7 @@ def test_channels_that_cannot_be_found_are_listed(names, asked, said):
     assert all(part in str(error.value) for part in ("f.exr: ", *said)), error.value
 
 
+@pytest.mark.slow
 def test_layers_and_parts_of_an_exr_by_name(tmp_path):
     n, other = some_normals(), some_normals(seed=1)
     planes = planes_of(other, ("R", "G", "B")) | planes_of(n.astype(np.float16), ("Nx", "Ny", "Nz"))

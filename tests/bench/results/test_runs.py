@@ -259,3 +259,55 @@ def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path):
     status, _, err = run(*command)
     assert status == 0 and f"3 of {len(lines)} steps are there" in err
     assert (folder / ROWS).read_bytes() == b"".join(lines)
+
+
+def lost(text: str) -> str:
+    return "".join(text.splitlines(keepends=True)[:-1])
+
+
+def altered(text: str) -> str:
+    return text.replace('"psnr_db": 4', '"psnr_db": 9')
+
+
+@pytest.mark.parametrize("damage, said", [(lost, "of the 3 lines"), (altered, "was changed after the run finished")])
+def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_path, damage, said):
+    """Every command that reads it says so; a check of it fails, and nothing is added to it."""
+    folder, gates = tmp_path / "run", tmp_path / "gates.toml"
+    words = (
+        "--encoding",
+        "octahedral,spherical,spheremap",
+        "--storage",
+        "rg8",
+        "--normals",
+        "axes",
+        "--backend",
+        "jax",
+    )
+    command = ("run", "--tables", "quality", *words, "-o", str(folder))
+    assert run(*command)[0] == 0
+    gates.write_text('[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 1"\n')
+    assert run("check", str(gates), "--run", str(folder))[0] == 0
+    (folder / ROWS).write_text(damage((folder / ROWS).read_text()))
+    for words, status in (
+        (("check", str(gates), "--run", str(folder)), 2),
+        (("report", str(folder), "--markdown"), 0),
+        (("compare", str(folder), str(folder)), 0),
+        (command, 2),
+    ):
+        found, _, err = run(*words)
+        assert found == status and said in err.splitlines()[0], (words[0], err)
+    assert said in run("report", str(folder), "--markdown")[1], "the text says it too"
+
+
+@pytest.mark.parametrize("name", ["rows.jsonl", "run.json", "quality.csv"])
+def test_nothing_is_written_over_a_runs_own_files(run, tmp_path, name):
+    folder = tmp_path / "run"
+    with opened(folder, FACTS) as made:
+        kept(made, 1, [])
+        made.finish()
+    (folder / "quality.csv").write_text("mine")
+    before = (folder / name).read_bytes()
+    for command in (("report", str(folder)), ("report", str(folder), "--markdown"), ("list", "--format", "csv")):
+        status, _, err = run(*command, "-o", str(folder / name))
+        assert status == 2 and "belongs to the run in its folder" in err and err.count("\n") == 1, err
+    assert (folder / name).read_bytes() == before

@@ -122,6 +122,7 @@ def test_the_pictures_show_the_error_and_the_terraces(run, tmp_path):
     assert fine[1][wall].std() < 5 < 20 < coarse[1][wall].std(), "a wall is flat, unless its depth has steps"
 
 
+@pytest.mark.slow
 def test_the_plot_is_drawn(run, tmp_path):
     for name, head in (("plot.png", b"\x89PNG"), ("plot.svg", b"<?xml")):
         status, _, err = run(*QUICK, "--plot", str(tmp_path / name))

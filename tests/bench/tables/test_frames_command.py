@@ -129,6 +129,7 @@ def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
     assert found[0]["rotation_max_deg"] < 0.3 and found[1]["rotation_max_deg"] > 90
 
 
+@pytest.mark.slow
 def test_json_is_flat_rows_the_best_first(run):
     status, out, err = run(*QUICK, "--storage", "rgba8,rgb10a2", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))

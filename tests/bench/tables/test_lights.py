@@ -62,6 +62,7 @@ def test_the_model_gives_the_accumulation_table(name, channels, total, count, va
         assert abs(found[channel] - value) <= 0.0005, f"{name} {channel}: {found[channel]} for {value}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EVERY)
 def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
     """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
@@ -201,6 +202,7 @@ def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
         return made.image()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, pytest.param(4, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "pipeline", [pytest.param(name, marks=[pytest.mark.slow] * (name != "hybrid")) for name in LIGHT_PIPELINES]
@@ -225,6 +227,7 @@ def few_lights():
     return SCENES["gloss"].make(Setting(lights=6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", [1.0, 47.0, 256.0])
 def test_srgb_shows_better_highlights_with_two_targets_and_hardly_with_one(gl, few_lights, power):
     """Ols's pictures as figures: below the range, of the image, at specular powers 1, 47 and 256."""
@@ -276,6 +279,7 @@ def test_codes_that_do_not_average_show_it_at_edges(gl, resolves):
 QUICK = ("--size", "64x48", "--lights", "6", "--objects", "20", "--scene", "gloss", "--counts", "8", "--power", "47")
 
 
+@pytest.mark.slow
 def test_rows_say_everything_once(run, gl):
     status, out, err = run(
         "lights", *QUICK, "--light-buffer", "linear,log,rgbm", "--samples", "1,4", "--format", "json"

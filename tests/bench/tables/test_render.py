@@ -121,6 +121,7 @@ def test_layouts_are_measured_as_they_are(run):
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
 
+@pytest.mark.slow
 def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
     """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; all of it for each sample."""
     arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
@@ -132,6 +133,7 @@ def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
     assert read[0]["bytes_per_pixel"] == 17 + 4 + 2 * 2 * 4, "what is read while it is written has two copies"
 
 
+@pytest.mark.slow
 def test_codecs_are_ranked_among_their_like(run):
     """With and without shadows are two contests."""
     _, out, _ = run(*QUICK[:-2], "--format", "json", "--pipeline", "deferred,hybrid", "--shadow", "on,off")
@@ -160,6 +162,7 @@ def test_pictures_show_what_was_rendered(run, tmp_path):
     assert abs(np.minimum(apart * 16, 255) - pixels["difference"]).max() <= 16
 
 
+@pytest.mark.slow
 def test_one_light_target_is_held_against_two(run):
     """One target rebuilds the highlights' colour: the row shows what that costs, and its reference does not do it."""
     status, out, _ = run(
@@ -210,6 +213,7 @@ def test_samples_smooth_edges(gl, pipeline):
     assert four < share * one, f"{four:.2e} at 4 samples, {one:.2e} at 1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pipeline", [pytest.param("deferred", marks=pytest.mark.slow), "hybrid"])
 def test_every_codec_gives_a_finite_image(gl, pipeline):
     """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""

@@ -48,6 +48,7 @@ def test_a_sweep_counts_what_each_pass_draws(run):
         assert (row["triangles_shadow_map"] > 0) == row["shadow"]
 
 
+@pytest.mark.slow
 def test_a_sweep_writes_its_rows_and_its_plot(run, tmp_path):
     rows, plot = tmp_path / "rows.csv", tmp_path / "plot.png"
     status, out, _ = run(*SWEEP, "--format", "csv", "-o", str(rows), "--plot", str(plot))
@@ -57,6 +58,7 @@ def test_a_sweep_writes_its_rows_and_its_plot(run, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["plot.png", "rows.csv"], "the journal is gone"
 
 
+@pytest.mark.slow
 def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
     """Rows that were measured before are kept to the last digit, a line that was cut off is measured again."""
     output = tmp_path / "rows.json"

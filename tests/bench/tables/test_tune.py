@@ -217,6 +217,7 @@ def test_where_nothing_is_gained_that_is_said(run):
     assert "nothing is gained" in err
 
 
+@pytest.mark.slow
 def test_the_same_is_found_again(run):
     arguments = ("stereographic", "--normals", "hemisphere", "--count", "65536", "--storage", "rg8")
     assert rows_of(run, *arguments) == rows_of(run, *arguments)
@@ -230,6 +231,7 @@ def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
     assert rows["scale"]["glsl"] == "STEREOGRAPHIC_SCALE"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("storage", ["rgba8", "rgba8_snorm"])
 def test_a_look_up_has_the_best_of_all_scales_for_its_normals(storage):
     """Against every scale tried on the normals of one texel, rounded to the storage's numbers one by one."""
@@ -259,6 +261,7 @@ def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
     assert f"best_fit:table={path}" in err
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_tuned_encodings_are_the_same_in_both_languages(tmp_path):
     np.save(tmp_path / "scales.npy", np.sqrt(best_fit.centres()))
@@ -271,6 +274,7 @@ def test_tuned_encodings_are_the_same_in_both_languages(tmp_path):
             assert abs(db["jax"] - quality.measure(quality.Case(plain, playground(), "jax"))["psnr_db"]) > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_tuned_encodings_are_rendered(run):
     status, out, err = run(

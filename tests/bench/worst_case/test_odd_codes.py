@@ -13,6 +13,7 @@ from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import R11G11B10F, STORAGES
 
 
+@pytest.mark.slow
 def test_the_octahedrons_border_is_there_twice():
     """Each border code but the middles of SNORM's sides has a mirror image; the four corners are -z. Of two that mean
     the same one comes back."""

@@ -31,6 +31,7 @@ def octahedral_unorm8(n: np.ndarray) -> np.ndarray:
     return v / np.linalg.norm(v)
 
 
+@pytest.mark.slow
 def test_the_normal_makes_the_error_that_is_said():
     worst = worst_case(codec_of("octahedral", "rg8"))
     n = np.array(worst.normal)
@@ -60,6 +61,7 @@ def sphere_and_grid(scale: int) -> float:
     return largest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bits", [5, 8])
 def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
     """Climbing, which knows nothing of it, finds the exact geometry's worst."""
@@ -113,6 +115,7 @@ def test_what_is_tried_around_a_normal_lies_across_it_at_four_distances(is_half)
     assert (around - n[:, None])[:, ::4].mean(axis=1) == pytest.approx(0, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_sign():
     """The sign of z makes the sphere two hemispheres: the same worst case."""
     half, whole = worst_case(codec_of("xy", "rg8"), True), worst_case(codec_of("xy_sign", "rg8"))
@@ -135,6 +138,7 @@ SEARCHED_LONG = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "codec",
     [*SEARCHED, *(pytest.param(codec, marks=pytest.mark.slow) for codec in SEARCHED_LONG)],
@@ -176,6 +180,7 @@ def test_a_set_that_is_finite_has_its_maximum():
     assert row["sup_x"] is None and row["domain"] is None
 
 
+@pytest.mark.slow
 def test_the_command_says_where_and_how(run):
     words = ["--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "sphere,hemisphere", "--backend", "jax"]
     status, out, _ = run("quality", *words, "--count", "100000", "--worst-case", "--codes", "--format", "json")
