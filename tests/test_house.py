@@ -61,7 +61,6 @@ def test_rooms_import_only_whom_they_may(path):
     assert not any(m.startswith("normalbench") for m in imported(path)), "between the rooms imports are relative"
 
 
-@pytest.mark.slow
 def test_only_the_folder_of_opengl_imports_moderngl():
     using = {path.relative_to(ROOT).parent for path in SOURCES if "moderngl" in imported(path)}
     assert using == {Path("gbuffer/gl")}, f"moderngl is imported in {sorted(using)}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
+from ..output.arrays import DamagedError, read_npy
 from ..output.errors import UsageError
 
 MARK, TABLE = ":", "table"
@@ -64,12 +65,13 @@ def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
     assert encoding.look_up
     published = encoding.tables()[encoding.look_up.sampler]
     try:
-        table = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError) as error:
+        # With room for a header.
+        table = read_npy(path, published.nbytes + 4096)
+    except DamagedError as error:
         raise UsageError(f"{path}: not a NumPy file of numbers, as `normalbench tune --table` writes it") from error
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror or error}") from error
-    if not isinstance(table, np.ndarray) or table.shape != published.shape or table.dtype != published.dtype:
+    if table.shape != published.shape or table.dtype != published.dtype:
         wanted = f"{published.dtype} of shape {published.shape}"
         raise UsageError(f"{path}: a table of {encoding.name} is {wanted}, as `normalbench tune --table` writes it")
     if not np.all((table > 0) & (table <= 1)):

@@ -7,7 +7,6 @@ hemisphere; at a distance r from its middle |z| = 1 - r^2, so that every cell st
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Iterable
 from functools import cache, partial
 from pathlib import Path
@@ -20,6 +19,7 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
 from ...metrics.meter import angle_between, compiled, readable
+from ...output.arrays import DamagedError, read_npz
 from ...output.writing import whole_file
 from ...worst_case.exact_figures import has_twin
 from .measure import UNMEASURABLE, rgba
@@ -117,9 +117,8 @@ def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
 def read_map(path: Path) -> SphereMap | None:
     """A map as it was written; None where there is none or it is damaged."""
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
-            mean, largest, directions = (kept[name] for name in SphereMap._fields)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        mean, largest, directions = read_npz(path, SphereMap._fields)
+    except (OSError, DamagedError):
         return None
     fits = mean.shape == largest.shape and mean.ndim == 3 and len(mean) == 2 and directions.shape == ()
     numeric = mean.dtype == largest.dtype == np.float32 and np.issubdtype(directions.dtype, np.integer)

@@ -1,0 +1,54 @@
+"""Arrays from files that may be damaged: what is in them is counted before room is made for it."""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+# Of an archive's arrays together; the largest that this program writes is a few megabytes.
+MOST_BYTES = 64 << 20
+HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+
+
+class DamagedError(ValueError):
+    """A file that is not what it says."""
+
+
+def array_of(data: bytes) -> np.ndarray:
+    """The array of a NumPy file's bytes. Raises DamagedError."""
+    try:
+        file = io.BytesIO(data)
+        shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(file)](file)
+        if dtype.hasobject or math.prod(shape) * dtype.itemsize != len(data) - file.tell():
+            raise DamagedError("its size is not what its header says")
+        return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if is_fortran else "C")
+    except Exception as error:  # a header is Python source: of a damaged one anything may come
+        raise DamagedError("it is damaged") from error
+
+
+def read_npy(path: Path, most: int) -> np.ndarray:
+    """The array of a file of at most so many bytes. Raises OSError or DamagedError."""
+    with path.open("rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise DamagedError(f"it is larger than {most} bytes")
+    return array_of(data)
+
+
+def read_npz(path: Path, names: Sequence[str]) -> list[np.ndarray]:
+    """Arrays of an archive by their names. Raises OSError or DamagedError."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            infos = [archive.getinfo(f"{name}.npy") for name in names]
+            if sum(info.file_size for info in infos) > MOST_BYTES:
+                raise DamagedError(f"it would unpack to more than {MOST_BYTES} bytes")
+            return [array_of(archive.read(info)) for info in infos]
+    except OSError:
+        raise
+    except Exception as error:  # of a dozen kinds, by what is damaged
+        raise DamagedError("it is damaged") from error

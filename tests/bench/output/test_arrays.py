@@ -1,0 +1,77 @@
+"""Archives and NumPy files that are damaged are refused, and nothing is unpacked that is larger than it may be."""
+
+import io
+import tracemalloc
+import zipfile
+
+import numpy as np
+import pytest
+
+from normalbench.bench.output.arrays import MOST_BYTES, DamagedError, array_of, read_npy, read_npz
+
+ARRAYS = {"mean": np.arange(24, dtype=np.float32).reshape(2, 3, 4), "count": np.array(7)}
+
+
+def npz(**arrays) -> bytes:
+    file = io.BytesIO()
+    np.savez_compressed(file, **arrays)
+    return file.getvalue()
+
+
+def npy(array) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
+def flipped(data: bytes, rng) -> bytes:
+    """With one bit changed, a part cut out, or the end missing."""
+    made, at = bytearray(data), int(rng.integers(len(data)))
+    kind = rng.integers(3)
+    if kind == 0:
+        made[at] ^= 1 << int(rng.integers(8))
+    elif kind == 1:
+        del made[at : at + int(rng.integers(1, 9))]
+    else:
+        del made[at:]
+    return bytes(made)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_what_was_written_is_read(tmp_path, order):
+    path = tmp_path / "a.npz"
+    path.write_bytes(npz(**{name: np.asarray(array, order=order) for name, array in ARRAYS.items()}))
+    for found, array in zip(read_npz(path, list(ARRAYS)), ARRAYS.values(), strict=True):
+        assert np.array_equal(found, array) and found.dtype == array.dtype
+    (tmp_path / "a.npy").write_bytes(npy(ARRAYS["mean"]))
+    assert np.array_equal(read_npy(tmp_path / "a.npy", 4096), ARRAYS["mean"])
+
+
+def test_ten_thousand_damaged_files_are_read_or_refused(tmp_path):
+    rng, path = np.random.default_rng(0), tmp_path / "a"
+    whole, refused = {"npz": npz(**ARRAYS), "npy": npy(ARRAYS["mean"])}, 0
+    for turn in range(10_000):
+        kind = ("npz", "npy")[turn % 2]
+        path.write_bytes(flipped(whole[kind], rng))
+        try:
+            read_npz(path, list(ARRAYS)) if kind == "npz" else read_npy(path, 4096)
+        except DamagedError:
+            refused += 1
+    assert refused > 5000
+
+
+def test_what_would_grow_is_not_unpacked(tmp_path):
+    """2 MB of zeros packed from 2 GB, and an array whose header says 8 TB."""
+    path = tmp_path / "bomb.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("mean.npy", "w") as file:
+        for _ in range(2 * MOST_BYTES >> 20):
+            file.write(bytes(1 << 20))
+    tracemalloc.start()
+    with pytest.raises(DamagedError):
+        read_npz(path, ["mean"])
+    with pytest.raises(DamagedError):
+        array_of(npy(np.zeros(3)).replace(b"(3,), ", b"(1099511627776,), ").replace(b" " * 12, b""))
+    with pytest.raises(DamagedError):
+        array_of(npy(np.array([None], dtype=object)))
+    assert tracemalloc.get_traced_memory()[1] < 4 << 20
+    tracemalloc.stop()
