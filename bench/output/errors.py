@@ -7,8 +7,6 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from ...reports import tables
-
 T = TypeVar("T")
 
 
@@ -26,7 +24,10 @@ class MissingError(Exception):
 
 def tell(line: str) -> None:
     """A line to standard error. Whatever names of files hold, it is one line and leaves the terminal as it is."""
-    print(f"normalbench: {tables.visible(' '.join(line.split()))}", file=sys.stderr)
+    # Here, because every run of pytest imports this module.
+    from ...reports.tables import visible
+
+    print(f"normalbench: {visible(' '.join(line.split()))}", file=sys.stderr)
 
 
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:
