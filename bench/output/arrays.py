@@ -31,24 +31,27 @@ def array_of(data: bytes) -> np.ndarray:
         raise DamagedError("it is damaged") from error
 
 
-def read_npy(path: Path, most: int) -> np.ndarray:
-    """The array of a file of at most so many bytes. Raises OSError or DamagedError."""
+def _bytes(path: Path, most: int) -> bytes:
     with path.open("rb") as file:
         data = file.read(most + 1)
     if len(data) > most:
         raise DamagedError(f"it is larger than {most} bytes")
-    return array_of(data)
+    return data
+
+
+def read_npy(path: Path, most: int) -> np.ndarray:
+    """The array of a file of at most so many bytes. Raises OSError or DamagedError."""
+    return array_of(_bytes(path, most))
 
 
 def read_npz(path: Path, names: Sequence[str]) -> list[np.ndarray]:
     """Arrays of an archive by their names. Raises OSError or DamagedError."""
+    data = _bytes(path, MOST_BYTES)
     try:
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = [archive.getinfo(f"{name}.npy") for name in names]
             if sum(info.file_size for info in infos) > MOST_BYTES:
                 raise DamagedError(f"it would unpack to more than {MOST_BYTES} bytes")
             return [array_of(archive.read(info)) for info in infos]
-    except OSError:
-        raise
     except Exception as error:  # of a dozen kinds, by what is damaged
         raise DamagedError("it is damaged") from error
