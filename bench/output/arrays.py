@@ -32,11 +32,9 @@ def array_of(data: bytes) -> np.ndarray:
 
 
 def _bytes(path: Path, most: int) -> bytes:
-    with path.open("rb") as file:
-        data = file.read(most + 1)
-    if len(data) > most:
+    if path.stat().st_size > most:
         raise DamagedError(f"it is larger than {most} bytes")
-    return data
+    return path.read_bytes()
 
 
 def read_npy(path: Path, most: int) -> np.ndarray:
