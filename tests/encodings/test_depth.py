@@ -439,3 +439,14 @@ def test_no_error_is_above_its_bound(backend, camera):
         story = f"{case.name} by {case.rebuilt}, depth {on.depths[i]!r}"
         assert share[i] <= 1, f"{story}: off by {found.errors[i]:.6g}, bound {found.bounds[i]:.6g}"
         assert not found.lost.any(), f"{case.name}: {found.lost.sum()} signs lost"
+
+
+def test_an_error_is_along_the_eyes_ray():
+    """Linear depth in 16 bits: a position is as far off as its depth, times the length of the ray at depth 1."""
+    camera = Camera(0.1, 1000.0, 60.0, 16 / 9)
+    on = depth.points(camera, None, 256, 0)
+    codec = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"])
+    found = depth.through(depth.Case(codec, "eye_ray", "jax", camera, (None,), 256, 0), on)
+    back = np.asarray(codec.round_trip(jnp.asarray(on.depths), np.float32(0.1), np.float32(1000)), np.float64)
+    expected = np.linalg.norm(on.rays(camera), axis=1) * abs(back - on.depths)
+    assert found.errors == pytest.approx(expected, rel=1e-3, abs=1e-3)

@@ -85,6 +85,12 @@ def test_a_codec_of_any_kind_is_asked_the_same(kind):
     assert all(leaf.shape == (1,) and np.isfinite(leaf).all() for leaf in leaves)
 
 
+def test_a_sign_is_a_bit_of_the_codec():
+    """X and Y in bytes, the sign of z elsewhere; and in few values, where all of the channel counts."""
+    codec = Codec(BY_KIND[NORMAL]["xy_sign"], STORAGES["rg8"])
+    assert (codec.bits, codec.codes) == (17, 2**17)
+
+
 def planes(made) -> list:
     """The arrays of a number, a vector or a tangent frame."""
     return [leaf for part in made for leaf in planes(part)] if isinstance(made, tuple) else [made]

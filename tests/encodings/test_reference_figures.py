@@ -2,9 +2,12 @@
 
 import math
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from exact_codes import storage as made
+from scipy.spatial import cKDTree
 
 from normalbench.bench.normals.normal_sets import from_arrays, sphere
 from normalbench.bench.tables.quality import measure as quality
@@ -12,6 +15,7 @@ from normalbench.bench.worst_case.search import worst_case
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import Vec2, to_array
 
 COUNT = 4_000_000
 
@@ -130,6 +134,25 @@ def test_lattices_are_as_good_as_published(normalbench):
     fibonacci.assert_that(angle_mean_deg="at least 0.3017")
     rings.assert_that(angle_max_deg="at most 0.5625")
     rings.assert_that(angle_max_deg="at least 0.5596")
+
+
+def test_of_the_fibonacci_lattice_the_nearest_point_is_found():
+    """Of all 2^16 points by a tree, for 2^16 directions: none is nearer by more than float32's rounding."""
+    encoding = ENCODINGS["spherical_fibonacci"]
+    index = jnp.arange(2**16, dtype=jnp.float32)
+    codes = Vec2(*(number * (2 / 255) - 1 for number in (jnp.floor(index / 256), index % 256)))
+    n = jax.tree.map(lambda plane: plane[: 2**16], sphere(2**16).chunk(0).n)
+    decoded = jax.jit(lambda n: encoding.decode(encoding.encode(n, n), n))(n)
+    lattice, given, found = (np.asarray(to_array(v), np.float64) for v in (encoding.decode(codes, n), n, decoded))
+    nearer = np.linalg.norm(found - given, axis=1) - cKDTree(lattice).query(given)[0]
+    assert nearer.max() < 1e-6, f"{given[nearer.argmax()]} has a point nearer by {nearer.max():.2g}"
+
+
+def test_no_normal_is_farther_from_its_tetrahedrons_face_than_a_corner():
+    """Four faces are as far from their corners as 1/3 is the cosine of: a disk of radius sqrt(8)/3."""
+    n = sphere(2**16).chunk(0).n
+    code = ENCODINGS["tetrahedral"].encode(n, n)
+    assert np.hypot(code.x, code.y).max() == pytest.approx(math.sqrt(8) / 3, abs=1e-3)
 
 
 def test_twelve_bits_cut_off_by_hand(normalbench):

@@ -28,6 +28,7 @@ from normalbench.gbuffer.passes.shadow_map import shadow_map
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import bytes_per_pixel, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.scene import Scene
 from normalbench.gbuffer.scenes.setting import Setting
 
 ROOT = Path(__file__).parents[2]
@@ -264,10 +265,17 @@ def test_what_is_kept_is_there_in_the_next_frame(gl, tmp_path, copies):
             assert np.all(read == frame), f"frame {frame}, the pass before: {read.min()} to {read.max()}"
 
 
+def stepped_aside(scene: Scene, by: float) -> Scene:
+    """The scene from elsewhere, in more ambient light."""
+    x, y, z = scene.view.eye
+    return replace(scene, view=replace(scene.view, eye=(x + by, y, z)), ambient=(by, by, by))
+
+
 @pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
 def test_a_scene_may_move_between_frames(gl, pipeline):
-    """Moments drawn one after the other are those that are drawn alone, bit for bit; another scene is refused."""
-    moments = [SCENES["room"].make(Setting(lights=4, time=time)) for time in (0.0, 0.3, 0.6)]
+    """Moments drawn one after the other, the camera moving too, are those that are drawn alone, bit for bit; another
+    scene is refused."""
+    moments = [stepped_aside(SCENES["room"].make(Setting(lights=4, time=time)), time) for time in (0.0, 0.3, 0.6)]
     plan, alone = replace(PLAN, shadows=True), []
     for moment in moments:
         with rendering(gl, PIPELINES[pipeline], moment, plan) as made:
@@ -370,6 +378,7 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.scene import Scene
 from normalbench.gbuffer.scenes.setting import Setting
 
 plain, found = PIPELINES["deferred"], {}

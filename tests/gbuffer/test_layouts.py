@@ -15,6 +15,7 @@ from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
 from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.frame.resources import GBUFFER
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.layouts.layout import PACKINGS, Layout, LayoutError, Target, read_layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -56,6 +57,10 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
     words = {w.component: (w.target, w.first, w.bits) for w in LAYOUTS["kajiya"].words}
     assert words["normal.x"] == (0, 0, 11) and words["normal.y"] == (0, 11, 10) and words["normal.z"] == (0, 21, 11)
     assert words["albedo.g"] == (1, 1, 0), "a word without bits counts channels"
+
+
+def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
+    assert LAYOUTS["xy_depth_sign"].normal_bits == 2 * 16 + 1
 
 
 @pytest.mark.parametrize(
@@ -145,6 +150,8 @@ def test_a_codec_takes_the_place_of_a_layouts_normal():
     assert changed.codec.name == "octahedral/rg16_snorm" and changed.components == LAYOUTS["normal_depth"].components
     moved = LAYOUTS["unreal5_substrate_32"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16"]))
     assert len(moved.targets) == 3 and moved.bytes_per_pixel == LAYOUTS["unreal5_substrate_32"].bytes_per_pixel
+    beside = LAYOUTS["unreal5_substrate_22"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16"]))
+    assert beside.targets[0].holds == "-:11 -:11 power:10", "free bits stay as many"
     with pytest.raises(LayoutError, match="keeps no depth"):
         LAYOUTS["hybrid"].with_codec(Codec(ENCODINGS["xy_sign"], STORAGES["rg8"]))
 
@@ -236,6 +243,19 @@ def test_material_comes_back_to_half_a_code(name):
         assert np.array_equal(got[1][:, 3], exact[1][:, 3]) and set(exact[1][:, 3]) == set(range(len(KINDS)))
 
 
+def test_only_the_normal_is_packed_as_the_layout_says(gl):
+    """Powers of ten bits are rounded in a layout that cuts its normal off."""
+    mine = replace(LAYOUTS["unreal5_substrate_22"], packing="truncate")
+    materials = tuple(replace(m, power=10.0 + 7.3 * number) for number, m in enumerate(ROOM.materials))
+    powers = []
+    for one in (mine, LAYOUTS["fp32"]):
+        with rendering(gl, PIPELINES["prepass"], replace(ROOM, materials=materials), plan(one)) as made:
+            made.draw()
+            powers.append(np.log2(made.gbuffer()[2][covered()][:, 3].astype(np.float64)))
+    apart = abs(powers[0] - powers[1]) / 11 * (2**10 - 1)
+    assert 0.3 < apart.max() <= HALF, f"{apart.max():.3f} steps off"
+
+
 def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Directions through a layout's codec as the JAX half computes it, its packing in NumPy; (count, 3)."""
     preset = LAYOUTS[name]
@@ -273,6 +293,22 @@ def test_directions_come_back_as_the_codec_says(name):
     assert len(apart) > 1500
     same = np.mean(apart < 2e-3)
     assert same > 0.985, f"{same:.4%} the same; worst {apart.max():.4f} degrees"
+
+
+def test_motion_is_from_where_the_camera_stood(gl):
+    """In screens, from the frame before to this one, as the two cameras' matrices have it."""
+    x, y, z = ROOM.view.eye
+    scene = replace(ROOM, previous=replace(ROOM.view, eye=(x + 0.3, y - 0.1, z + 0.2)))
+    mine = layout(Target("rgba32f", "normal.x normal.y motion.x motion.y"))
+    with rendering(gl, PIPELINES["prepass"], scene, plan(mine)) as made:
+        made.draw()
+        got = made.read(GBUFFER)[0][covered()][:, 2:].astype(np.float64)
+    seen = np.append(kept("fp32")[0][covered()][:, :3], np.ones((covered().sum(), 1)), axis=1)
+    to_world, projection = np.linalg.inv(scene.view.matrix()), scene.view.projection(4 / 3)
+    now, then = (seen @ matrix.T for matrix in (projection, projection @ scene.previous.matrix() @ to_world))
+    expected = (now[:, :2] / now[:, 3:] - then[:, :2] / then[:, 3:]) / 2
+    worst = abs(got - expected).max()
+    assert abs(expected).max() > 0.02 and worst < 1e-4, f"{worst} of a screen off"
 
 
 @pytest.mark.usefixtures("gl")

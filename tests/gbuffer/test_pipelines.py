@@ -14,7 +14,8 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.scene import KINDS, Scene
+from normalbench.gbuffer.scenes.mesh import plane
+from normalbench.gbuffer.scenes.scene import KINDS, Light, Material, Part, Scene, View, placed
 from normalbench.gbuffer.scenes.setting import Setting
 
 
@@ -37,6 +38,31 @@ def test_more_lights_than_the_stencil_counts(gl):
     scene = SCENES["playground"].make(Setting(lights=600))
     found = apart(draw(gl, "forward_multipass", scene).image, draw(gl, "forward", scene).image)
     assert found >= 120, f"{found:.1f} dB"
+
+
+def test_no_lamp_is_taken_for_the_sun(gl):
+    """The sun has a number of its own in the stencil. Of many lamps the last shines, on what only the sun has lit:
+    70 dB from that lamp by itself."""
+    bright = Light("point", (9.0, 9.0, 9.0), (0.0, 0.0, -5.0), 30.0)
+    dark = replace(bright, position=(0.0, 500.0, 0.0), radius=1.0)
+    scene = SCENES["playground"].make(Setting(lights=0))
+    alone = draw(gl, "forward", replace(scene, lights=(*scene.lights, bright))).image
+    for place in (253, 254, 255):
+        lights = (*scene.lights, *[dark] * (place - 1), bright)
+        found = apart(draw(gl, "forward_multipass", replace(scene, lights=lights)).image, alone)
+        assert found >= 70, f"lamp {place}: {found:.1f} dB"
+
+
+@pytest.mark.parametrize("name", [name for name in EXACT if name != "inferred"])
+@pytest.mark.parametrize("heights", [(0.0, 1.0), (1.0, 0.0)], ids=["far first", "near first"])
+def test_near_glass_lies_over_far_glass(gl, name, heights):
+    """Two panes, seen from above, in either order of the scene: half of the near one over half of the far one."""
+    view = View((0.0, 4.0, 0.01), (0.0, 0.0, 0.0), 40.0, 0.5, 20.0)
+    panes = Part(plane(8.0, 8.0), placed([(0.0, height, 0.0) for height in heights]), np.arange(2))
+    colours = [(0.0, 0.0, 1.0) if height else (1.0, 0.0, 0.0) for height in heights]
+    glass = tuple(Material(albedo=colour, specular=(0.0, 0.0, 0.0), alpha=0.5) for colour in colours)
+    image = draw(gl, name, Scene((panes,), glass, (), (1.0, 1.0, 1.0), view, view)).image
+    assert image[SIZE[1] // 2, SIZE[0] // 2] == pytest.approx((0.25, 0.0, 0.5), abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ["objects", "room"])

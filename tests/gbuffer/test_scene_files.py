@@ -156,6 +156,14 @@ def test_obj_quads_negative_indices_and_materials(tmp_path):
     assert file.notes == ()
 
 
+def test_a_negative_index_counts_from_the_line_that_it_is_in(tmp_path):
+    """Two triangles whose faces read alike are apart."""
+    one, other = ("\n".join([f"v 0 0 {z}", f"v 1 0 {z}", f"v 0 1 {z}", "f -3 -2 -1"]) for z in (0, 5))
+    (tmp_path / "a.obj").write_text(f"{one}\n{other}\n")
+    mesh = read_mesh_file(tmp_path / "a.obj").baked
+    assert sorted(mesh.positions[mesh.triangles][:, :, 2].tolist()) == [[0, 0, 0], [5, 5, 5]]
+
+
 def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
     """On a sphere: within 2 degrees of its own, also where a seam's vertices are doubled."""
     ball = sphere(1.0, 40, 20)

@@ -23,10 +23,11 @@ from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import charts
+from normalbench.reports.charts import charts, plots
 from normalbench.reports.charts.drawings import THEME
 from normalbench.reports.page import embedded
 from normalbench.reports.page.found import PictureSet
+from normalbench.reports.page.markdown import LONGEST
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800"
 FORBIDDEN = ("<script>alert", "<img src=x", "\u202e")
@@ -109,9 +110,10 @@ def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
 
 def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
     many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(4000)]
-    folder = a_run(tmp_path / "run", {"quality": [quality_row(HOSTILE), *many]})
+    first = quality_row("@everyone", psnr_db=60.0)
+    folder = a_run(tmp_path / "run", {"quality": [first, quality_row(HOSTILE), *many]})
     status, out, _ = run("report", str(folder), "--markdown")
-    assert status == 0 and len(out) < 65536 and out.rstrip().endswith("draws them all.")
+    assert status == 0 and len(out) <= LONGEST and "`@everyone" in out and out.rstrip().endswith("draws them all.")
     outside = re.sub(r"`[^`\n]*`", "", out)
     assert not re.search(r"http|@|\]\(|<(?!/?(details|summary)>)", outside), "what is odd is code"
     assert out.startswith("## normalbench: run\n")
@@ -295,6 +297,19 @@ def test_a_histograms_outline_holds_its_counts():
     assert np.dot(octaves, heights) == pytest.approx(41) and heights[0] * octaves[0] == pytest.approx(7)
     assert (np.diff(edges) > 0).all() and 0.0 in heights, "what is between is empty"
     assert charts.bins("nonsense") == [] == charts.bins(None)
+
+
+def test_a_histogram_says_its_unit():
+    figure = charts.histogram_chart([quality_row("xy")])
+    assert figure.axes[0].get_xlabel().endswith(", degrees")
+    plots.save(figure)
+
+
+def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
+    row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
+    figure = plots.lights_figure([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])
+    assert list(figure.axes[0].get_lines()[0].get_ydata()) == [0.5, 0.25]
+    plots.save(figure)
 
 
 def test_maps_are_in_the_page_with_means_by_area(results):

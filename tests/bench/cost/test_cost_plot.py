@@ -84,10 +84,11 @@ def test_a_front_is_what_no_other_beats():
             ("d", 3, 20, 16),
             ("e", 3, 30, 24),
             ("f", 1, 10, 16),
+            ("g", 4, 10, 8),  # dear and no better, in half of the bits
         )
     ]
-    assert [p.name for p in pareto.pareto_front(points, decibels("PSNR"))] == ["a", "f", "b", "e"]
-    assert [p.name for p in pareto.pareto_front(points, LARGEST_ANGLE)] == ["a", "f"]
+    assert [p.name for p in pareto.pareto_front(points, decibels("PSNR"))] == ["a", "f", "b", "e", "g"]
+    assert [p.name for p in pareto.pareto_front(points, LARGEST_ANGLE)] == ["a", "f", "g"]
 
 
 @pytest.mark.parametrize(

@@ -309,6 +309,14 @@ def test_a_figure_that_changed_fails_unless_it_is_tolerated(inside, written):
     assert written.read_bytes() == before, "reading does not write"
 
 
+@pytest.mark.parametrize("figure", [47.5, 48.5])
+def test_a_tolerance_is_to_either_side(figure):
+    before, after = {"psnr_db": 48.0}, {"psnr_db": figure}
+    assert list(baseline.changes(before, after, {"psnr_db": 0.5})) == []
+    (said,) = baseline.changes(before, after, {"psnr_db": 0.25})
+    assert said.startswith(f"psnr_db is {figure}, the baseline says 48.0") and "tolerated 0.25" in said
+
+
 def test_a_row_that_is_not_there_says_what_writes_it(inside, written):
     before = written.read_bytes()
     result = inside(*BASELINE, test_a=STORED.replace("count=4096", "count=4097"))

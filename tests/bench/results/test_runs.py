@@ -17,6 +17,7 @@ from normalbench.bench.isa import isa, spirv
 from normalbench.bench.normals import normal_sets
 from normalbench.bench.output import journal
 from normalbench.bench.output.errors import UsageError
+from normalbench.bench.results.measuring import files_of
 from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, sources, unfinished
 from normalbench.bench.suite import run as run_command
 from normalbench.bench.suite.run_options import RunOptions
@@ -150,6 +151,17 @@ def test_the_newest_stopped_run_of_the_same_work_goes_on(tmp_path):
     assert unfinished(tmp_path, FACTS) == tmp_path / "2"
     assert unfinished(tmp_path / "nowhere", FACTS) is None
     assert same_work(FACTS, FACTS | {"time": "now", "finished": True})
+
+
+@pytest.mark.parametrize("name, beside", [("a.obj", "b.mtl"), ("a.gltf", "b.bin"), ("a.glsl", "a.py"), ("a.png", "")])
+def test_a_file_is_known_with_what_is_read_beside_it(tmp_path, name, beside):
+    paths = [tmp_path / one for one in (name, beside) if one]
+    options, keys = TABLES["quality"].options(normals=str(paths[0])), []
+    for content in ("one", "other"):
+        for path in paths:
+            path.write_text(content + path.suffix)
+            keys.append(json.dumps(files_of(options)))
+    assert len(set(keys)) == len(keys)
 
 
 def test_sources_are_known_by_their_content():

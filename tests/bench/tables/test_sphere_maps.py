@@ -9,7 +9,7 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 
 
 def codec(name: str, storage: str = "rgba8") -> Codec:
@@ -76,6 +76,12 @@ def test_maps_are_read_as_they_were_written_and_damaged_ones_are_none(tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
+def test_no_two_codecs_share_a_file():
+    """Not those either that differ by how they round."""
+    names = {sphere_maps.file_name("xy", storage, way) for storage in ("rg8", "rgba8") for way in ROUNDINGS}
+    assert len(names) == 2 * len(ROUNDINGS)
+
+
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 def test_a_rows_histogram_holds_every_normal_between_its_angles(backend):
     measured = quality.measure(quality.Case(codec("octahedral"), playground(), backend))

@@ -45,6 +45,7 @@ def test_most_codes_of_three_numbers_are_no_directions_of_their_own():
     odd = odd_codes(Codec(ENCODINGS["xyz_renormalised"], storage("snorm", 5, 5, 5)))
     assert odd and odd.unused == int((~met).sum())
     assert odd.duplicate == len(lattice) - visible
+    assert odd.unstable <= int(met.sum()), "what nothing makes does not come back as another"
 
 
 def test_a_pole_is_a_row_of_codes():

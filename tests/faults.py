@@ -1,0 +1,259 @@
+"""Puts each fault of fault_list.py into a tree, runs the tests that should notice it, and counts.
+
+    python tests/faults.py [--tree DIR] [--python PY] [--only NAME,...] [--results FILE] [--skip] [--check]
+
+No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it, the file
+is put back as it was. With --results a run that was ended goes on. In the end the tests that noticed are run without
+any fault: one that fails then has noticed nothing. Exit status: 0 where every fault was noticed, 1 where not, 2 where a
+fault has no place in the tree.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
+
+from fault_list import FAULTS, Fault
+
+ROOMS = ("encodings", "gbuffer", "bench", "reports")
+# No selection of tests takes so long: what does hangs, and is noticed by that.
+LIMIT_S = 900
+# Exit statuses of pytest: all is well, and no test was chosen; and those that are about how it was called.
+PASSED, NOTHING_CHOSEN, MISUSED = 0, 5, (3, 4)
+FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
+
+
+class Place(NamedTuple):
+    """Where a fault goes: the file, and what it holds with the fault."""
+
+    path: Path
+    faulty: str
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A checkout, and the Python that its package is installed for."""
+
+    root: Path
+    python: Path
+
+    def product(self) -> dict[Path, str]:
+        """The text of every file of the product."""
+        files = (path for room in ROOMS for path in (self.root / room).rglob("*.*"))
+        return {path: path.read_text(encoding="utf-8") for path in files if "__pycache__" not in path.parts}
+
+    def tests(self, names: str) -> list[str]:
+        """The paths of test files by their names; a version that lacks one has its tests elsewhere."""
+        found = [path for name in names.split() for path in (self.root / "tests").rglob(name)]
+        return [str(path.relative_to(self.root)) for path in found]
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of a fault: the first test that failed, or what else was noticed; nothing in `by` for neither."""
+
+    fault: str
+    room: str
+    kind: str
+    by: str
+    seconds: float
+    new: str
+
+
+def place_of(fault: Fault, product: Mapping[Path, str]) -> Place | str:
+    """The one place that a fault has; a line on why there is none."""
+    counts = []
+    for old, new in ((fault.old, fault.new), *fault.also):
+        found = [path for path, text in product.items() if old in text]
+        counts.append(sum(product[path].count(old) for path in found))
+        if counts[-1] == 1:
+            return Place(found[0], product[found[0]].replace(old, new))
+    return f"{fault.name}: its text is there {' and '.join(map(str, counts))} times, not once"
+
+
+@contextmanager
+def injected(place: Place) -> Iterator[None]:
+    """The fault in its file; afterwards the file is what it was, its time as well: Python compiles by that."""
+    before, times = place.path.read_bytes(), place.path.stat()
+    try:
+        place.path.write_bytes(place.faulty.encode())
+        yield
+    finally:
+        place.path.write_bytes(before)
+        os.utime(place.path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+@contextmanager
+def environment() -> Iterator[dict[str, str]]:
+    """That of the tests: what they keep for good lies in a folder of their own, so that no fault outlives itself."""
+    home = Path("~/.cache").expanduser()
+    # What these keep is known by its content, and takes long to make again.
+    shared = {"MESA_SHADER_CACHE_DIR": str(home), "MPLCONFIGDIR": str(home / "matplotlib")}
+    with tempfile.TemporaryDirectory(prefix="faults-", ignore_cleanup_errors=True) as cache:
+        yield shared | os.environ | {"XDG_CACHE_HOME": cache, "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def ran(tree: Tree, arguments: Sequence[str], limit: float | None) -> tuple[int, str] | None:
+    """Status and output of pytest; None where it took longer than the limit."""
+    command = [str(tree.python), "-m", "pytest", "-q", "--tb=no", "-rfE", *arguments]
+    with environment() as given:
+        process = subprocess.Popen(
+            command,
+            cwd=tree.root,
+            env=given,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            _end(process)
+    return process.returncode, output
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    """End what was started here and is still running, with everything that it started."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def noticed_by(tree: Tree, names: str, chosen: str) -> str:
+    """The first of some tests that fails; empty where none does."""
+    files = tree.tests(names)
+    if not files:
+        return ""
+    done = ran(tree, ["-x", *(["-k", chosen] if chosen else []), *files], LIMIT_S)
+    if done is None:
+        return f"the limit of {LIMIT_S} s"
+    status, output = done
+    if status in MISUSED:
+        raise RuntimeError(output)
+    if status in (PASSED, NOTHING_CHOSEN):
+        return ""
+    found = FAILED.search(output)
+    return found[1] if found else f"status {status}"
+
+
+def tried(tree: Tree, fault: Fault, place: Place) -> Result:
+    """A fault in its place, under its tests, and under the wider ones where those notice nothing."""
+    start = time.monotonic()
+    with injected(place):
+        by = noticed_by(tree, fault.tests, fault.chosen)
+        if not by and fault.wider:
+            by = noticed_by(tree, f"{fault.tests} {fault.wider}", "")
+    return Result(fault.name, fault.room, fault.kind, by, round(time.monotonic() - start, 1), fault.new)
+
+
+def failing_without(tree: Tree, results: Sequence[Result]) -> set[str]:
+    """Of the tests that noticed a fault those that fail without any."""
+    tests = list(dict.fromkeys(result.by for result in results if "::" in result.by))
+    done = ran(tree, tests, None) if tests else None
+    return set(FAILED.findall(done[1])) if done else set()
+
+
+def read_results(path: Path | None) -> dict[str, Result]:
+    """The results of an earlier run, by fault."""
+    if not path or not path.exists():
+        return {}
+    lines: list[dict[str, Any]] = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    return {line["fault"]: Result(**line) for line in lines}
+
+
+def results_of(tree: Tree, placed: Sequence[tuple[Fault, Place]], path: Path | None) -> Iterator[Result]:
+    """Each fault's result: what is in the file, and the others as they come."""
+    kept = read_results(path)
+    for fault, place in placed:
+        if fault.name in kept and kept[fault.name].new == fault.new:
+            yield kept[fault.name]
+            continue
+        result = tried(tree, fault, place)
+        if path:
+            with path.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(asdict(result)) + "\n")
+        yield result
+
+
+def line_of(result: Result) -> str:
+    """A result as a line of the table."""
+    by = result.by or "NOTHING"
+    return f"{result.fault:<32} {result.room:<10} {result.kind:<24} {result.seconds:>6.1f} s  {by}"
+
+
+def chosen_faults(only: str) -> list[Fault]:
+    """The faults that are asked for. Raises SystemExit for a name that there is not."""
+    names = [name for name in only.split(",") if name]
+    unknown = set(names) - {fault.name for fault in FAULTS}
+    if unknown:
+        raise SystemExit(f"no fault {', '.join(sorted(unknown))}")
+    return [fault for fault in FAULTS if not names or fault.name in names]
+
+
+def arguments() -> argparse.Namespace:
+    """What was typed."""
+    here = Path(__file__).parents[1]
+    parser = argparse.ArgumentParser(description="Count the injected faults that the tests notice.")
+    parser.add_argument("--tree", type=Path, default=here, help="The checkout. Default: this one.")
+    parser.add_argument("--python", type=Path, help="Its Python. Default: the one of its .venv.")
+    parser.add_argument("--only", default="", help="Names of faults, comma-separated.")
+    parser.add_argument("--results", type=Path, help="JSON lines to go on from, and to write.")
+    parser.add_argument("--skip", action="store_true", help="Leave out what has no place: another version may lack it.")
+    parser.add_argument("--check", action="store_true", help="See that every fault has its one place, and end.")
+    return parser.parse_args()
+
+
+def _terminated(*_: object) -> NoReturn:
+    raise SystemExit(143)
+
+
+def main() -> int:
+    """Check that every fault has its place, then try each."""
+    asked = arguments()
+    root = asked.tree.resolve()
+    tree = Tree(root, asked.python or root / ".venv" / "bin" / "python")
+    product = tree.product()
+    found = [(fault, place_of(fault, product)) for fault in chosen_faults(asked.only)]
+    misplaced = [place for _, place in found if isinstance(place, str)]
+    print("\n".join([*misplaced, f"{len(found) - len(misplaced)} of {len(found)} faults have their place."]))
+    if asked.check or (misplaced and not asked.skip):
+        return 2 if misplaced else 0
+    # A terminated run puts the file back as an interrupted one does.
+    signal.signal(signal.SIGTERM, _terminated)
+    results = []
+    placed = [(fault, place) for fault, place in found if isinstance(place, Place)]
+    for result in results_of(tree, placed, asked.results):
+        results.append(result)
+        print(line_of(result), flush=True)
+    return counted(results, failing_without(tree, results))
+
+
+def counted(results: Sequence[Result], failing: set[str]) -> int:
+    """The last lines; the exit status."""
+    for test in sorted(failing):
+        print(f"fails without a fault: {test}")
+    noticed = [result for result in results if result.by and result.by not in failing]
+    for room in ROOMS:
+        of_room = [result for result in results if result.room == room]
+        print(f"{room}: {sum(result in noticed for result in of_room)} of {len(of_room)}")
+    print(f"{len(noticed)} noticed of {len(results)}")
+    return int(len(noticed) < len(results))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
