@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ...encodings.files import file_text
 from ...reports.tables import to_json
 from ..options.option import fields_of
 from ..output.errors import UsageError
@@ -43,16 +44,16 @@ def _is_kept(table: Table, name: str) -> bool:
 def read_baseline(path: Path) -> dict[str, Entry]:
     """The entries of a file, by their keys. Raises UsageError where it is no baseline."""
     try:
-        entries = json.loads(path.read_text(encoding="utf-8"))
-        if not isinstance(entries, list) or not all(_is_entry(one) for one in entries):
+        entries = json.loads(file_text(path))
+        if not isinstance(entries, list):
             raise ValueError("it holds something else")
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{path} is no baseline: {error}") from error
+    from ..results.schema import check_entry
+
+    for number, one in enumerate(entries, 1):
+        check_entry(one, f"{path}, entry {number}")
     return {_text(one): one for one in entries}
-
-
-def _is_entry(value: Any) -> bool:
-    return isinstance(value, dict) and isinstance(value.get("row"), dict) and {"table", "key"} <= set(value)
 
 
 def _text(one: Entry) -> str:

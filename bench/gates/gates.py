@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...encodings.files import file_text
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
@@ -41,7 +42,7 @@ def read_gates(path: Path) -> list[Gate]:
         UsageError: it cannot be read, or says something else; one line with the place.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(file_text(path))
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{path}: cannot be read as gates: {error}") from error
     found = data.get("gate")

@@ -11,9 +11,12 @@ from io import FileIO
 from pathlib import Path
 from typing import Any
 
+from ...encodings.files import file_bytes
 from .errors import UsageError
 
 Line = dict[str, Any]
+# Of a journal, in bytes; the largest runs have some megabytes.
+MOST = 1 << 30
 
 
 class Journal:
@@ -30,7 +33,7 @@ class Journal:
         content = file.read()
         # A line that was cut off in the middle would swallow the next one.
         file.truncate(content.rfind(b"\n") + 1)
-        self.lines = list(_readable(content))
+        self.lines = _read(path, content)
 
     def add(self, line: Line) -> None:
         """Keep a line for good: at once, so that it is whole or cut off at its end, and on the disk.
@@ -73,16 +76,23 @@ def journal(path: Path) -> Iterator[Journal]:
 def read_lines(path: Path) -> list[Line]:
     """The whole lines of a journal; nothing is written, and a missing file has none. Raises UsageError."""
     try:
-        return list(_readable(path.read_bytes() if path.exists() else b""))
+        content = file_bytes(path, MOST) if path.exists() else b""
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+    return _read(path, content)
 
 
-def _readable(content: bytes) -> Iterator[Line]:
-    for line in content[: content.rfind(b"\n") + 1].splitlines():
-        try:
-            found = json.loads(line)
-        except (ValueError, RecursionError):
-            continue
-        if isinstance(found, dict):
-            yield found
+def _read(path: Path, content: bytes) -> list[Line]:
+    """The lines that have their end: what was being written when the process was killed has none."""
+    whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
+    return [_parsed(f"{path}, line {at}", line) for at, line in enumerate(whole, 1)]
+
+
+def _parsed(place: str, line: bytes) -> Line:
+    try:
+        found = json.loads(line)
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise UsageError(f"{place} was damaged: it is no line that was written here; take it out to measure it again")
+    return found

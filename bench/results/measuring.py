@@ -120,7 +120,7 @@ class Beside:
 
     def __init__(self, kept: Journal):
         self.path, self._journal = kept.path, kept
-        self._rows = {line["step"]: line["rows"] for line in kept.lines if {"step", "rows"} <= set(line)}
+        self._rows = {line["step"]: line["rows"] for line in _checked(kept)}
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -133,6 +133,16 @@ class Beside:
         self._journal.add({"step": text, "rows": kept})
         self._rows[text] = kept
         return kept
+
+
+def _checked(kept: Journal) -> list[Row]:
+    """The lines below the first. Raises UsageError where one is no step."""
+    if lines := kept.lines[1:]:
+        from .schema import check_kept
+
+        for at, line in enumerate(lines, 2):
+            check_kept(line, f"{kept.path}, line {at}")
+    return lines
 
 
 @contextmanager

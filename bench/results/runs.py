@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...encodings.files import file_text
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal, read_lines
 from ..output.writing import check_folder, whole_file
@@ -89,12 +90,19 @@ def read_run(folder: Path) -> Done:
     Raises:
         UsageError: it is none, or cannot be read.
     """
-    lines = read_lines(folder / ROWS)
-    odd = next((at for at, line in enumerate(lines, 1) if not _is_step(line)), None)
-    if odd:
-        raise UsageError(f"{folder / ROWS}: line {odd} is no step of a run; take the line out, or run again")
-    facts = _facts(folder)
+    facts, lines = _facts(folder), read_lines(folder / ROWS)
+    _check_steps(folder, lines)
     return Done(facts, lines, _damage(folder, facts))
+
+
+def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
+    from .schema import check_step
+
+    for at, line in enumerate(lines, 1):
+        try:
+            check_step(line, f"{folder / ROWS}, line {at}")
+        except UsageError as error:
+            raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
 
 
 def _seal(folder: Path) -> Row:
@@ -115,23 +123,14 @@ def _damage(folder: Path, facts: Row) -> str:
 
 
 def _facts(folder: Path) -> Row:
+    from .schema import check_facts
+
     try:
-        facts = json.loads((folder / RUN).read_text(encoding="utf-8"))
+        facts = json.loads(file_text(folder / RUN))
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder} is no results folder: {RUN} cannot be read ({error})") from error
-    if not isinstance(facts, dict):
-        raise UsageError(f"{folder} is no results folder: {RUN} holds no facts")
+    check_facts(facts, str(folder / RUN))
     return facts
-
-
-def _steps(lines: list[Row]) -> list[Row]:
-    return [line for line in lines if _is_step(line)]
-
-
-def _is_step(line: Row) -> bool:
-    kinds = {"table": str, "key": dict, "rows": list}
-    is_one = all(isinstance(line.get(name), kind) for name, kind in kinds.items())
-    return is_one and all(isinstance(row, dict) for row in line["rows"])
 
 
 class Run:
@@ -139,12 +138,13 @@ class Run:
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self.folder, self.facts, self._journal = folder, facts, kept
-        self._kept = {key_text(step["table"], step["key"]): step["rows"] for step in _steps(kept.lines)}
+        _check_steps(folder, kept.lines)
+        self._kept = {key_text(step["table"], step["key"]): step["rows"] for step in kept.lines}
 
     @property
     def kept(self) -> int:
         """How many steps have their rows in the file, which a signal may stop a moment after it was written."""
-        return len(_steps(read_lines(self.folder / ROWS)))
+        return len(read_lines(self.folder / ROWS))
 
     def find(self, table: str, step: Step) -> list[Row] | None:
         """The rows of a step; None where they are not kept."""

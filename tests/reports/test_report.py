@@ -154,12 +154,12 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
             {"encoding": "xy", "other": [1, 2]},
             quality_row("mine", bits=1e999),
         ],
-        "render": [{"psnr_db": "high"}],
+        "render": [{"psnr": "high"}],
         "lights": [{"experiment": "equal", "sum": 1.0, "lights": 8}],
         "passes": [{"ms_frame": 3.0, "ms_lights": 1.0}],
         "depth": [{"distance": 1.0, "error_max": 0.1, "near": 0.1, "far": 1.0, "fov": 60.0}],
         "colours": [{"red": 1}],
-        "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "encoding": ["xy"]}],
+        "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "codes": ["xy"]}],
     }
     _, read = reported(run, a_run(tmp_path / "run", tables))
     assert "The rows of quality are not those of this version" in read.text

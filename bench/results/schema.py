@@ -1,0 +1,145 @@
+"""What the files of runs and baselines may hold: people edit them, and a slip is said by its place, not as a bug."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, ValidationError, with_config
+from typing_extensions import TypedDict
+
+from ..output.errors import UsageError
+from ..tables.registry import table_of_run
+from ..tables.table import Role, Row
+
+# NumPy and pandas hold whole numbers below this.
+LARGEST = 2**63
+
+
+def _scalar(value: Any) -> Any:
+    if isinstance(value, list | dict):
+        raise ValueError("is neither text nor a number")
+    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
+        raise ValueError("is too large")
+    return value
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, str):
+        raise ValueError("is no number")
+    return _scalar(value)
+
+
+Scalar = Annotated[Any, AfterValidator(_scalar)]
+Number = Annotated[Any, AfterValidator(_number)]
+STRICT = ConfigDict(strict=True)
+
+
+@with_config(STRICT)
+class StepLine(TypedDict):
+    """A line of `rows.jsonl`."""
+
+    table: str
+    key: dict[str, JsonValue]
+    rows: list[dict[str, JsonValue]]
+
+
+@with_config(STRICT)
+class RunFacts(TypedDict, total=False):
+    """What is read of `run.json`."""
+
+    request: dict[str, JsonValue]
+    command: list[str]
+    sources: str
+    machine: dict[str, Scalar]
+    time: str
+    finished: bool
+    lines: int
+    digest: str
+    before: list[dict[str, JsonValue]]
+
+
+@with_config(STRICT)
+class BaselineEntry(TypedDict):
+    """A row of a baseline."""
+
+    table: str
+    key: dict[str, JsonValue]
+    row: dict[str, JsonValue]
+
+
+@with_config(STRICT)
+class KeptLine(TypedDict):
+    """A line of what is kept beside an output file until it is written."""
+
+    step: str
+    rows: list[dict[str, JsonValue]]
+
+
+STEP, FACTS, ENTRY = TypeAdapter(StepLine), TypeAdapter(RunFacts), TypeAdapter(BaselineEntry)
+KEPT = TypeAdapter(KeptLine)
+NUMBERS, SCALARS = TypeAdapter(dict[str, Number]), TypeAdapter(dict[str, Scalar])
+# By pydantic's names of what is wrong.
+WRONG = {
+    "string_type": "is no text",
+    "list_type": "is no list",
+    "dict_type": "is no object",
+    "bool_type": "is neither true nor false",
+    "int_type": "is no whole number",
+}
+
+
+def check_facts(facts: Any, place: str) -> None:
+    """Raises UsageError where `run.json` holds something else than a run's facts."""
+    _check(FACTS, facts, [place])
+
+
+def check_step(line: Any, place: str) -> None:
+    """Raises UsageError where a line of a run is no step, or a figure is no number."""
+    _check(STEP, line, [place])
+    for number, row in enumerate(line["rows"], 1):
+        _check_row(line["table"], row, [place, f"row {number}"])
+
+
+def check_kept(line: Any, place: str) -> None:
+    """Raises UsageError where a line kept beside an output file is no step."""
+    _check(KEPT, line, [place])
+
+
+def check_entry(entry: Any, place: str) -> None:
+    """Raises UsageError where an entry of a baseline is none, or a figure is no number."""
+    _check(ENTRY, entry, [place])
+    _check_row(entry["table"], entry["row"], [place])
+
+
+def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
+    """Raises UsageError where a column holds what it cannot. Columns of another version may hold anything."""
+    table = table_of_run(name)
+    columns = {name: table.column(table.renamed.get(name, name)) for name in row} if table else {}
+    roles = {name: column.role for name, column in columns.items() if column}
+    _check(SCALARS, {name: row[name] for name in roles}, place)
+    _check(NUMBERS, {name: row[name] for name, role in roles.items() if role in (Role.FIGURE, Role.TIME)}, place)
+
+
+def _check(adapter: TypeAdapter[Any], value: Any, place: Sequence[str]) -> None:
+    try:
+        adapter.validate_python(value)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+    else:
+        return
+    loc = [f"row {part + 1}" if isinstance(part, int) else str(part) for part in first["loc"] if part != "rows"]
+    where = ", ".join([*place, *loc])
+    if first["type"] == "missing":
+        raise UsageError(f"{where} is missing")
+    wrong = first.get("ctx", {}).get("error") or WRONG.get(first["type"]) or first["msg"]
+    raise UsageError(f"{where}: {_short(first['input'])} {wrong}")
+
+
+def _short(value: Any) -> str:
+    """The beginning of a value's text; a number may have more digits than Python prints."""
+    try:
+        text = repr(value)
+    except ValueError:
+        return "a number"
+    return text if len(text) <= 40 else f"{text[:40]}…"
