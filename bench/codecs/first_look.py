@@ -1,11 +1,11 @@
 """A first look at a user's code, in a process that may hang or die.
 
-    python -m normalbench.bench.codecs.first_look glsl FILE
-    python -m normalbench.bench.codecs.first_look twin FILE
+    python -m normalbench.bench.codecs.first_look FILE
 
-Prints one line of JSON. Of the GLSL: `error`, what the compiler says; `broken`, where it is not finite or does not end;
-`missing`, that there is no GL device; else by domain how far a direction is off on average without any storage, and the
-worst with what it becomes. Of the Python twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
+Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
+compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else by domain
+how far a direction is off on average without any storage, and the worst with what it becomes. Of the twin: `error`,
+what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import itertools
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -152,8 +152,15 @@ def _alone() -> int:
     return said
 
 
+def _looks(path: Path) -> Iterator[dict[str, Any]]:
+    found = first_look(path)
+    yield found
+    if path.with_suffix(".py").exists() and not {"error", "broken"} & set(found):
+        yield twin_look(path)
+
+
 if __name__ == "__main__":
     children.limit_this_process()
     answer = _alone()
-    look = {"glsl": first_look, "twin": twin_look}[sys.argv[1]]
-    os.write(answer, json.dumps(look(Path(sys.argv[2]))).encode())
+    for look in _looks(Path(sys.argv[1])):
+        os.write(answer, json.dumps(look).encode() + b"\n")

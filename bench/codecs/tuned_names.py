@@ -8,6 +8,7 @@ import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.files import called
 from ..output.arrays import DamagedError, read_npy
 from ..output.errors import UsageError
 
@@ -33,7 +34,9 @@ def tuned(word: str) -> Encoding:
     table = values.pop(TABLE, None) if encoding.look_up else None
     if values:
         encoding = encoding.with_parameters({key: _value(word, encoding, key, text) for key, text in values.items()})
-    return encoding if table is None else encoding.with_table(_read_table(Path(table), encoding), Path(table).name)
+    if table is None:
+        return encoding
+    return encoding.with_table(_read_table(Path(table), encoding), called(Path(table).name))
 
 
 def parameters_of(encoding: Encoding) -> list[str]:

@@ -8,14 +8,15 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.files import called
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores
@@ -72,8 +73,11 @@ def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str]]:
 def _looked_at(path: Path) -> Encoding | UsageError:
     """A file's encoding after the first look, or why there is none."""
     try:
-        domain = _domain(path, _look(path, "glsl"))
-        return replace(read_encoding(path, _twins_fault(path.with_suffix(".py"), path)), domain=domain)
+        found = _look(path)
+        domain = _domain(path, found.glsl)
+        if "apart" in found.twin:
+            tell(f"{path.with_suffix('.py')}: {found.twin['apart']}")
+        return replace(read_encoding(path, found.fault), domain=domain)
     except UsageError as error:
         return error
 
@@ -114,12 +118,12 @@ def read_encoding(path: Path, fault: str = "") -> Encoding:
     encode, decode = _lacking(fault) if fault else _twin(path.with_suffix(".py"))
     return Encoding(
         name=match[2],
-        title=str(path),
+        title=called(str(path)),
         encode=encode,
         decode=decode,
         components=int(match[1]),
         domain="sphere",
-        citation=str(path),
+        citation=called(str(path)),
         # Not resolved: the twin lies next to the path that was given.
         glsl=path.absolute(),
         ulps=(0, 0),
@@ -152,17 +156,44 @@ def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
         raise UsageError(f"{path}: {type(error).__name__}: {error}") from error
 
 
-def _look(path: Path, which: str) -> dict[str, Any]:
-    """A first look in a process of its own, see first_look.py. Raises UsageError where it does not end well."""
-    what = {"glsl": "its shader", "twin": "its Python twin"}[which]
+@dataclass(frozen=True)
+class Looks:
+    """What a first look found, see first_look.py.
+
+    Attributes:
+        glsl: of the shader.
+        twin: of the Python twin; empty where there is none, or the shader is of no use.
+        fault: why the twin cannot be measured; empty where it can be.
+    """
+
+    glsl: dict[str, Any]
+    twin: dict[str, Any]
+    fault: str
+
+
+def _look(path: Path) -> Looks:
+    """A first look in a process of its own. Raises UsageError where its shader does not let it end well."""
     try:
-        done = children.finished(children.python("normalbench.bench.codecs.first_look", which, str(path)), TIME_LIMIT)
+        done = children.finished(children.python("normalbench.bench.codecs.first_look", str(path)), TIME_LIMIT)
+        said, ended = done.stdout, _how_it_ended(done)
     except subprocess.TimeoutExpired as error:
-        raise UsageError(f"{path}: {what} did not end within {TIME_LIMIT:g} s") from error
-    try:
-        return json.loads(done.stdout.splitlines()[-1])
-    except (ValueError, IndexError) as error:
-        raise UsageError(f"{path}: {what} {_how_it_ended(done)}") from error
+        said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
+    lines = list(_answers(said))
+    if not lines:
+        raise UsageError(f"{path}: its shader {ended}")
+    has_twin = path.with_suffix(".py").exists() and not {"error", "broken"} & set(lines[0])
+    if has_twin and len(lines) < 2:
+        return Looks(lines[0], {}, f"{path}: its Python twin {ended}")
+    twin = lines[1] if has_twin else {}
+    return Looks(lines[0], twin, twin.get("error", ""))
+
+
+def _answers(said: str) -> Iterator[dict[str, Any]]:
+    for line in said.splitlines():
+        try:
+            yield json.loads(line)
+        except ValueError:
+            return
 
 
 def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
@@ -171,19 +202,6 @@ def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
         return f"killed the process ({signal.Signals(-done.returncode).name}); {limits}"
     last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
     return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
-
-
-def _twins_fault(twin: Path, path: Path) -> str:
-    """Why a Python twin cannot be measured; empty where it can be. One that contradicts its GLSL is named."""
-    if not twin.exists():
-        return ""
-    try:
-        found = _look(path, "twin")
-    except UsageError as error:
-        return str(error)
-    if "apart" in found:
-        tell(f"{twin}: {found['apart']}")
-    return found.get("error", "")
 
 
 def _domain(path: Path, found: dict[str, Any]) -> str:

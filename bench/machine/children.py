@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import IO
 
 # Of a process that runs users' code: bytes of memory, seconds of processor time, bytes of a file.
 MEMORY, SECONDS, FILE = 1536 << 20, 10, 16 << 20
@@ -51,7 +52,7 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
     What it prints goes to files, whose size it limits itself.
 
     Raises:
-        TimeoutExpired: it took longer.
+        TimeoutExpired: it took longer; it has what was printed until then.
     """
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         process = subprocess.Popen(
@@ -59,13 +60,20 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
         )
         try:
             status = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            status = None
         finally:
             _end(process)
             process.wait()
-        out.seek(0)
-        err.seek(0)
-        said = (file.read().decode(errors="replace") for file in (out, err))
-        return subprocess.CompletedProcess(list(command), status, *said)
+        said = [_text(file) for file in (out, err)]
+    if status is None:
+        raise subprocess.TimeoutExpired(command, seconds, *said)
+    return subprocess.CompletedProcess(list(command), status, *said)
+
+
+def _text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode(errors="replace")
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
