@@ -15,7 +15,7 @@ GAP = 2
 PROSE = 40
 # What no column of whole numbers counts up to.
 LARGEST_WHOLE = 2**63
-CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]")
 # Text that reads as itself in Markdown, and calls nobody.
 PLAIN, CODE = re.compile(r"[\w .,+%():;>=<'/-]*"), re.compile(r"`[^`\n]*`")
 # What a spreadsheet takes for a formula.
@@ -73,7 +73,15 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 def _no_formula(value: Any) -> Any:
     """A spreadsheet shows text behind an apostrophe, and computes nothing."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+    if not isinstance(value, str):
+        return value
+    text = in_utf8(value)
+    return f"'{text}" if text.startswith(FORMULA) else text
+
+
+def in_utf8(text: str) -> str:
+    """Text whose half characters, which a file's name may have, are written as escapes: no file could hold them."""
+    return text.encode(errors="backslashreplace").decode()
 
 
 def has_parquet() -> bool:
@@ -88,11 +96,17 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
     import pyarrow.parquet as pq
 
     names = dict.fromkeys(column for row in rows for column in row)
-    columns = {name: [row.get(name) for row in rows] for name in names}
+    columns = {name: [_storable(row.get(name)) for row in rows] for name in names}
     for name, values in columns.items():
         if any(isinstance(value, int) and abs(value) >= LARGEST_WHOLE for value in values):
             columns[name] = [None if value is None else float(value) for value in values]
-    pq.write_table(pa.table(columns), path)
+    # Not by its path, which pyarrow takes for an address in UTF-8.
+    with path.open("wb") as file:
+        pq.write_table(pa.table(columns), file)
+
+
+def _storable(value: Any) -> Any:
+    return in_utf8(value) if isinstance(value, str) else value
 
 
 def to_markdown(rows: Sequence[dict[str, Any]]) -> str:

@@ -25,8 +25,9 @@ RESOLUTION_DEG = 1e-5
 # itself or less, for codes near the limit.
 SIGMAS = 5
 SCATTER = SIGMAS * 0.5
-# Sets of uniform directions are lattices, and so are many codes: with fewer directions than codes the two may meet more
-# often than chance has it (twice, of 65536 directions and spherical's 2^20 codes).
+# Sets of uniform directions are lattices, and so are many codes: where a code's cap holds less than one direction on
+# average, the two may meet more often than chance has it (twice, of 65536 directions and spherical's 2^20 codes; 1.2
+# times, of a million and latitude_longitude's 2^16).
 RESONANCE = 4
 
 
@@ -83,10 +84,10 @@ def broken(codes: int, area: float, s: Statistics) -> str:
     for what, figure, bound in (("RMS", s.angle_rms_deg, least.rms_deg), ("mean", s.angle_mean_deg, least.mean_deg)):
         if figure < bound * spared:
             return f"{what} {figure:.5g} degrees, of {bound:.5g} at least"
-    share = (SPHERE / area) * (RESONANCE if s.count < codes else 1)
     for degrees, count in s.within:
         # Each code has its cap: so many directions at most lie that near to any.
-        most = min(codes * share * math.sin(math.radians(degrees) / 2) ** 2, 1.0) * s.count
+        share = SPHERE / area * math.sin(math.radians(degrees) / 2) ** 2
+        most = min(codes * share * (RESONANCE if share * s.count < 1 else 1), 1.0) * s.count
         if degrees > RESOLUTION_DEG and count > most + SIGMAS * math.sqrt(most) + SIGMAS:
             return f"{count} angles below {degrees:.2g} degrees, of {most:.2g} at most"
     return ""

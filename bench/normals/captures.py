@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ...encodings.files import called, file_text
 from ..options.option import Reading
 from ..output.errors import UsageError, pick
 from .normal_sets import NormalSet, from_arrays
@@ -50,7 +51,8 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     notes += _which_way(n[2][covered], reading.space)
     shape = pixels.shape if len(pixels.shape) == 2 else None
     n = np.moveaxis(n, 0, -1).astype(np.float32)
-    made = from_arrays(path.name, f"normals of {path.name}", n, _rays(n, reading.fov), covered, shape, not_finite)
+    name = called(path.name)
+    made = from_arrays(name, f"normals of {name}", n, _rays(n, reading.fov), covered, shape, not_finite)
     return made, notes
 
 
@@ -227,7 +229,7 @@ def _rotation(text: str) -> np.ndarray:
     said = f"--view-matrix {text}"
     try:
         if re.search(r"[^-+0-9.eE,;\s]", text):
-            text = Path(text).read_text(encoding="utf-8")[:4096]
+            text = file_text(Path(text))[:4096]
         numbers = [float(word) for word in re.split(r"[\s,;\[\]()]+", text) if word]
     except (OSError, ValueError) as error:
         raise UsageError(f"{said}: neither numbers nor a text file of numbers ({error})") from error

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+from ...encodings.files import called
 from ...gbuffer.scenes.files import read as files
 from ..options.counts import checked_sides
 from ..options.option import Reading
@@ -69,5 +70,6 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
     if not seen.covered.any():
         raise UsageError(f"{path}: its camera sees nothing; move it, or leave it out to have everything framed")
     notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
-    made = from_arrays(path.name, f"the meshes of {path.name}", seen.normals, seen.positions, seen.covered, sides[::-1])
+    name = called(path.name)
+    made = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])
     return made, notes

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from ...encodings.files import called
 from ...gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ...gbuffer.scenes.files.mesh_file import MeshFile
 from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
@@ -24,7 +25,8 @@ def scenes_named(names: str) -> list[SceneMaker]:
     def scene_of(path: Path) -> SceneMaker:
         file = mesh_file(path)
         notes[path] = file.notes
-        return SceneMaker(path.name, f"the meshes of {path.name}", partial(file_scene, file), FRAMES)
+        name = called(path.name)
+        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES)
 
     made = pick_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)

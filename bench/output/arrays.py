@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ...encodings.files import file_bytes
+
 # Of an archive's arrays together; the largest that this program writes is a few megabytes.
 MOST_BYTES = 64 << 20
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
@@ -34,7 +36,7 @@ def array_of(data: bytes) -> np.ndarray:
 def _bytes(path: Path, most: int) -> bytes:
     if path.stat().st_size > most:
         raise DamagedError(f"it is larger than {most} bytes")
-    return path.read_bytes()
+    return file_bytes(path, most)
 
 
 def read_npy(path: Path, most: int) -> np.ndarray:

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
+# Letters of a line: what a word of thousands would make of it is no message.
+LONGEST = 1500
 
 
 class UsageError(Exception):
@@ -27,7 +29,9 @@ def tell(line: str) -> None:
     # Here, because every run of pytest imports this module.
     from ...reports.tables import visible
 
-    print(f"normalbench: {visible(' '.join(line.split()))}", file=sys.stderr)
+    text = visible(" ".join(line.split()))
+    shown = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
+    print(f"normalbench: {shown}", file=sys.stderr)
 
 
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:

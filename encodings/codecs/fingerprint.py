@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ..files import MOST_TEXT, file_bytes
+
 DIGITS = 16
 _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
@@ -21,7 +23,7 @@ def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any]) -> str:
         OSError: a file cannot be read.
     """
     twin = glsl.with_suffix(".py")
-    files = (*_texts(glsl.resolve(), set()), *([twin.read_bytes()] if twin.exists() else []))
+    files = (*_texts(glsl.resolve(), set()), *([file_bytes(twin, MOST_TEXT)] if twin.exists() else []))
     arrays = (part for name, table in sorted(tables.items()) for part in _array(name, np.ascontiguousarray(table)))
     return _hashed((*files, repr(values).encode(), *arrays))
 
@@ -29,7 +31,7 @@ def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any]) -> str:
 def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
     """A shader file and every file that it includes, each once."""
     seen.add(path)
-    yield (text := path.read_bytes())
+    yield (text := file_bytes(path, MOST_TEXT))
     for name in _INCLUDE.findall(text):
         if (target := (path.parent / name.decode()).resolve()) not in seen:
             yield from _texts(target, seen)

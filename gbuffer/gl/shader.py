@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+from ...encodings.files import file_text
+
 ROOM = Path(__file__).parents[1]
 SUFFIXES = (".glsl", ".vert", ".frag", ".comp")
 # Of the encodings: not the pairs, which may have the name of another kind's.
@@ -96,8 +98,8 @@ def _beside(path: Path, file: str) -> Path:
 def read_shader(path: Path) -> str:
     """A shader file's text. Raises ShaderError."""
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        return file_text(path)
+    except (OSError, ValueError) as error:
         raise ShaderError(f"{path}: cannot be read as a shader: {error}") from error
 
 

@@ -22,6 +22,7 @@ from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.files import called, file_text
 from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
@@ -274,7 +275,7 @@ def read_layout(path: Path) -> Layout:
         LayoutError: it cannot be read, or is no layout; one line.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(file_text(path))
     except (OSError, ValueError, RecursionError) as error:
         # ValueError is bad text, bad TOML, and a number of thousands of digits.
         raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
@@ -285,8 +286,14 @@ def read_layout(path: Path) -> Layout:
 
 
 def _from_data(path: Path, data: dict[str, Any]) -> Layout:
-    texts = {"title": path.stem, "source": str(path), "space": "view", "rounding": "nearest", "packing": "nearest"}
-    texts |= {"depth": ""}
+    texts = {
+        "title": called(path.stem),
+        "source": called(str(path)),
+        "space": "view",
+        "rounding": "nearest",
+        "packing": "nearest",
+        "depth": "",
+    }
     unknown = set(data) - {*texts, "encoding", "targets"}
     if unknown:
         known = ", ".join((*texts, "encoding", "targets"))
@@ -300,7 +307,7 @@ def _from_data(path: Path, data: dict[str, Any]) -> Layout:
     named = {"encoding": _named(path, "encoding", texts.pop("encoding"), ENCODINGS)}
     depth = texts.pop("depth")
     named |= {"depth": _named(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
-    return Layout(path.stem, targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
+    return Layout(called(path.stem), targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
 
 
 def _named(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:

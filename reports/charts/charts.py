@@ -179,6 +179,7 @@ def sphere_chart(maps: Maps) -> Any:
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
+    from matplotlib.ticker import LogLocator
 
     limits, across = sphere_range(maps), min(3, len(maps))
     down = -(-len(maps) // across)
@@ -190,5 +191,9 @@ def sphere_chart(maps: Maps) -> Any:
     for axis in axes.flat:
         axis.set_axis_off()
     scale = ScalarMappable(LogNorm(*limits), SPHERE_COLOURS)
-    figure.colorbar(scale, ax=axes, label="degrees", shrink=0.8, aspect=30)
+    # As plain text, which matplotlib lays out much faster than powers of ten.
+    bar = figure.colorbar(
+        scale, ax=axes, label="degrees", shrink=0.8, aspect=30, ticks=LogLocator(subs=(1, 2, 5)), format="{x:g}"
+    )
+    bar.minorticks_off()
     return figure

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ....encodings.files import called
 from ....encodings.rotation import frame_of_quaternion
 from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS
@@ -104,7 +105,7 @@ def frame_sets_named(names: str, count: int, seed: int) -> list[FrameSet]:
     def read(path: Path) -> Callable[[int, int], FrameSet]:
         file = mesh_file(path)
         notes[path] = file.notes
-        made = mesh_frames(path.name, [piece.baked() for piece in file.pieces])
+        made = mesh_frames(called(path.name), [piece.baked() for piece in file.pieces])
         return lambda *_: made
 
     made = [make(count, seed) for make in pick_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]

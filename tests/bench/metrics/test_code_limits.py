@@ -66,6 +66,13 @@ def test_no_row_is_below_its_limit(name):
             assert row["effective_bits"] <= math.log2(row["codes"]) + 0.01, row
 
 
+@pytest.mark.parametrize("count", [999_999, 1_000_003, 1_100_000, 1_200_000])
+def test_two_lattices_that_meet_are_no_wrong_measurement(count):
+    """Directions of a million and codes of latitude and longitude: the nearest lie nearer than chance would have it."""
+    row = row_of(Codec(ENCODINGS["latitude_longitude"], STORAGES["rg8"]), sphere(count))
+    assert row["below_limit"] == "", row
+
+
 def test_codes_that_a_format_cannot_tell_apart_do_not_count():
     """SNORM8 has 255 numbers, a half float 30721 from -1 to 1; a sign is a bit more."""
     pairs = {"rg8_snorm": 255**2, "rg8": 2**16, "rg16f": 30721**2, "rg16": 2**32}
