@@ -102,6 +102,7 @@ AXE = """async () => {
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seen", [(DESKTOP, "light"), (PHONE, "dark")], ids=str, indirect=True)
 def test_axe_finds_nothing_that_keeps_readers_out(seen):
     """WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings; details closed and open."""
     from axe_playwright_python.base import AXE_FILE_PATH
