@@ -1,5 +1,5 @@
 """`python -m normalbench.bench` is `normalbench`."""
 
-from .cli.app import program
+from .cli.start import program
 
 program()

@@ -12,6 +12,7 @@ import sys
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -19,7 +20,7 @@ from typer.exceptions import Abort, TyperException
 
 from ...encodings.errors import CatalogueError
 from ...reports.charts.plots import PlotError
-from ..output.errors import MissingError, UsageError, tell
+from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
 from ..output.writing import abandon_output, write
 from ..suite.run_options import RunOptions
@@ -33,7 +34,9 @@ app = typer.Typer(
     help="Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does.",
 )
 
-INTERRUPTED = 130
+INTERRUPTED, TERMINATED = 130, 143
+# How soon an interruption is tried again that came at a bad time, in seconds.
+AGAIN_S = 0.02
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
@@ -158,10 +161,25 @@ def _say(message: str) -> None:
     tell(message)
 
 
-def _end(by: BaseException) -> None:
+def _end(number: int, frame: FrameType | None) -> None:
+    """Raise what ends the program, once no module is being imported: a library in C++ would not survive it there."""
+    if _imports(frame):
+        signal.signal(signal.SIGALRM, lambda _, later: _end(number, later))
+        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+        return
+    by = SystemExit(TERMINATED) if number == signal.SIGTERM else KeyboardInterrupt()
     ending.append(by)
     sys.unraisablehook = _say_unless_ending
     raise by
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a module is being imported."""
+    while frame:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _say_unless_ending(what: sys.UnraisableHookArgs) -> None:
@@ -173,9 +191,10 @@ def _say_unless_ending(what: sys.UnraisableHookArgs) -> None:
 def main() -> int:
     """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
     # A terminated run clears up after itself as an interrupted one does.
-    signal.signal(signal.SIGTERM, lambda *_: _end(SystemExit(143)))
-    signal.signal(signal.SIGINT, lambda *_: _end(KeyboardInterrupt()))
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
     ending.clear()
+    told.clear()
     try:
         if sys.stdout is None:
             raise UsageError("standard output is closed; name a file with -o")
@@ -211,6 +230,9 @@ def program() -> NoReturn:
         status = main()
     except SystemExit as end:
         status = end.code
+    # What is left is to tidy up, which takes less time than it takes to say that it was interrupted.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
+        signal.signal(number, signal.SIG_IGN)
     if ending and isinstance(status, int):
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):

@@ -24,14 +24,23 @@ class MissingError(Exception):
     exit_code = 3
 
 
+# What this command has told already.
+told: set[str] = set()
+
+
 def tell(line: str) -> None:
-    """A line to standard error. Whatever names of files hold, it is one line and leaves the terminal as it is."""
+    """A line to standard error, once in a command.
+
+    Whatever names of files hold, it is one line and leaves the terminal as it is.
+    """
     # Here, because every run of pytest imports this module.
     from ...reports.tables import visible
 
     text = visible(" ".join(line.split()))
     shown = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
-    print(f"normalbench: {shown}", file=sys.stderr)
+    if shown not in told:
+        told.add(shown)
+        print(f"normalbench: {shown}", file=sys.stderr)
 
 
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:

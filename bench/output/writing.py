@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import os
 import shutil
 import sys
@@ -63,6 +64,24 @@ def is_special(path: Path) -> bool:
     return path.exists() and not path.is_file()
 
 
+def _clear_away(path: Path) -> None:
+    """What processes that were killed have left of a file."""
+    for partial in path.parent.glob(f".{glob.escape(path.name)}.*.partial"):
+        number = partial.name.split(".")[-2]
+        if number.isdecimal() and not _runs(int(number)):
+            partial.unlink(missing_ok=True)
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """A name to write to that becomes `path` when all is well and vanishes otherwise.
@@ -76,6 +95,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     partial = path if is_special(path) else _partial(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        _clear_away(path)
         yield partial
         if partial != path:
             partial.replace(path)

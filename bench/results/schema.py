@@ -12,8 +12,8 @@ from ..output.errors import UsageError
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row
 
-# NumPy and pandas hold whole numbers below this.
-LARGEST = 2**63
+# A float holds whole numbers below this: storages of 64 bits have more codes than fit a whole number of NumPy's.
+LARGEST = 2**1000
 
 
 def _scalar(value: Any) -> Any:

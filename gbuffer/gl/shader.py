@@ -66,7 +66,8 @@ class Source:
         lines: list[Line] = []
         for number, line in enumerate(read_shader(path).splitlines(), 1):
             match = _INCLUDE.match(line)
-            lines += self._include(path, number, match) if match else [(line, path, number)]
+            # moderngl expands what is left of them, in comments as well, and knows no files.
+            lines += self._include(path, number, match) if match else [(line.replace("#inc", "# inc"), path, number)]
         return lines
 
     def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:

@@ -68,4 +68,4 @@ def ended(process: subprocess.Popen[str], seconds: float) -> tuple[int, str, str
     return process.returncode, "", err
 
 
-KINDS = (Kind("interruption", interruptions, 200, 0, seconds=400.0, chunk=25),)
+KINDS = (Kind("interruption", interruptions, 60, 0, seconds=400.0, chunk=15),)

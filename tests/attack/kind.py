@@ -28,6 +28,7 @@ class Kind:
         few: how many the suite tries.
         seconds: how much processor time a case may take.
         chunk: how many cases a process is given at once.
+        reads_here_only: whether no file outside its folder may be opened.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Kind:
     few: int = 20
     seconds: float = 2.0
     chunk: int = 1000
+    reads_here_only: bool = False
 
 
 def command(*words: str) -> tuple[int, str, str]:

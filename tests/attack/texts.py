@@ -97,8 +97,8 @@ def texts(kind: str, folder: Path) -> Attack:
     return case
 
 
-RUN = ("run", "--tables", "quality,depth", "--encoding", "xyz,octahedral", "--storage", "rg8,rgba8")
-RUN += ("--normals", "axes", "--depth", "linear", "--backend", "jax")
+RUN = ("run", "--tables", "quality,frames", "--encoding", "xyz,octahedral", "--storage", "rg8,rgba8,rgb10a2")
+RUN += ("--normals", "axes", "--backend", "jax", "--count", "4096")
 CHECK = (
     '[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 1"\n[[gate]]\ntable = "depth"\nerror_max = "at most 9"\n'
 )
@@ -141,7 +141,7 @@ def runs(commands: str, folder: Path) -> Attack:
 
 
 KINDS = (
-    *(Kind(f"text: {kind}", partial(texts, kind), 3000, 100) for kind in TEXTS),
-    Kind("run: read", partial(runs, "report,compare,compare back,check"), 6000, 60, chunk=1500),
-    Kind("run: page and going on", partial(runs, "page,go on"), 200, 2, seconds=30.0, chunk=100),
+    *(Kind(f"text: {kind}", partial(texts, kind), 3000, 100, reads_here_only=True) for kind in TEXTS),
+    Kind("run: read", partial(runs, "report,compare,compare back,check"), 6000, 40, chunk=1500),
+    Kind("run: page and going on", partial(runs, "page,go on"), 200, 0, seconds=30.0, chunk=100),
 )

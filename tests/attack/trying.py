@@ -84,7 +84,10 @@ def tried(chunk: Chunk) -> tuple[Counter[str], list[str]]:
     here = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="attack-", ignore_cleanup_errors=True) as folder:
         try:
-            attack = kind.prepare(Path(folder))
+            try:
+                attack = kind.prepare(Path(folder))
+            except Exception as error:
+                return Counter({ODD: 1}), [f"not begun: {error}"]
             for seed in range(chunk.first, chunk.first + chunk.count):
                 ended, why = one(attack, kind, seed)
                 counts[ended] += 1

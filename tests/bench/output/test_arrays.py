@@ -24,19 +24,6 @@ def npy(array) -> bytes:
     return file.getvalue()
 
 
-def flipped(data: bytes, rng) -> bytes:
-    """With one bit changed, a part cut out, or the end missing."""
-    made, at = bytearray(data), int(rng.integers(len(data)))
-    kind = rng.integers(3)
-    if kind == 0:
-        made[at] ^= 1 << int(rng.integers(8))
-    elif kind == 1:
-        del made[at : at + int(rng.integers(1, 9))]
-    else:
-        del made[at:]
-    return bytes(made)
-
-
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_what_was_written_is_read(tmp_path, order):
     path = tmp_path / "a.npz"
@@ -45,19 +32,6 @@ def test_what_was_written_is_read(tmp_path, order):
         assert np.array_equal(found, array) and found.dtype == array.dtype
     (tmp_path / "a.npy").write_bytes(npy(ARRAYS["mean"]))
     assert np.array_equal(read_npy(tmp_path / "a.npy", 4096), ARRAYS["mean"])
-
-
-def test_ten_thousand_damaged_files_are_read_or_refused(tmp_path):
-    rng, path = np.random.default_rng(0), tmp_path / "a"
-    whole, refused = {"npz": npz(**ARRAYS), "npy": npy(ARRAYS["mean"])}, 0
-    for turn in range(10_000):
-        kind = ("npz", "npy")[turn % 2]
-        path.write_bytes(flipped(whole[kind], rng))
-        try:
-            read_npz(path, list(ARRAYS)) if kind == "npz" else read_npy(path, 4096)
-        except DamagedError:
-            refused += 1
-    assert refused > 5000
 
 
 def test_what_would_grow_is_not_unpacked(tmp_path):

@@ -1,0 +1,37 @@
+"""A short form of `python -m tests.attack`: every kind that takes no process of its own, from the first seeds."""
+
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from attack.trying import KINDS, ODD, one
+
+FEW = [kind for kind in KINDS if kind.few]
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind", FEW, ids=[kind.name for kind in FEW])
+def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, tmp_path, monkeypatch, opened):
+    """Soon, and no file is opened that lies elsewhere."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    attack, counts = kind.prepare(tmp_path), Counter()
+    began = time.process_time()
+    for seed in range(kind.few):
+        opened.clear()
+        ended, why = one(attack, kind, seed)
+        counts[ended] += 1
+        assert ended != ODD, f"seed {seed}: {why}"
+        if kind.reads_here_only:
+            outside = [name for name in opened if not _is_known(tmp_path / name, tmp_path)]
+            assert not outside, (seed, outside)
+    assert time.process_time() - began < kind.few * kind.seconds
+    assert len(counts) == 2, f"changes must be both harmless and harmful: {counts}"
+
+
+def _is_known(path: Path, folder: Path) -> bool:
+    """Of the test's folder, or what Python and its packages read when they are first used."""
+    ours = any(path.is_relative_to(root) for root in (folder, sys.prefix, sys.base_prefix))
+    return ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt"
