@@ -7,6 +7,7 @@ catalogue, so that an encoding that cannot be imported is said in one line.
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from contextlib import suppress
@@ -197,7 +198,7 @@ def main() -> int:
     told.clear()
     try:
         if sys.stdout is None:
-            raise UsageError("standard output is closed; name a file with -o")
+            _without_output(sys.argv)
         # Alone, the command shows its help; that is no error.
         status = app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
         if status == INTERRUPTED:
@@ -221,6 +222,13 @@ def main() -> int:
         abandon_output()
         _say(f"cannot write: {error.strerror or error}")
         return UsageError.exit_code
+
+
+def _without_output(words: list[str]) -> None:
+    """Standard output is closed: what is written there goes nowhere. Raises UsageError where no file is named."""
+    if not any(word.startswith("--output") or re.match("-[a-z]*o", word) for word in words):
+        raise UsageError("standard output is closed; name a file with -o")
+    sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 # until the process ends
 
 
 def program() -> NoReturn:

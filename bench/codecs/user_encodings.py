@@ -21,7 +21,7 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
-from ..output.errors import UsageError, pick, tell
+from ..output.errors import UsageError, check_comma, pick, tell
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
@@ -47,6 +47,7 @@ def encodings_named(names: str) -> list[Encoding]:
     Raises:
         UsageError: an unknown name, or nothing left.
     """
+    check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
     files, complaints = _read_all([word for word in words if word.endswith(ENDING)])
     rest = [word for word in words if word in files or not word.endswith(ENDING)]

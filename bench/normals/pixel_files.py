@@ -28,6 +28,7 @@ from . import png
 # An 8K frame; and all the channels of a file together, which the library reads at once.
 MAX_PIXELS = 2**25
 MAX_NUMBERS = 2**29
+MAX_CHANNELS = 1024
 SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are read: crop it"
 SECONDS = 120
 EXR = "openexr"
@@ -98,6 +99,8 @@ def _bytes(path: Path) -> bytes:
 
 def check_pixels(path: Path, pixels: int, channels: int) -> None:
     """Raises UsageError where an image is larger than is read."""
+    if channels > MAX_CHANNELS:
+        raise refused(path, f"{channels} channels", f"at most {MAX_CHANNELS} are read")
     if pixels > MAX_PIXELS or pixels * channels > MAX_NUMBERS:
         raise refused(path, f"{pixels} pixels of {channels} channels", SMALLER)
 

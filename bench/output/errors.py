@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
@@ -67,6 +68,7 @@ def pick_or_read(
     Raises:
         UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
     """
+    check_comma(names)
     words = list(dict.fromkeys(name.strip() for name in names.split(",") if name.strip()))
     files = [Path(word) for word in words if Path(word).suffix.lower() in endings]
     called = [file.name for file in files]
@@ -79,6 +81,13 @@ def pick_or_read(
     except UsageError as error:
         raise UsageError(f"{error}; or a file that ends in {', '.join(endings)}") from None
     return chosen + [read(file) for file in files]
+
+
+def check_comma(names: str) -> None:
+    """Raises UsageError where a file is named whose name has a comma."""
+    with suppress(OSError, ValueError):
+        if "," in names and Path(names).is_file():
+            raise UsageError(f"{names}: a comma in a file's name separates two names; rename the file")
 
 
 def quoted(names: Iterable[str]) -> str:

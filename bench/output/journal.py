@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import json
 import os
@@ -43,6 +44,8 @@ class Journal:
         """
         start, rest = self._file.seek(0, os.SEEK_END), json.dumps(line).encode() + b"\n"
         try:
+            if not os.fstat(self._file.fileno()).st_nlink:
+                raise OSError(errno.ENOENT, "it was deleted meanwhile")
             while rest:
                 rest = rest[self._file.write(rest) :]
             os.fsync(self._file.fileno())

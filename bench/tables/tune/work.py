@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from ...codecs.tuned_names import TABLE as LOOK_UP
 from ...codecs.user_encodings import encodings_named
 from ...machine.devices import require_jax
 from ...normals.normal_names import normal_sets_named
+from ...normals.normal_sets import NormalSet
 from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, pick, tell
 from ...output.writing import check_writable, whole_file
@@ -85,7 +86,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
-    _one("error", pick("error", options.error, {name: name for name in POWERS}))
+    _one("error", lambda names: pick("error", names, {name: name for name in POWERS}), options.error)
     if table and not chosen.has_table:
         raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
     if table and set(str(table)) & {MARK, ","}:
@@ -111,8 +112,8 @@ def _write(done: Measured, _: Tick) -> None:
 
 def chosen_of(name: str, options: TuneOptions) -> Chosen:
     """What an encoding's name and `--parameter` ask for. Raises UsageError where there is nothing of it."""
-    encoding = _one("encoding", encodings_named(name))
-    storage = _one("storage", storages_named(options.storage))
+    encoding = _one("encoding", encodings_named, name)
+    storage = _one("storage", storages_named, options.storage)
     codec = Codec(encoding, storage)
     if not codec.fits:
         raise UsageError(f"{codec.name}: {codec.misfit}")
@@ -135,7 +136,12 @@ def _others(codec: Codec) -> Iterator[str]:
         yield LOOK_UP
 
 
-def _one(what: str, found: list[Any]) -> Any:
+def _one(what: str, named: Callable[[str], list[Any]], text: str) -> Any:
+    """The one that a text names. Raises UsageError; what it lists of the known ones is what can be tuned."""
+    try:
+        found = named(text)
+    except UsageError as error:
+        raise UsageError(str(error).replace("; known: all, ", "; known: ")) from None
     if len(found) != 1:
         raise UsageError(f"one {what} at a time is tuned, not {len(found)}")
     return found[0]
@@ -144,8 +150,12 @@ def _one(what: str, found: list[Any]) -> Any:
 def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     check_seed(options.seed)
     needs_rays = chosen.codec.encoding.domain == "view"
-    sets = normal_sets_named(options.normals, checked_count(options.count), options.seed, options.reading, needs_rays)
-    return halves_of(_one("normal set", sets), options.seed, by_tiles=chosen.has_table)
+    count = checked_count(options.count)
+
+    def named(text: str) -> list[NormalSet]:
+        return normal_sets_named(text, count, options.seed, options.reading, needs_rays)
+
+    return halves_of(_one("normal set", named, options.normals), options.seed, by_tiles=chosen.has_table)
 
 
 def tuned_codec(codec: Codec, found: Tuned, scales: np.ndarray | None, table: Path | None) -> Codec:

@@ -170,6 +170,8 @@ BAD = {
     "a rounding": (["quality", "--rounding", "up"], ["'up'", "nearest", "truncate"]),
     "a list": (["list", "cars"], ["'cars'", "encodings", "storages"]),
     "no name": (["quality", "--encoding", ","], ["no encoding named", "octahedral"]),
+    "nothing to tune": (["tune", "nope"], ["'nope'; known: xyz", "octahedral"]),
+    "all to tune": (["tune", "all"], ["one encoding at a time"]),
     "no normals": (["quality", "--count", "0"], ["--count 0", "4294967296"]),
     "negative count": (["quality", "--count", "-5"], ["--count -5"]),
     "too many": (["quality", "--count", "99999999999"], ["99999999999", "4294967296"]),
