@@ -113,6 +113,9 @@ def _read_image(path: Path, choose: Choice) -> Pixels:
     data = _bytes(path)
     if not re.match(start, data, re.DOTALL):
         raise refused(path, f"no {path.suffix[1:].upper()} file, by its first bytes")
+    if kind == "png" and max(png.sides(data)) > png.MAX_SIDE:
+        width, height = png.sides(data)
+        raise refused(path, f"{width} x {height} pixels", f"at most {png.MAX_SIDE} a side are read")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         _in_a_process(path, kind, out, "header")

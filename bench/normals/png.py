@@ -14,6 +14,15 @@ CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of each colour type
 ADAM7 = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2))
 
 
+# The widest and highest that libpng reads.
+MAX_SIDE = 1_000_000
+
+
+def sides(data: bytes) -> tuple[int, int]:
+    """Width and height as the header says them; nothing for a file without one."""
+    return struct.unpack(">II", data[16:24]) if len(data) >= 24 else (0, 0)
+
+
 def has_surplus(data: bytes) -> bool:
     """Whether an image has more rows than its header says; no more of them is unpacked than that.
 
