@@ -205,6 +205,6 @@ def archives(kind: str, folder: Path) -> Attack:
 
 KINDS = (
     *(Kind(f"picture: {kind}", partial(pictures, kind), 3000, 60) for kind in PIXELS),
-    *(Kind(f"mesh: {kind}", partial(meshes, kind), 2000, 60, reads_here_only=True) for kind in MESHES),
-    *(Kind(f"archive: {kind}", partial(archives, kind), 6000, 300, chunk=2000) for kind in ("npz", "npy", "table")),
+    *(Kind(f"mesh: {kind}", partial(meshes, kind), 1800, 60, reads_here_only=True) for kind in MESHES),
+    *(Kind(f"archive: {kind}", partial(archives, kind), 12_000, 300, chunk=2000) for kind in ("npz", "npy", "table")),
 )

@@ -68,4 +68,4 @@ def ended(process: subprocess.Popen[str], seconds: float) -> tuple[int, str, str
     return process.returncode, "", err
 
 
-KINDS = (Kind("interruption", interruptions, 60, 0, seconds=400.0, chunk=15),)
+KINDS = (Kind("interruption", interruptions, 40, 0, seconds=400.0, chunk=10),)

@@ -141,7 +141,7 @@ def runs(commands: str, folder: Path) -> Attack:
 
 
 KINDS = (
-    *(Kind(f"text: {kind}", partial(texts, kind), 3000, 100, reads_here_only=True) for kind in TEXTS),
-    Kind("run: read", partial(runs, "report,compare,compare back,check"), 6000, 40, chunk=1500),
-    Kind("run: page and going on", partial(runs, "page,go on"), 200, 0, seconds=30.0, chunk=100),
+    *(Kind(f"text: {kind}", partial(texts, kind), 3400, 100, reads_here_only=True) for kind in TEXTS),
+    Kind("run: read", partial(runs, "report,compare,compare back,check"), 3000, 40, chunk=1500),
+    Kind("run: page and going on", partial(runs, "page,go on"), 60, 0, seconds=30.0, chunk=30),
 )

@@ -109,4 +109,4 @@ def odd_words(folder: Path) -> Attack:
     return case
 
 
-KINDS = (Kind("words", odd_words, 12_000, 130, seconds=10.0, chunk=400),)
+KINDS = (Kind("words", odd_words, 2500, 130, seconds=10.0, chunk=400),)
