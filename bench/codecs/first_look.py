@@ -35,6 +35,8 @@ from .user_encodings import read_encoding
 
 RANDOM = 4096
 NOT_ASKED = "the twin is looked at by itself"
+# Letters of a compiler's message; what follows the first errors follows from them.
+LONGEST = 1000
 # Twins whose numbers are farther apart, for more than this share of directions, are two encodings.
 APART, APART_SHARE = 1e-3, 0.01
 
@@ -72,7 +74,8 @@ def first_look(path: Path) -> dict[str, Any]:
 def _of_compiler(path: Path, said: str) -> str:
     """A compiler's message with the user's file at its begin."""
     line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
-    return line if path.name in line else f"{path}: {line}"
+    named = line if path.name in line else f"{path}: {line}"
+    return named if len(named) <= LONGEST else f"{named[:LONGEST]} ..."
 
 
 def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> dict[str, Any]:

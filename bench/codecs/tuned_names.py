@@ -8,7 +8,7 @@ import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
-from ...encodings.files import called
+from ...encodings.codecs.files import called
 from ..output.arrays import DamagedError, read_npy
 from ..output.errors import UsageError
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
-from ...encodings.files import called
+from ...encodings.codecs.files import called
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores

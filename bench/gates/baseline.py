@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...encodings.files import file_text
+from ...encodings.codecs.files import file_text
 from ...reports.tables import to_json
 from ..options.option import fields_of
 from ..output.errors import UsageError

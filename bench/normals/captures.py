@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...encodings.files import called, file_text
+from ...encodings.codecs.files import called, file_text
 from ..options.option import Reading
 from ..output.errors import UsageError, pick
 from .normal_sets import NormalSet, from_arrays

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from ...encodings.files import called
+from ...encodings.codecs.files import called
 from ...gbuffer.scenes.files import read as files
 from ..options.counts import checked_sides
 from ..options.option import Reading

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from ...encodings.files import called
+from ...encodings.codecs.files import called
 from ...gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ...gbuffer.scenes.files.mesh_file import MeshFile
 from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file

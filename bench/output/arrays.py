@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...encodings.files import file_bytes
+from ...encodings.codecs.files import file_bytes
 
 # Of an archive's arrays together; the largest that this program writes is a few megabytes.
 MOST_BYTES = 64 << 20

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...encodings.files import file_text
+from ...encodings.codecs.files import file_text
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal, read_lines
 from ..output.writing import check_folder, whole_file

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import MOST_TEXT, file_bytes
+from .files import MOST_TEXT, file_bytes
 
 DIGITS = 16
 _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)

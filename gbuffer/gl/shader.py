@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from ...encodings.files import file_text
+from ...encodings.codecs.files import file_text
 
 ROOM = Path(__file__).parents[1]
 SUFFIXES = (".glsl", ".vert", ".frag", ".comp")

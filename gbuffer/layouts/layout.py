@@ -22,7 +22,7 @@ from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
-from ...encodings.files import called, file_text
+from ...encodings.codecs.files import called, file_text
 from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).

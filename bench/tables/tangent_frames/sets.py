@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ....encodings.files import called
+from ....encodings.codecs.files import called
 from ....encodings.rotation import frame_of_quaternion
 from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS

@@ -68,7 +68,6 @@ def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
 
 
 def step(**row) -> str:
-    sys.set_int_max_str_digits(0)
     return json.dumps({"table": "quality", "key": {}, "rows": [row]})
 
 
@@ -86,7 +85,7 @@ def step(**row) -> str:
         (ROWS, '{"table": "quality", "key": {}, "rows": [1]}', "line 1, row 1: 1 is no object"),
         (ROWS, step(psnr_db="47.5"), "line 1, row 1, psnr_db: '47.5' is no number"),
         (ROWS, step(psnr_db=10**400), "line 1, row 1, psnr_db: 1000000000000000000000000000000000000000… is too large"),
-        (ROWS, step(count=10**5000), "is too large"),
+        (ROWS, step(count="many").replace('"many"', "9" * 5000), "line 1 was damaged"),
         (ROWS, step(psnr_db={"a": 1}), "row 1, psnr_db: {'a': 1} is neither text nor a number"),
         (ROWS, step(encoding=["xyz"]), "row 1, encoding: ['xyz'] is neither text nor a number"),
     ],
