@@ -14,7 +14,7 @@ float sign_not_zero(float v) { return v < 0.0 ? -1.0 : 1.0; }
 float number_of(float index, int levels) { return index * (2.0 / float(levels - 1)) - 1.0; }
 float index_of(float number, int levels) { return floor((number * 0.5 + 0.5) * float(levels - 1) + 0.5); }
 
-// v itself, or (0, 0, 1) where it is no direction: zero, NaN or infinite.
+// v itself, or (0, 0, 1) where it is not a direction: zero, NaN or infinite.
 vec3 direction_or_forward(vec3 v) {
     float length2 = dot(v, v);
     return length2 > TINY && length2 < 1.0 / TINY ? v : vec3(0.0, 0.0, 1.0);

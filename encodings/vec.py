@@ -221,7 +221,7 @@ def index_of(number, levels: int):
 
 
 def direction_or_forward(v: Vec3) -> Vec3:
-    """`v` itself, or (0, 0, 1) where it is no direction: zero, NaN or infinite.
+    """`v` itself, or (0, 0, 1) where it is not a direction: zero, NaN or infinite.
 
     Every path into an encoder goes through this once, so that no input makes a texel that is not a number: arrays in
     `from_array`, pixels in the shader that encodes them.
@@ -251,7 +251,7 @@ def depth_or_far(depth, far):
 
 
 def from_array(array) -> Vec3:
-    """Planes of an array of unit vectors of shape (..., 3), as float32; what is no direction becomes (0, 0, 1).
+    """Planes of an array of unit vectors of shape (..., 3), as float32; what is not a direction becomes (0, 0, 1).
 
     Raises:
         ValueError: another shape.

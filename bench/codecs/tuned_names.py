@@ -19,7 +19,7 @@ def tuned(word: str) -> Encoding:
     """The encoding that a name with parameters stands for.
 
     Raises:
-        UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is no table.
+        UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is not a table.
     """
     name, *settings = word.split(MARK)
     if name not in ENCODINGS:

@@ -19,7 +19,7 @@ from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Table
 
 Entry = dict[str, Any]
-# How a row was measured, which is no figure of it.
+# How a row was measured, which is not a figure of it.
 HOW = ("device", "rounded_by", "clock")
 
 
@@ -42,13 +42,13 @@ def _is_kept(table: Table, name: str) -> bool:
 
 
 def read_baseline(path: Path) -> dict[str, Entry]:
-    """The entries of a file, by their keys. Raises UsageError where it is no baseline."""
+    """The entries of a file, by their keys. Raises UsageError where it is not a baseline."""
     try:
         entries = json.loads(file_text(path))
         if not isinstance(entries, list):
             raise ValueError("it holds something else")
     except (OSError, ValueError, RecursionError) as error:
-        raise UsageError(f"{path} is no baseline: {error}") from error
+        raise UsageError(f"{path} is not a baseline: {error}") from error
     from ..results.schema import check_entry
 
     for number, one in enumerate(entries, 1):
@@ -95,7 +95,7 @@ class Baseline:
 
         Raises:
             AssertionError: the file has no such row.
-            UsageError: it is no baseline.
+            UsageError: it is not a baseline.
         """
         if self._read is None:
             self._read = read_baseline(self.path) if self.path.exists() else {}
@@ -132,7 +132,7 @@ def _near(one: Any, other: Any, tolerance: float) -> bool:
 
 
 def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:
-    """Raises UsageError for a column that there is not, or what is no tolerance."""
+    """Raises UsageError for a column that there is not, or what is not a tolerance."""
     for column, value in tolerances.items():
         if column not in columns:
             raise UsageError(f"no column {column!r}; there are {', '.join(columns)}")

@@ -25,7 +25,7 @@ class Limit:
     value: float
 
     def holds(self, figure: Any) -> bool:
-        """Whether a figure keeps it; what is no number does not."""
+        """Whether a figure keeps it; what is not a number does not."""
         if isinstance(figure, bool) or not isinstance(figure, int | float) or math.isnan(figure):
             return False
         return figure >= self.value if self.side == "at least" else figure <= self.value
@@ -70,7 +70,7 @@ def limit(column: str, text: Any) -> Limit | None:
     if not match:
         return None
     if not NUMBER.fullmatch(match[2]):
-        raise UsageError(f"{column}: {match[2][:40]} is no number")
+        raise UsageError(f"{column}: {match[2][:40]} is not a number")
     return Limit(column, match[1].lower(), float(match[2]))
 
 

@@ -19,7 +19,7 @@ _RULES = (
     ("memory", r"v_interp_|lds_|ds_|buffer_|tbuffer_|image_|global_|flat_|scratch_|exp|s_load|s_buffer_load|s_store"),
     ("waiting", r"s_(wait|nop|clause|delay|end|code_end|inst_prefetch|set_inst|setprio|sleep|barrier|ttrace|sendmsg)"),
     ("transcendental", r"v_(s_)?(rcp|rsq|sqrt|log|exp|sin|cos)_"),
-    # From bytes, and into two halves at once, is no conversion of the slow sort.
+    # From bytes, and into two halves at once, is not a conversion of the slow sort.
     ("conversion", r"v_cvt_(?!f32_ubyte|pk)"),
     # Products of 32-bit integers.
     ("quarter_rate", r"v_mul_(lo|hi)_[iu]32(?!_[iu]24)|v_mad_[iu]64_"),

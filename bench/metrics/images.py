@@ -30,6 +30,6 @@ def flip(image: np.ndarray, reference: np.ndarray) -> float:
     """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images, 0 to 1, at its usual 67 pixels a degree."""
     from flip_evaluator import evaluate
 
-    # It passes over a pixel that is no number; as black it differs.
+    # It passes over a pixel that is not a number; as black it differs.
     exact, measured = (np.nan_to_num(i).astype(np.float32) for i in (reference, image))
     return float(evaluate(exact, measured, "LDR", applyMagma=False, computeMeanError=True)[1])

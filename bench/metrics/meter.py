@@ -59,14 +59,16 @@ def angle_between(a: Vec3, b: Vec3):
 
 
 def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
-    """Decodes, the opposite direction where one is no number; and which of them are numbers."""
+    """Decodes, the opposite direction where one is not a number; and which of them are numbers."""
     finite = jnp.isfinite(dot(decoded, decoded))
     return select(finite, decoded, -n), finite
 
 
 def _errors(n: Vec3, decoded: Vec3, covered):
-    """Per normal: squared error, the article's squared error, angle, and 1 where the decode is no number, which counts
-    as the opposite direction."""
+    """Per normal: squared error, the article's squared error, angle, and 1 where the decode is not a number.
+
+    Such a decode counts as the opposite direction.
+    """
     decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
     # The article's difference image was |n - n'| in eight bits per channel.

@@ -16,7 +16,7 @@ from ..output.errors import UsageError, pick
 from .normal_sets import NormalSet, from_arrays
 from .pixel_files import READERS, Pixels, read_pixels, refused
 
-# Shorter is no direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
+# Shorter is not a direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
 BACKGROUND = 0.02
 # 8 bits cut off are up to 0.014 off, a filter at an edge more.
 UNIT_WITHIN = 0.05
@@ -207,7 +207,7 @@ def view_matrix(reading: Reading) -> np.ndarray | None:
     """What turns the file's normals to view space, (3, 3) for column vectors; None where they are there.
 
     Raises:
-        UsageError: an unknown space, world space without a matrix, or a matrix that is no rotation.
+        UsageError: an unknown space, world space without a matrix, or a matrix that is not a rotation.
     """
     matrix = pick("space", reading.space, dict(zip(SPACES, SPACES.items(), strict=True)))
     if len(matrix) != 1:

@@ -36,7 +36,7 @@ def check_seed(seed: int) -> None:
 
 
 def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
-    """Width and height of "WxH". Raises UsageError for what is no size, or beyond the most that `where` can do."""
+    """Width and height of "WxH". Raises UsageError for what is not a size, or beyond the most that `where` can do."""
     match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
     if not match or not all(1 <= int(side) <= most for side in match.groups()):
         raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")

@@ -13,7 +13,7 @@ def layouts_named(names: str) -> list[Layout]:
     """The layouts that comma-separated names stand for.
 
     Raises:
-        UsageError: an unknown name, or a file that is no layout.
+        UsageError: an unknown name, or a file that is not a layout.
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
     known = {**LAYOUTS, **{name: _read(Path(name)) for name in words if name.endswith(".toml")}}

@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 def check_scale(scale: float) -> None:
-    """Raises UsageError for what is no share of a size."""
+    """Raises UsageError for what is not a share of a size."""
     if not 0.05 <= scale <= 1:
         raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
 

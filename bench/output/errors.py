@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 T = TypeVar("T")
-# Letters of a line: what a word of thousands would make of it is no message.
+# Letters of a line: what a word of thousands would make of it is not a message.
 LONGEST = 1500
 
 

@@ -97,5 +97,5 @@ def _parsed(place: str, line: bytes) -> Line:
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict):
-        raise UsageError(f"{place} was damaged: it is no line that was written here; take it out to measure it again")
+        raise UsageError(f"{place} was damaged: it is not a line of JSON; take it out to measure it again")
     return found

@@ -127,7 +127,7 @@ class Measured:
 
         Raises:
             AssertionError: one does not: the figure, the limit, and the worst normal.
-            UsageError: there is no such column, or it is no limit.
+            UsageError: there is no such column, or it is not a limit.
         """
         if not limits:
             raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
@@ -192,7 +192,7 @@ class Measured:
 def _limit(column: str, text: Any) -> Limit:
     found = limit(column, text)
     if not found:
-        raise UsageError(f'{column}: {text!r} is no limit; say "at least 47.5" or "at most 0.95"')
+        raise UsageError(f'{column}: {text!r} is not a limit; say "at least 47.5" or "at most 0.95"')
     return found
 
 

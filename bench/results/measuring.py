@@ -136,7 +136,7 @@ class Beside:
 
 
 def _checked(kept: Journal) -> list[Row]:
-    """The lines below the first. Raises UsageError where one is no step."""
+    """The lines below the first. Raises UsageError where one is not a step."""
     if lines := kept.lines[1:]:
         from .schema import check_kept
 

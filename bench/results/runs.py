@@ -128,7 +128,7 @@ def _facts(folder: Path) -> Row:
     try:
         facts = json.loads(file_text(folder / RUN))
     except (OSError, ValueError, RecursionError) as error:
-        raise UsageError(f"{folder} is no results folder: {RUN} cannot be read ({error})") from error
+        raise UsageError(f"{folder} is not a results folder: {RUN} cannot be read ({error})") from error
     check_facts(facts, str(folder / RUN))
     return facts
 

@@ -26,7 +26,7 @@ def _scalar(value: Any) -> Any:
 
 def _number(value: Any) -> Any:
     if isinstance(value, str):
-        raise ValueError("is no number")
+        raise ValueError("is not a number")
     return _scalar(value)
 
 
@@ -81,11 +81,11 @@ KEPT = TypeAdapter(KeptLine)
 NUMBERS, SCALARS = TypeAdapter(dict[str, Number]), TypeAdapter(dict[str, Scalar])
 # By pydantic's names of what is wrong.
 WRONG = {
-    "string_type": "is no text",
-    "list_type": "is no list",
-    "dict_type": "is no object",
+    "string_type": "is not text",
+    "list_type": "is not a list",
+    "dict_type": "is not an object",
     "bool_type": "is neither true nor false",
-    "int_type": "is no whole number",
+    "int_type": "is not a whole number",
 }
 
 
@@ -95,19 +95,19 @@ def check_facts(facts: Any, place: str) -> None:
 
 
 def check_step(line: Any, place: str) -> None:
-    """Raises UsageError where a line of a run is no step, or a figure is no number."""
+    """Raises UsageError where a line of a run is not a step, or a figure is not a number."""
     _check(STEP, line, [place])
     for number, row in enumerate(line["rows"], 1):
         _check_row(line["table"], row, [place, f"row {number}"])
 
 
 def check_kept(line: Any, place: str) -> None:
-    """Raises UsageError where a line kept beside an output file is no step."""
+    """Raises UsageError where a line of a file of kept rows is not a step."""
     _check(KEPT, line, [place])
 
 
 def check_entry(entry: Any, place: str) -> None:
-    """Raises UsageError where an entry of a baseline is none, or a figure is no number."""
+    """Raises UsageError where an entry of a baseline is not one, or a figure is not a number."""
     _check(ENTRY, entry, [place])
     _check_row(entry["table"], entry["row"], [place])
 

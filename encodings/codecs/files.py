@@ -15,14 +15,14 @@ def file_bytes(path: Path, most: int) -> bytes:
     """What a file of at most so many bytes holds.
 
     Raises:
-        OSError: it cannot be read, is larger, or is no plain file: a pipe may never end.
+        OSError: it cannot be read, is larger, or is not a plain file: a pipe may never end.
         ValueError: no file can have such a name.
     """
     # Without O_NONBLOCK, opening a pipe waits for whoever writes to it.
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
-            raise OSError(errno.EINVAL, "it is no plain file")
+            raise OSError(errno.EINVAL, "it is not a plain file")
         data = file.read(min(found.st_size, most) + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MiB")

@@ -171,7 +171,7 @@ def storage_of(name: str) -> Storage | None:
 
 
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
-# Blending and clearing convert colours of it to linear light and back; it is no format for numbers that are not light.
+# Blending and clearing convert its colours to linear light and back: it is a format for light alone.
 SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)
 
 # What holds light.

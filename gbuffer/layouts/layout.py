@@ -272,7 +272,7 @@ def read_layout(path: Path) -> Layout:
     `packing` and `depth` where they are not the usual.
 
     Raises:
-        LayoutError: it cannot be read, or is no layout; one line.
+        LayoutError: it cannot be read, or is not a layout; one line.
     """
     try:
         data = tomllib.loads(file_text(path))

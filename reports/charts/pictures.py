@@ -72,7 +72,7 @@ def picture(image: np.ndarray) -> np.ndarray:
 
 
 def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """How far two images as displayed are apart, times RENDER_GAIN, in bytes; what is no number is as far as can be."""
+    """How far two displayed images are apart, times RENDER_GAIN, in bytes; NaN is as far as can be."""
     return _bytes(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
 
 

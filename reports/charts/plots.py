@@ -221,7 +221,7 @@ def depth_figure(rows: Sequence[dict[str, Any]]) -> Any:
 
 
 def _depth_lines(rows: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """The rows of each line by its name, in order of the distance; rows whose error is no number are left out."""
+    """The rows of each line by its name, in order of the distance; rows whose error is not a number are left out."""
     several = len({(row["depth"], row["rebuilt"]) for row in rows}) > len({row["depth"] for row in rows})
     lines: dict[str, list[dict[str, Any]]] = {}
     for row in sorted(rows, key=lambda row: row["distance"]):

@@ -49,7 +49,7 @@ all all,all nope none -1 0 1 nan inf -inf 1e999 1e-999 0x10 1,2 xyz,xyz xyz, XYZ
 stereographic:scale=nan stereographic:scale= best_fit:table=nowhere.npy --format=json
 . .. / /dev/null /dev/zero ~ * ? [ \\ ' " `id` $(id) ; | %s {} {0} no.png no.glsl no.toml no.npy é 日本
 pipe pipe.png pipe.npy pipe.glsl pipe.toml pipe.glb loop.png loop.toml run run/run.json list.npy ../x.toml
-marked.toml marked.glsl binary.toml binary.glsl sealed.toml sealed.png a,b.png ='x'.png /root/x.toml
+marked.toml marked.glsl binary.toml binary.glsl sealed.toml sealed.png a,b.png ='x'.png /nowhere/x.toml
 empty.png empty.toml empty.npy empty.glsl empty.obj /proc/self/mem /proc/self/environ
 """
 ODD = ("", " ", ",", ",,", "\x07", "\x1b[31m", "\x00", "\r", "\n", "a\nb", "\u202e", "\udcff", "\ufeff", "\U0001d51b")

@@ -338,7 +338,7 @@ def test_the_sign_of_z_survives_at_the_least_depths(gl, name, storage, backend):
 @pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
 def test_whatever_comes_in_a_number_is_stored(gl, codec):
     """NaN, infinity and what is beyond far are stored as far is, under their sign where there is one; without one a
-    negative depth is stored as 0 is. Both languages, and no texel that is no number."""
+    negative depth is stored as 0 is. Both languages, and no texel that is not a number."""
     camera = CAMERAS[0]
     beyond = ~(abs(STRANGE) <= camera.far)
     magnitudes = np.where(beyond, np.float32(camera.far), abs(STRANGE))

@@ -126,7 +126,7 @@ def decoded(name: str, codes: np.ndarray) -> np.ndarray:
 
 
 def in_ulps(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """The largest difference of each row, in 2^-23; what is no number is as far as can be."""
+    """The largest difference of each row, in 2^-23; what is not a number is as far as can be."""
     apart = np.abs(one.astype(np.float64) - other).max(axis=1) / ULP
     return np.where(np.isfinite(other).all(axis=1), apart, np.inf)
 

@@ -86,7 +86,7 @@ def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def in_ulps(one: np.ndarray, other: np.ndarray, of: np.ndarray) -> np.ndarray:
     """The largest difference in units in the last place of a number. What is below 2^-126 may be 0 in either language;
-    what is no number is as far as can be."""
+    what is not a number is as far as can be."""
     difference = np.abs(one.astype(np.float64) - other).max(axis=1)
     ulps = np.where(difference < 2.0**-126, 0, difference) / of / ULP
     return np.where(np.all(np.isfinite(other), axis=1), ulps, np.inf)

@@ -56,7 +56,7 @@ def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, ro
     row.assert_that(**{column: f"at most {most}" for column, most in at_most.items()})
 
 
-# Cigolle et al. 2014, table 2: mean and the largest of their samples. SNORM10 is no format of a render target.
+# Cigolle et al. 2014, table 2: mean and the largest of their samples. SNORM10 is not a format of a render target.
 PUBLISHED = [
     (Codec(ENCODINGS["octahedral"], STORAGES["rg8_snorm"]), 0.33709, 0.94424),
     (Codec(ENCODINGS["xyz_renormalised"], STORAGES["rgba8_snorm"]), 0.17015, 0.38588),

@@ -155,7 +155,7 @@ BAD_TEXTS = {
     ),
     "no glTF": ("a.gltf", "{", ["its JSON", "cannot be read"]),
     "a deep glTF": ("a.gltf", "[" * 100_000, ["its JSON", "cannot be read"]),
-    "a glTF list": ("a.gltf", "[]", ["is no object"]),
+    "a glTF list": ("a.gltf", "[]", ["is not an object"]),
     "a PLY index": ("a.ply", ply("ascii", [[0, 1, 3]]).decode(), ["names vertex 3", "there are 3"]),
     "a negative PLY index": ("a.ply", ply("ascii", [[0, 1, -1]]).decode(), ["names vertex -1"]),
 }

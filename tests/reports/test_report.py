@@ -176,7 +176,7 @@ def test_an_empty_run_is_a_page(run, tmp_path):
 @pytest.mark.parametrize(
     "arguments, said",
     [
-        (["{tmp}"], "is no results folder"),
+        (["{tmp}"], "is not a results folder"),
         (["{run}", "-o", "{tmp}"], "is a folder; name a file"),
         (["{run}", "-o", "/proc/nowhere/page.html"], "cannot write"),
         (["{run}", "--markdown", "-o", "/proc/nowhere/page.md"], "cannot write"),

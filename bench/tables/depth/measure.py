@@ -152,7 +152,7 @@ class Measured:
     """Points through a codec, float64 arrays of shape (count,).
 
     Attributes:
-        errors: between the true position and the rebuilt one; infinite where that is no position.
+        errors: between the true position and the rebuilt one; infinite where that is not a position.
         half_steps: how far half a step of the storage may move the position.
         bounds: the same with float32 arithmetic.
         lost: bool, whether the depth's sign came back as the other; never where the encoding keeps none.

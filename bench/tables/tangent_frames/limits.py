@@ -2,7 +2,7 @@
 
 By Haar's measure a ball of rotations by up to theta is (theta - sin theta) / pi of all of them. The ball that is the
 Nth part bounds what any code can be nearest to, so no N codes have a maximum below its theta, nor a mean or a mean
-square below the ball's own. A mirrored frame is no rotation: each of the two hands has half of the codes.
+square below the ball's own. A mirrored frame is not a rotation: each of the two hands has half of the codes.
 """
 
 from __future__ import annotations

@@ -111,7 +111,7 @@ class Total:
 
 def frame_angles(given: Frames, found: Frames) -> np.ndarray:
     """The angles between normals, between tangents, and of the rotation from the one frame to the other, whatever their
-    hands: float64 degrees of shape (3, count), NaN where one is no number.
+    hands: float64 degrees of shape (3, count), NaN where one is not a number.
 
     A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
     """

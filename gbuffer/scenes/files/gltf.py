@@ -123,12 +123,12 @@ def _local(gltf: Gltf, node: Object, place: str) -> np.ndarray:
     if "matrix" in node:
         matrix = np.array(gltf.numbers(node, "matrix", place, tuple(np.eye(4).ravel()))).reshape(4, 4).T
         if not np.array_equal(matrix[3], (0, 0, 0, 1)):
-            raise gltf.error(f"{place}.matrix", "is no affine transform")
+            raise gltf.error(f"{place}.matrix", "is not an affine transform")
         return matrix
     x, y, z, w = gltf.numbers(node, "rotation", place, (0.0, 0.0, 0.0, 1.0))
     length = np.sqrt(x * x + y * y + z * z + w * w)
     if length < 1e-9:
-        raise gltf.error(f"{place}.rotation", "is no quaternion: its length is 0")
+        raise gltf.error(f"{place}.rotation", "is not a quaternion: its length is 0")
     x, y, z, w = (c / length for c in (x, y, z, w))
     matrix = np.eye(4)
     matrix[:3, :3] = [
@@ -171,7 +171,7 @@ def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
 def _of_mesh(gltf: Gltf, mesh: Object, place: str) -> list[Object]:
     primitives = gltf.list_of(mesh, "primitives", place)
     if not all(isinstance(primitive, dict) for primitive in primitives):
-        raise gltf.error(f"{place}.primitives", "holds what is no object")
+        raise gltf.error(f"{place}.primitives", "holds what is not an object")
     return primitives
 
 

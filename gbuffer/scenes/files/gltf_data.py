@@ -47,7 +47,7 @@ class Gltf:
         except (ValueError, RecursionError) as error:
             raise self.error("its JSON", f"cannot be read ({error})") from error
         if not isinstance(self.json, dict):
-            raise self.error("its JSON", "is no object")
+            raise self.error("its JSON", "is not an object")
         self._buffers: dict[int, bytes] = {}
         self._check_version()
         for index in range(len(self.list_of(self.json, "images", "the file"))):
@@ -104,14 +104,14 @@ class Gltf:
         if type(index) is not int or not 0 <= index < len(known):
             raise self.error(place, f"names {kind}[{_shown(index)}], of which there are {len(known)}")
         if not isinstance(known[index], dict):
-            raise self.error(f"{kind}[{index}]", "is no object")
+            raise self.error(f"{kind}[{index}]", "is not an object")
         return known[index]
 
     def child(self, holder: Object, key: str, place: str) -> Object:
         """An object within another, empty where it is missing."""
         found = holder.get(key, {})
         if not isinstance(found, dict):
-            raise self.error(f"{place}.{key}", "is no object")
+            raise self.error(f"{place}.{key}", "is not an object")
         return found
 
     def whole(self, holder: Object, key: str, place: str, default: int | None = None) -> int:

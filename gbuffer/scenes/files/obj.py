@@ -201,5 +201,5 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
 def _number(text: str) -> float:
     number = float(text)
     if not number >= 0 or math.isinf(number):
-        raise ValueError(f"{text} is no number from 0 up")
+        raise ValueError(f"{text} is not a number from 0 up")
     return number

@@ -95,7 +95,7 @@ def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
                 pass
             case _:
                 raise SceneFileError(
-                    f"{path}: line {number}: {line[:60]!r} is no line of a PLY header; export it again"
+                    f"{path}: line {number}: {line[:60]!r} is not a line of a PLY header; export it again"
                 )
     if order is None:
         raise SceneFileError(f"{path}: its header names no format: {', '.join(ORDERS)}")
@@ -252,5 +252,5 @@ def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:
     else:
         found = np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)], np.float64)
     if not np.all(np.abs(found) < 2**32):
-        raise SceneFileError(f"{path}: a face names a vertex that is no number; export it again")
+        raise SceneFileError(f"{path}: a face names a vertex that is not a number; export it again")
     return found.astype(np.int64).reshape(-1, 3)

@@ -46,7 +46,7 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
     """The file that an address in the file `path` names, or None for a data: address; reads nothing.
 
     Raises:
-        SceneFileError: it is no address, is on the network, or leaves the file's folder, by a link if need be.
+        SceneFileError: it is not an address, is on the network, or leaves the file's folder, by a link if need be.
     """
     if not isinstance(address, str):
         raise SceneFileError(f"{path}: {place}: an address is text")

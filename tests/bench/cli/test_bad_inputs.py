@@ -225,11 +225,11 @@ TEXTS = st.one_of(
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(TEXTS)
 def test_limits_are_read_or_refused(text):
-    """A limit is what it says, or there is one line; what is no limit is None."""
+    """A limit is what it says, or there is one line; what is not a limit is None."""
     try:
         found = limit("psnr_db", text)
     except UsageError as error:
-        assert str(error).startswith("psnr_db: ") and str(error).endswith("is no number")
+        assert str(error).startswith("psnr_db: ") and str(error).endswith("is not a number")
         return
     if found:
         assert found.side in ("at least", "at most") and not math.isnan(found.value)

@@ -108,12 +108,12 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("[[gate]]\n[other]", "gates are [[gate]] tables"),
         ("[[gate]", "cannot be read as gates"),
         ('[[gate]]\nencoding = "xy"', "no limit given"),
-        ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is no number"),
-        ('[[gate]]\npsnr_db = "at least nan"', "nan is no number"),
-        ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is no number"),
+        ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is not a number"),
+        ('[[gate]]\npsnr_db = "at least nan"', "nan is not a number"),
+        ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is not a number"),
         ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
         ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; it must be true or false"),
-        ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is no number"),
+        ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is not a number"),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; it must be a text or a number"),
         ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; it must be a whole number"),
         ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; it must be a whole number"),
@@ -137,7 +137,7 @@ def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
     assert "cannot be read as gates" in run("check", str(tmp_path / "none.toml"))[2]
     (tmp_path / "gates.toml").write_text(PASSES)
     status, _, err = run("check", str(tmp_path / "gates.toml"), "--run", str(tmp_path))
-    assert status == 2 and "is no results folder" in err and err.count("\n") == 1
+    assert status == 2 and "is not a results folder" in err and err.count("\n") == 1
 
 
 LIMITS = st.sampled_from(["at least 1", "at most nan"])

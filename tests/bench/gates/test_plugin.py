@@ -118,8 +118,8 @@ MISUSE = {
     "quality(count=0)": "--count 0: a count is 1 to",
     'quality(count="many")': "count is 'many'; it must be a whole number",
     f"quality(**{SMALL}).assert_that()": 'no limit given; add for example psnr_db="at least 47.5"',
-    f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is no limit; say "at least 47.5"',
-    f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is no number",
+    f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a limit; say "at least 47.5"',
+    f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
     f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; take one of .rows",
     f"quality(**{SMALL}).matches_baseline()": "--normalbench-baseline FILE names one",
@@ -336,7 +336,7 @@ def test_writing_keeps_the_other_rows_and_what_is_no_baseline(inside, written, p
     other = pytester.makefile(".json", other='{"mine": 1}')
     result = inside("--normalbench-baseline", "other.json", "--normalbench-write-baseline")
     assert result.ret == 2 and other.read_text() == '{"mine": 1}'
-    assert "other.json is no baseline" in result.stdout.str() + result.stderr.str()
+    assert "other.json is not a baseline" in result.stdout.str() + result.stderr.str()
     for arguments, said in (
         (["--normalbench-write-baseline"], "--normalbench-write-baseline needs --normalbench-baseline FILE"),
         (["--normalbench-write-baseline", "--normalbench-baseline", "/proc/no/a.json"], "cannot write to /proc/no"),

@@ -365,7 +365,7 @@ def test_pages_of_a_file_are_layers(tmp_path):
 
 
 def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
-    """An object's number is no share of 2^32."""
+    """An object's number is not a share of 2^32."""
     objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
     planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
     assert np.array_equal(planes, [objects]) and full is None

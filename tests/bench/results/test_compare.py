@@ -125,4 +125,4 @@ def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_it
 
 def test_what_is_no_run_is_one_line(run, tmp_path):
     status, out, err = run("compare", str(tmp_path), str(tmp_path))
-    assert (status, out) == (2, "") and "is no results folder" in err and err.count("\n") == 1
+    assert (status, out) == (2, "") and "is not a results folder" in err and err.count("\n") == 1
