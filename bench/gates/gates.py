@@ -97,9 +97,15 @@ def _rows_of_run(run: Path) -> Measure:
             if not gate.table.column(option):
                 keys = ", ".join(column.name for column in gate.table.of_role(Role.KEY))
                 raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
+            if not any(_is(row.get(option), gate.options[option]) for row in tables[name]):
+                there = ", ".join(dict.fromkeys(str(row.get(option)) for row in tables[name]))
+                raise UsageError(
+                    f"{gate.place}: no row of {name} in {run} has {option} {gate.options[option]!r}; there are {there}"
+                )
         found = [row for row in tables[name] if all(_is(row.get(n), v) for n, v in gate.options.items())]
         if not found:
-            raise UsageError(f"{gate.place}: {run} has no row with {dict(gate.options)!r}")
+            asked = ", ".join(f"{option} {value!r}" for option, value in gate.options.items())
+            raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
         return [Found(row, lambda: None) for row in gate.table.work.finish(found)]
 
     return rows

@@ -97,7 +97,7 @@ def texts(kind: str, folder: Path) -> Attack:
     return case
 
 
-RUN = ("run", "--tables", "quality,frames", "--encoding", "xyz,octahedral", "--storage", "rg8,rgba8,rgb10a2")
+RUN = ("run", "--tables", "quality,frames", "--encoding", "octahedral,spheremap", "--storage", "rg8,rgba8,rgb10a2")
 RUN += ("--normals", "axes", "--backend", "jax", "--count", "4096")
 CHECK = (
     '[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 1"\n[[gate]]\ntable = "depth"\nerror_max = "at most 9"\n'

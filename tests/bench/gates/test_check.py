@@ -87,10 +87,18 @@ def test_every_table_may_be_a_gate(run, tmp_path, table):
 def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
     with opened(folder, {}) as made:
-        made.keep("depth", Step({}, None, ""), [{"depth": "linear", "error_max": 1.0}])
+        rows = [{"depth": "linear", "far": 1.0, "error_max": 1.0}, {"depth": "log", "far": 10.0, "error_max": 1.0}]
+        made.keep("depth", Step({}, None, ""), rows)
     path.write_text('[[gate]]\ntable = "depth"\ndepht = "linear"\nerror_max = "at most 2"\n')
     status, out, err = run("check", str(path), "--run", str(folder))
     assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; they are named by depth" in err, err
+    for asked, said in (
+        ('depth = "linaer"', "no row of depth in {} has depth 'linaer'; there are linear, log"),
+        ('depth = "linear"\nfar = 10', "rows with each of depth 'linear', far 10, but none with all of them"),
+    ):
+        path.write_text(f'[[gate]]\ntable = "depth"\n{asked}\nerror_max = "at most 2"\n')
+        status, out, err = run("check", str(path), "--run", str(folder))
+        assert (status, out, err.count("\n")) == (2, "", 1) and said.format(folder) in err, err
 
 
 def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():

@@ -96,9 +96,13 @@ def test_a_marker_holds_before_the_test(inside):
         def test_table(): pass
         @pytest.mark.normalbench(psnr="at least 5", **{SMALL})
         def test_column(): pass
+        @pytest.mark.normalbench(table=["quality"], psnr_db="at least 5")
+        def test_tables(): pass
+        @pytest.mark.normalbench(encoding=["xy"], psnr_db="at least 5")
+        def test_encodings(): pass
         """
     )
-    result.assert_outcomes(passed=1, failed=6)
+    result.assert_outcomes(passed=1, failed=8)
     result.stdout.fnmatch_lines(
         [
             "xy rgba8 nearest sphere jax: psnr_db is *, not at least 50",
@@ -108,6 +112,8 @@ def test_a_marker_holds_before_the_test(inside):
             'no limit given; add for example psnr_db = "at least 47.5"',
             "unknown table 'costs'; known: quality, render, *",
             "quality: no column 'psnr'; figures are bits, *",
+            "unknown table *quality*; known: quality, render, *",
+            "encoding is *xy*; it must be a text",
         ]
     )
     assert "this is not run" not in result.stdout.str() and "Traceback" not in result.stdout.str()
