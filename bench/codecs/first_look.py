@@ -31,7 +31,7 @@ from ...gbuffer.gl.shader import ShaderError
 from ..machine import children
 from ..output.errors import UsageError
 from .names import check_twin
-from .user_encodings import read_encoding
+from .user_encodings import NoTwinError, read_encoding
 
 RANDOM = 4096
 NOT_ASKED = "the twin is looked at by itself"
@@ -114,7 +114,9 @@ def twin_look(path: Path) -> dict[str, Any]:
         return {}
     except BaseException as error:  # whatever a user's own file raises
         where = path.with_suffix(".py")
-        said = str(error) if isinstance(error, UsageError) else f"{where}: {type(error).__name__}: {error}"
+        said = (
+            str(error) if isinstance(error, UsageError | NoTwinError) else f"{where}: {type(error).__name__}: {error}"
+        )
         return {"error": " ".join(said.split())[:300]}
     return _apart(encoding, n, view, codes, decoded)
 

@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
+from traceback import extract_tb
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called
+from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores
@@ -152,9 +154,28 @@ def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
         # What it prints is no part of a table.
         with redirect_stdout(sys.stderr):
             spec.loader.exec_module(module)
-        return module.encode, module.decode
+        return _guarded(path, module.encode, (Vec2, Vec3)), _guarded(path, module.decode, (Vec3,))
     except (Exception, SystemExit) as error:  # whatever a user's own file raises
         raise UsageError(f"{path}: {type(error).__name__}: {error}") from error
+
+
+def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) -> Callable[..., Any]:
+    """A user's function that raises NoTwinError where it fails or gives something else."""
+    wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+
+    def guarded(*given: Any) -> Any:
+        try:
+            made = function(*given)
+        except Exception as error:
+            lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+            where = f" in line {lines[-1]}" if lines else ""
+            raise NoTwinError(f"{path}: {type(error).__name__}{where}: {error}") from error
+        if not isinstance(made, kinds):
+            kind = "an array" if hasattr(made, "shape") else type(made).__name__
+            raise NoTwinError(f"{path}: {function.__name__} returns {kind}, not {wanted}")
+        return made
+
+    return guarded
 
 
 @dataclass(frozen=True)

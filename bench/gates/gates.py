@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...encodings.codecs.files import file_text
+from ...encodings.codecs.files import file_toml
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
@@ -42,8 +41,8 @@ def read_gates(path: Path) -> list[Gate]:
         UsageError: it cannot be read, or says something else; one line with the place.
     """
     try:
-        data = tomllib.loads(file_text(path))
-    except (OSError, ValueError, RecursionError) as error:
+        data = file_toml(path)
+    except (OSError, ValueError) as error:
         raise UsageError(f"{path}: cannot be read as gates: {error}") from error
     found = data.get("gate")
     if set(data) != {"gate"} or not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
@@ -59,7 +58,7 @@ def _gate(place: str, values: dict[str, Any]) -> Gate:
             if not isinstance(value, str | int | float):
                 raise UsageError(f"{name} is {value!r}; it must be a text or a number")
         table = table_named(values.pop("table", "quality"))
-        options, limits = split_limits(values)
+        options, limits = split_limits(values, table)
         for limit in limits:
             limit.check(table)
     except UsageError as error:

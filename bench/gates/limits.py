@@ -74,11 +74,15 @@ def limit(column: str, text: Any) -> Limit | None:
     return Limit(column, match[1].lower(), float(match[2]))
 
 
-def split_limits(values: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[Limit, ...]]:
+def split_limits(values: Mapping[str, Any], table: Table) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them."""
     found = {name: limit(name, value) for name, value in values.items()}
     options = {name: value for name, value in values.items() if found[name] is None}
     limits = tuple(one for one in found.values() if one)
+    figures = [name for name in options if (column := table.column(name)) and column.role in (Role.FIGURE, Role.TIME)]
+    if not limits and figures:
+        value = values[figures[0]]
+        raise UsageError(f'{figures[0]}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
     if not limits:
         raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
     return options, limits

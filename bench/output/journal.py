@@ -88,7 +88,8 @@ def read_lines(path: Path) -> list[Line]:
 def _read(path: Path, content: bytes) -> list[Line]:
     """The lines that have their end: what was being written when the process was killed has none."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
-    return [_parsed(f"{path}, line {at}", line) for at, line in enumerate(whole, 1)]
+    # An editor may leave an empty line.
+    return [_parsed(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
 
 
 def _parsed(place: str, line: bytes) -> Line:

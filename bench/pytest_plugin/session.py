@@ -225,8 +225,9 @@ class Normalbench:
         """What a marker says. Raises AssertionError for a row that does not keep it, UsageError where it is misused."""
         if positional:
             raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
-        options, limits = split_limits(values)
-        self.hold(table_named(options.pop("table", "quality")), options, limits)
+        table = table_named(values.get("table", "quality"))
+        options, limits = split_limits({name: value for name, value in values.items() if name != "table"}, table)
+        self.hold(table, options, limits)
 
     @ends_here
     def _measured(self, table: Table, /, **options: Any) -> Measured:

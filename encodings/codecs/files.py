@@ -5,7 +5,9 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import tomllib
 from pathlib import Path
+from typing import Any
 
 # No text that people write is larger.
 MOST_TEXT = 16 << 20
@@ -38,6 +40,24 @@ def file_text(path: Path) -> str:
     """
     text = file_bytes(path, MOST_TEXT).decode("utf-8-sig")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def file_toml(path: Path) -> dict[str, Any]:
+    """What a TOML file holds.
+
+    Raises:
+        OSError: see file_bytes.
+        ValueError: it is not TOML, or is nested too deep.
+    """
+    text = file_text(path)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError as error:
+        raise ValueError("a number has too many digits") from error
+    except RecursionError as error:
+        raise ValueError("it is nested too deep") from error
 
 
 def called(name: str) -> str:

@@ -11,7 +11,6 @@ resolved to linear.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,7 +21,7 @@ from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
-from ...encodings.codecs.files import called, file_text
+from ...encodings.codecs.files import called, file_toml
 from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
@@ -275,8 +274,8 @@ def read_layout(path: Path) -> Layout:
         LayoutError: it cannot be read, or is not a layout; one line.
     """
     try:
-        data = tomllib.loads(file_text(path))
-    except (OSError, ValueError, RecursionError) as error:
+        data = file_toml(path)
+    except (OSError, ValueError) as error:
         # ValueError is bad text, bad TOML, and a number of thousands of digits.
         raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from pathlib import Path
 
@@ -78,7 +79,8 @@ def revalued(text: bytes, rng: np.random.Generator) -> bytes:
                 break
             holder = holder[key]
         values = (*VALUES, [holder[key]] * 3, {"0": holder[key]})
-        holder[key] = values[rng.integers(len(values))]
+        # A copy, into which the next change may go.
+        holder[key] = copy.deepcopy(values[rng.integers(len(values))])
     return json.dumps(document).encode()
 
 

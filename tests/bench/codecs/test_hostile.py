@@ -37,9 +37,10 @@ TWINS = {
     "crashes": ("", "ctypes.string_at(0)", "SIGSEGV"),
     "grows": ("", "np.ones(1 << 36)", "MemoryError"),
     "prints": ("", "while True: print('x' * 10000)", "File too large"),
-    "raises": ("", "raise ValueError('what is this?')", "ValueError: what is this"),
+    "raises": ("", "raise ValueError('what is this?')", r"ValueError in line \d+: what is this"),
     "exits": ("raise SystemExit(0)", "pass", "SystemExit"),
     "is_flat": ("", "return Vec2(n.x[0], n.y[:2])", "IndexError|ValueError|TypeError"),
+    "lists": ("", "return [n.x, n.y]", "encode returns list, not a Vec2 or a Vec3"),
     "has_three": ("", "return Vec3(n.x, n.y, n.z)", "encode gives 3 numbers"),
     "recurses": ("", "return encode(n, view)", "RecursionError"),
 }

@@ -99,11 +99,21 @@ def test_a_missing_file_is_one_line(run, tmp_path):
     assert status == 2 and "cannot be read as a shader" in err and err.count("\n") == 1
 
 
+GOOD_ENCODE = "from normalbench.encodings.vec import Vec2\ndef encode(n, view):\n    return Vec2(n.x, n.y)\n"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "twin, said",
     [
-        ("def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n", "mine.py: AttributeError"),
+        (
+            "def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n",
+            "mine.py: AttributeError in line 2",
+        ),
+        (
+            GOOD_ENCODE + "def decode(e, view):\n    return [e.x, e.y, e.x]\n",
+            "mine.py: decode returns list, not a Vec3",
+        ),
         ("print('hello')\nraise SystemExit(0)\n", "mine.py: SystemExit"),
     ],
 )

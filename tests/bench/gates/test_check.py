@@ -116,6 +116,8 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("[[gate]]\n[other]", "gates are [[gate]] tables"),
         ("[[gate]", "cannot be read as gates"),
         ('[[gate]]\nencoding = "xy"', "no limit given"),
+        ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a limit; say"),
+        ("[[gate]]\ncount = " + "9" * 5000, "a number has too many digits"),
         ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is not a number"),
         ('[[gate]]\npsnr_db = "at least nan"', "nan is not a number"),
         ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is not a number"),

@@ -137,7 +137,7 @@ def test_a_folder_with_something_else_is_not_touched(tmp_path):
     with pytest.raises(UsageError, match="holds no run"), opened(tmp_path, FACTS):
         pass
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
-    with pytest.raises(UsageError, match="no results folder"):
+    with pytest.raises(UsageError, match="not a results folder"):
         read_run(tmp_path)
 
 
