@@ -167,7 +167,9 @@ def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) 
         try:
             made = function(*given)
         except Exception as error:
-            lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+            lines = [
+                frame.lineno for frame in extract_tb(error.__traceback__) if Path(frame.filename).name == path.name
+            ]
             where = f" in line {lines[-1]}" if lines else ""
             raise NoTwinError(f"{path}: {type(error).__name__}{where}: {error}") from error
         if not isinstance(made, kinds):

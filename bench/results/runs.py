@@ -96,11 +96,12 @@ def read_run(folder: Path) -> Done:
 
 
 def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
-    from .schema import check_step
+    from .schema import Keys, check_step
 
+    keys: Keys = {}
     for at, line in enumerate(lines, 1):
         try:
-            check_step(line, f"{folder / ROWS}, line {at}")
+            check_step(line, f"{folder / ROWS}, line {at}", keys)
         except UsageError as error:
             raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
 

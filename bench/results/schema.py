@@ -94,11 +94,31 @@ def check_facts(facts: Any, place: str) -> None:
     _check(FACTS, facts, [place])
 
 
-def check_step(line: Any, place: str) -> None:
-    """Raises UsageError where a line of a run is not a step, or a figure is not a number."""
+# By table and column, whether a key is text, and a place that says so.
+Keys = dict[tuple[str, str], tuple[bool, str]]
+
+
+def check_step(line: Any, place: str, keys: Keys) -> None:
+    """Raises UsageError where a line of a run is not a step, a figure is not a number, or a key is text in one row and
+    a number in another.
+
+    Args:
+        keys: what the lines before had; what this line has is added.
+    """
     _check(STEP, line, [place])
     for number, row in enumerate(line["rows"], 1):
         _check_row(line["table"], row, [place, f"row {number}"])
+        _check_keys(line["table"], row, f"{place}, row {number}", keys)
+
+
+def _check_keys(name: str, row: Row, place: str, keys: Keys) -> None:
+    table = table_of_run(name)
+    for column in table.of_role(Role.KEY) if table else ():
+        value = row.get(column.name)
+        is_text, where = keys.setdefault((name, column.name), (isinstance(value, str), place)) if value else (False, "")
+        if value and is_text != isinstance(value, str):
+            kinds = ("text", "a number") if is_text else ("a number", "text")
+            raise UsageError(f"{place}, {column.name}: {_short(value)} is {kinds[1]}; in {where} it is {kinds[0]}")
 
 
 def check_kept(line: Any, place: str) -> None:
