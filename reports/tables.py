@@ -73,15 +73,13 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 def _no_formula(value: Any) -> Any:
     """A spreadsheet shows text behind an apostrophe, and computes nothing."""
-    if not isinstance(value, str):
-        return value
-    text = in_utf8(value)
-    return f"'{text}" if text.startswith(FORMULA) else text
+    storable = _storable(value)
+    return f"'{storable}" if isinstance(storable, str) and storable.startswith(FORMULA) else storable
 
 
-def in_utf8(text: str) -> str:
-    """Text whose half characters, which a file's name may have, are written as escapes: no file could hold them."""
-    return text.encode(errors="backslashreplace").decode()
+def _storable(value: Any) -> Any:
+    """A value; of text, half characters, which a file's name may have, as escapes: no file could hold them."""
+    return value.encode(errors="backslashreplace").decode() if isinstance(value, str) else value
 
 
 def has_parquet() -> bool:
@@ -103,10 +101,6 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
     # Not by its path, which pyarrow takes for an address in UTF-8.
     with path.open("wb") as file:
         pq.write_table(pa.table(columns), file)
-
-
-def _storable(value: Any) -> Any:
-    return in_utf8(value) if isinstance(value, str) else value
 
 
 def to_markdown(rows: Sequence[dict[str, Any]]) -> str:

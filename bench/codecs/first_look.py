@@ -31,7 +31,7 @@ from ...gbuffer.gl.shader import ShaderError
 from ..machine import children
 from ..output.errors import UsageError
 from .names import check_twin
-from .user_encodings import NoTwinError, read_encoding
+from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
 
 RANDOM = 4096
 NOT_ASKED = "the twin is looked at by itself"
@@ -160,7 +160,7 @@ def _alone() -> int:
 def _looks(path: Path) -> Iterator[dict[str, Any]]:
     found = first_look(path)
     yield found
-    if path.with_suffix(".py").exists() and not {"error", "broken"} & set(found):
+    if twin_is_looked_at(path, found):
         yield twin_look(path)
 
 

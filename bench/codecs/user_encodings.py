@@ -205,11 +205,16 @@ def _look(path: Path) -> Looks:
     lines = list(_answers(said))
     if not lines:
         raise UsageError(f"{path}: its shader {ended}")
-    has_twin = path.with_suffix(".py").exists() and not {"error", "broken"} & set(lines[0])
+    has_twin = twin_is_looked_at(path, lines[0])
     if has_twin and len(lines) < 2:
         return Looks(lines[0], {}, f"{path}: its Python twin {ended}")
     twin = lines[1] if has_twin else {}
     return Looks(lines[0], twin, twin.get("error", ""))
+
+
+def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:
+    """Whether a shader of which this was found has a twin, and is of use."""
+    return path.with_suffix(".py").exists() and not {"error", "broken"} & set(found)
 
 
 def _answers(said: str) -> Iterator[dict[str, Any]]:

@@ -74,6 +74,11 @@ def limit(column: str, text: Any) -> Limit | None:
     return Limit(column, match[1].lower(), float(match[2]))
 
 
+def not_a_limit(column: str, value: Any) -> UsageError:
+    """What is wrong with a value that stands where a limit belongs."""
+    return UsageError(f'{column}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
+
+
 def split_limits(values: Mapping[str, Any], table: Table) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them."""
     found = {name: limit(name, value) for name, value in values.items()}
@@ -81,8 +86,7 @@ def split_limits(values: Mapping[str, Any], table: Table) -> tuple[dict[str, Any
     limits = tuple(one for one in found.values() if one)
     figures = [name for name in options if (column := table.column(name)) and column.role in (Role.FIGURE, Role.TIME)]
     if not limits and figures:
-        value = values[figures[0]]
-        raise UsageError(f'{figures[0]}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
+        raise not_a_limit(figures[0], values[figures[0]])
     if not limits:
         raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
     return options, limits

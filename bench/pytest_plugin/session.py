@@ -14,7 +14,7 @@ import pytest
 
 from ...encodings.errors import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
-from ..gates.limits import Limit, limit, split_limits
+from ..gates.limits import Limit, limit, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
 from ..machine.devices import found_device
 from ..options.option import checked_options, fields_of
@@ -192,7 +192,7 @@ class Measured:
 def _limit(column: str, text: Any) -> Limit:
     found = limit(column, text)
     if not found:
-        raise UsageError(f'{column}: {text!r} is not a limit; say "at least 47.5" or "at most 0.95"')
+        raise not_a_limit(column, text)
     return found
 
 

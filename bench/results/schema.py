@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, ValidationError, with_config
@@ -10,7 +11,7 @@ from typing_extensions import TypedDict
 
 from ..output.errors import UsageError
 from ..tables.registry import table_of_run
-from ..tables.table import Role, Row
+from ..tables.table import Role, Row, Table
 
 # A float holds whole numbers below this: storages of 64 bits have more codes than fit a whole number of NumPy's.
 LARGEST = 2**1000
@@ -135,10 +136,16 @@ def check_entry(entry: Any, place: str) -> None:
 def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
     """Raises UsageError where a column holds what it cannot. Columns of another version may hold anything."""
     table = table_of_run(name)
-    columns = {name: table.column(table.renamed.get(name, name)) for name in row} if table else {}
-    roles = {name: column.role for name, column in columns.items() if column}
+    roles = {column: role for column in row if (role := _role(table, column))} if table else {}
     _check(SCALARS, {name: row[name] for name in roles}, place)
     _check(NUMBERS, {name: row[name] for name, role in roles.items() if role in (Role.FIGURE, Role.TIME)}, place)
+
+
+@cache
+def _role(table: Table, name: str) -> Role | None:
+    """What a row's column is for. Kept, because rows are many and patterns of names take long."""
+    column = table.column(table.renamed.get(name, name))
+    return column.role if column else None
 
 
 def _check(adapter: TypeAdapter[Any], value: Any, place: Sequence[str]) -> None:

@@ -32,10 +32,8 @@ def main() -> int:
     chunks = [chunk for chunk in chunks_of(asked.cases, asked.seed) if _is_named(chunk, asked.only)]
     done = _read(asked.results)
     left = [chunk for chunk in chunks if chunk.name not in done]
-    odd: list[str] = []
     for chunk, counts, said in _each(left):
         done[chunk.name] = dict(counts)
-        odd += said
         _keep(asked.results, chunk, counts, said)
         print(f"{chunk.name}: {dict(counts)}", file=sys.stderr)
         for line in said:

@@ -34,7 +34,7 @@ def started(folder: Path) -> subprocess.Popen[str]:
 def interruptions(folder: Path) -> Attack:
     """One interruption each; then the same command again, which leaves the rows of a run that nobody disturbed."""
     began = time.monotonic()
-    status, _, err = ended(started(folder), 120)
+    status, err = ended(started(folder), 120)
     whole, takes = (folder / "run" / "rows.jsonl").read_bytes(), time.monotonic() - began
     assert status == 0, err
 
@@ -46,11 +46,11 @@ def interruptions(folder: Path) -> Attack:
         # Half of them while it starts, which takes a second.
         time.sleep(float(rng.uniform(0, takes if rng.random() < 0.5 else 1.0)))
         process.send_signal(number)
-        status, _, err = ended(process, 60)
+        status, err = ended(process, 60)
         # A process that is done, or that Python has not got to the point of hearing, ends by itself or by the signal.
         assert status in (0, STATUS[number], -number), f"status {status}: {err}"
         assert "Traceback" not in err and "Fatal Python error" not in err and "Exception ignored" not in err, err
-        status, _, err = ended(started(folder), 120)
+        status, err = ended(started(folder), 120)
         assert outcome(status, "\n".join(err.splitlines()[-1:])) == MEASURED, err
         assert (folder / "run" / "rows.jsonl").read_bytes() == whole, "other rows"
         assert (folder / "run" / "report.html").exists(), "no page"
@@ -60,12 +60,12 @@ def interruptions(folder: Path) -> Attack:
     return case
 
 
-def ended(process: subprocess.Popen[str], seconds: float) -> tuple[int, str, str]:
+def ended(process: subprocess.Popen[str], seconds: float) -> tuple[int, str]:
     try:
         _, err = process.communicate(timeout=seconds)
     finally:
         process.kill()
-    return process.returncode, "", err
+    return process.returncode, err
 
 
 KINDS = (Kind("interruption", interruptions, 40, 0, seconds=400.0, chunk=10),)

@@ -6,10 +6,9 @@ import zipfile
 
 import numpy as np
 import pytest
+from attack.files import ARRAYS
 
 from normalbench.bench.output.arrays import MOST_BYTES, DamagedError, array_of, read_npy, read_npz
-
-ARRAYS = {"mean": np.arange(24, dtype=np.float32).reshape(2, 3, 4), "count": np.array(7)}
 
 
 def npz(**arrays) -> bytes:
