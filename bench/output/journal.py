@@ -81,7 +81,7 @@ def read_lines(path: Path) -> list[Line]:
     try:
         content = file_bytes(path, MOST) if path.exists() else b""
     except OSError as error:
-        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+        raise UsageError(f"{path} cannot be read: {error}") from error
     return _read(path, content)
 
 

@@ -13,13 +13,27 @@ from typing import Any
 MOST_TEXT = 16 << 20
 
 
+class FileError(OSError):
+    """A file that cannot be read. Its text is the reason alone, for messages that name the file themselves."""
+
+    def __str__(self) -> str:
+        return self.strerror or super().__str__()
+
+
 def file_bytes(path: Path, most: int) -> bytes:
     """What a file of at most so many bytes holds.
 
     Raises:
-        OSError: it cannot be read, is larger, or is not a plain file: a pipe may never end.
+        FileError: it cannot be read, is larger, or is not a plain file: a pipe may never end.
         ValueError: no file can have such a name.
     """
+    try:
+        return _bytes(path, most)
+    except OSError as error:
+        raise FileError(error.errno, error.strerror) from error
+
+
+def _bytes(path: Path, most: int) -> bytes:
     # Without O_NONBLOCK, opening a pipe waits for whoever writes to it.
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
         found = os.fstat(file.fileno())
@@ -35,7 +49,7 @@ def file_text(path: Path) -> str:
     """The text of a file in UTF-8; a byte-order mark is no part of it.
 
     Raises:
-        OSError: see file_bytes.
+        FileError: see file_bytes.
         ValueError: it is no such text.
     """
     text = file_bytes(path, MOST_TEXT).decode("utf-8-sig")
@@ -46,7 +60,7 @@ def file_toml(path: Path) -> dict[str, Any]:
     """What a TOML file holds.
 
     Raises:
-        OSError: see file_bytes.
+        FileError: see file_bytes.
         ValueError: it is not TOML, or is nested too deep.
     """
     text = file_text(path)

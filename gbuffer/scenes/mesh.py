@@ -96,15 +96,17 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     across = across[area > 0] / area[area > 0, None]
     extent = float(np.ptp(positions, axis=0).max()) or 1.0
     cells = np.round((positions - positions.min(axis=0)) / extent * WELD).astype(np.int64)
-    _, place = np.unique(cells, axis=0, return_inverse=True)
+    # In two steps of whole numbers, which sort ten times faster than rows do.
+    _, column = np.unique(cells[:, 0] << 32 | cells[:, 1], return_inverse=True)
+    _, place = np.unique(column << 32 | cells[:, 2], return_inverse=True)
     total = np.zeros((len(positions), 3))
     for corner in range(3):
         a, b = (corners[:, (corner + step) % 3] - corners[:, corner] for step in (1, 2))
         angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.sum(a * b, axis=1))
-        np.add.at(total, place.ravel()[triangles[:, corner]], across * angle[:, None])
+        np.add.at(total, place[triangles[:, corner]], across * angle[:, None])
     length = np.linalg.norm(total, axis=1, keepdims=True)
     normals = np.divide(total, length, out=np.zeros_like(total), where=length > 1e-9)
-    return normals[place.ravel()]
+    return normals[place]
 
 
 def grid_uv(rows: int, columns: int) -> np.ndarray:

@@ -144,18 +144,20 @@ READERS: dict[str, tuple[str, int, Write, Read]] = {
     "stl": (".stl", 1000, stl, read_mesh_file),
     "ply": (".ply", 1000, text_ply, read_mesh_file),
     "rows": ("", 1000, rows, read_run),
-    "baseline": (".json", 1000, baseline, read_baseline),
+    "baseline": (".json", 100, baseline, read_baseline),
     "shader": (".glsl", 100, shader, Source),
     "layout": (".toml", 10, layout, read_refused_layout),
 }
 TIMES = 4
+# The least of these is what the reading takes; the rest is what else the machine does.
+TURNS = 3
 
 
 def measured(kind: str, path: Path) -> tuple[float, float]:
     """Seconds and MiB that reading a file takes, in a process of its own."""
     command = [sys.executable, __file__, "--read", kind, str(path)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
-    seconds, mebibytes = json.loads(done.stdout)
+    found = [json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout) for _ in range(TURNS)]
+    seconds, mebibytes = map(min, zip(*found, strict=True))
     return seconds, mebibytes
 
 

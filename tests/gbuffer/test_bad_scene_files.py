@@ -128,7 +128,7 @@ BAD_TEXTS = {
     ),
     "an OFF that is cut off": ("a.off", OFF[:-4], ["cut off or damaged"]),
     "an OFF face of two": ("a.off", OFF.replace("3 0 1 2", "3 0 1"), ["cut off or damaged"]),
-    "an OFF index": ("a.off", OFF.replace("3 0 1 2", "3 0 1 9"), ["cut off or damaged"]),
+    "an OFF index": ("a.off", OFF.replace("3 0 1 2", "3 0 1 9"), ["names vertex 9", "there are 4"]),
     "an OFF of too many": ("a.off", OFF.replace("4 2", "99999999 2"), ["cut off or damaged"]),
     "an OFF of another kind": ("a.off", "4" + OFF, ["no OFF file"]),
     "an STL that is cut off": ("a.stl", STL[:-12], ["cut off or damaged"]),

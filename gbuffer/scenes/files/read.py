@@ -12,15 +12,22 @@ import numpy as np
 from ..rasterise import Camera, Rendered, rasterise
 from ..scene import Light, Part, Scene, View
 from ..setting import Setting, coloured
-from .by_trimesh import read_by_trimesh
 from .gltf import read_gltf
 from .mesh_file import MeshFile, Piece
 from .obj import read_obj
+from .off import read_off
 from .ply import read_ply
+from .stl import read_stl
 
 READERS: Mapping[str, Callable[[Path], MeshFile]] = MappingProxyType(
-    {".glb": read_gltf, ".gltf": read_gltf, ".obj": read_obj, ".ply": read_ply}
-    | dict.fromkeys((".stl", ".off"), read_by_trimesh)
+    {
+        ".glb": read_gltf,
+        ".gltf": read_gltf,
+        ".obj": read_obj,
+        ".off": read_off,
+        ".ply": read_ply,
+        ".stl": read_stl,
+    }
 )
 FRAMES = 1
 # From where a scene without a camera is seen: right of it, a little above, in front.
