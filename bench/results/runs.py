@@ -32,7 +32,7 @@ class Done:
     Attributes:
         facts: what run.json says.
         steps: the finished steps in their order, each `table`, `key` and `rows`.
-        damage: what happened to the rows since the run finished; empty where nothing did, or nobody can know.
+        damage: what happened to the rows since the run finished; empty where nothing did.
     """
 
     facts: Row
@@ -113,8 +113,10 @@ def _seal(folder: Path) -> Row:
 
 
 def _damage(folder: Path, facts: Row) -> str:
-    if not facts.get("finished") or "digest" not in facts:
+    if not facts.get("finished"):
         return ""
+    if not {"lines", "digest"} <= facts.keys():
+        return f"{folder / RUN} does not say how many rows the run had when it finished: some may be missing"
     now = _seal(folder)
     if now["digest"] == facts["digest"]:
         return ""

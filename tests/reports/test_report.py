@@ -1,6 +1,7 @@
 """The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
 
 import base64
+import hashlib
 import io
 import json
 import re
@@ -44,9 +45,10 @@ def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
     """A results folder by hand."""
     folder.mkdir(parents=True, exist_ok=True)
     about = {"request": {"tables": "all", "count": 4096, "seed": 0}, "finished": True, "machine": {"GL": "none"}}
+    lines = [json.dumps({"table": table, "key": {}, "rows": rows}) + "\n" for table, rows in tables.items()]
+    (folder / "rows.jsonl").write_text("".join(lines))
+    about |= {"lines": len(lines), "digest": hashlib.sha256("".join(lines).encode()).hexdigest()}
     (folder / "run.json").write_text(json.dumps(about | facts))
-    lines = [json.dumps({"table": table, "key": {}, "rows": rows}) for table, rows in tables.items()]
-    (folder / "rows.jsonl").write_text("".join(line + "\n" for line in lines))
     return folder
 
 

@@ -34,13 +34,14 @@ def read_stl(path: Path) -> MeshFile:
         checked_size(path, 3 * triangles, triangles, "the file")
         found = _loaded(data)
         positions, faces = (np.asarray(found[key]).reshape(-1, 3) for key in ("vertices", "faces"))
-        if (len(positions), len(faces)) != (3 * triangles, triangles):
+        normals = np.asarray(found["face_normals"]).reshape(-1, 3)
+        if (len(positions), len(faces), len(normals)) != (3 * triangles, triangles, triangles):
             raise ValueError("what was read is not all of it")
     except SceneFileError:
         raise
     except Exception as error:  # of a dozen kinds, by what is damaged
         raise SceneFileError(f"{path}: no STL file, cut off or damaged; export it again") from error
-    mesh, notes = mesh_of(path, "the mesh", positions, faces, np.repeat(found["face_normals"], 3, axis=0))
+    mesh, notes = mesh_of(path, "the mesh", positions, faces, np.repeat(normals, 3, axis=0))
     return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
 
 

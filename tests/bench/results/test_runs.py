@@ -296,8 +296,19 @@ def altered(text: str) -> str:
     return text.replace('"psnr_db": 4', '"psnr_db": 9')
 
 
-@pytest.mark.parametrize("damage, said", [(lost, "of the 3 lines"), (altered, "was changed after the run finished")])
-def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_path, damage, said):
+def unsealed(text: str) -> str:
+    return json.dumps({name: value for name, value in json.loads(text).items() if name not in ("lines", "digest")})
+
+
+@pytest.mark.parametrize(
+    "file, damage, said",
+    [
+        (ROWS, lost, "of the 3 lines"),
+        (ROWS, altered, "was changed after the run finished"),
+        ("run.json", unsealed, "does not say how many rows"),
+    ],
+)
+def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_path, file, damage, said):
     """Every command that reads it says so; a check of it fails, and nothing is added to it."""
     folder, gates = tmp_path / "run", tmp_path / "gates.toml"
     words = (
@@ -314,7 +325,7 @@ def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_
     assert run(*command)[0] == 0
     gates.write_text('[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 1"\n')
     assert run("check", str(gates), "--run", str(folder))[0] == 0
-    (folder / ROWS).write_text(damage((folder / ROWS).read_text()))
+    (folder / file).write_text(damage((folder / file).read_text()))
     for words, status in (
         (("check", str(gates), "--run", str(folder)), 2),
         (("report", str(folder), "--markdown"), 0),
