@@ -107,7 +107,7 @@ def environment() -> Iterator[dict[str, str]]:
 
 def ran(tree: Tree, arguments: Sequence[str], limit: float | None) -> tuple[int, str] | None:
     """Status and output of pytest; None where it took longer than the limit."""
-    command = [str(tree.python), "-m", "pytest", "-q", "--tb=no", "-rfE", *arguments]
+    command = [str(tree.python), "-m", "pytest", "-q", "-m", "", "--tb=no", "-rfE", *arguments]
     with environment() as given:
         process = subprocess.Popen(
             command,
