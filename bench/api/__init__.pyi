@@ -15,6 +15,58 @@ from .encodings.storages.storage import Storage as Storage
 Named = str | Encoding | Storage
 Names = Named | Sequence[Named | float] | Mapping[str, Any]
 
+def pick(
+    *,
+    storage: Names = ...,
+    encoding: Names = ...,
+    against: Names | None = ...,
+    normals: Names = ...,
+    scene: Names = ...,
+    power: Names = ...,
+    family: Names = ...,
+    aim: Names = ...,
+    most_instructions: int | None = ...,
+    domain: Names | None = ...,
+    count: int = ...,
+    seed: int = ...,
+    channels: Names | None = ...,
+    unpack: bool | None = ...,
+    normalise: bool = ...,
+    space: Names = ...,
+    view_matrix: Names | None = ...,
+    mask: Names | None = ...,
+    nan_share: float = ...,
+    fov: float | None = ...,
+    size: Names = ...,
+) -> Rows:
+    """Which code to take for each storage, at what price, and what to take instead.
+
+    Codes that do not meet the constraints are left out, with the reason. Of the others the aim decides. The exit status is 1 where no code meets them.
+
+    Args:
+        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        against: Encodings or GLSL files to compare with the answer, comma-separated, or all; `normalbench list` shows them.
+        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
+        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        power: Specular powers that the scene is rendered with, comma-separated.
+        family: The GPU family that instructions are counted for.
+        aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
+        most_instructions: The most instructions, encode and decode together.
+        domain: What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
+        count: Normals in a uniform set.
+        seed: The random seed of uniform sets, points and scenes.
+        channels: Captures: a layer, or the channels of x,y,z by name.
+        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        normalise: Captures: accept normals of any length.
+        space: Captures: view, view-left-handed, world.
+        view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
+        mask: Captures: a file or a channel that is 0 on the background.
+        nan_share: Captures: the share of NaN that is masked and counted.
+        fov: Captures: vertical degrees, for per-pixel view space.
+        size: WIDTHxHEIGHT of the picture of a mesh.
+    """
+
 def quality(
     *,
     encoding: Names = ...,
@@ -71,6 +123,7 @@ def render(
     light_buffer: Names = ...,
     light_targets: Names = ...,
     scene: Names = ...,
+    power: Names | None = ...,
     shadow: Names = ...,
     size: Names = ...,
     samples: int = ...,
@@ -95,6 +148,7 @@ def render(
         light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        power: Specular powers of all materials, comma-separated. Default: each material's own.
         shadow: on, off; comma-separated, or all.
         size: WIDTHxHEIGHT of the image.
         samples: Samples per pixel; the device may give more.

@@ -47,6 +47,10 @@ Seed = Annotated[int, Option("--seed", "The random seed of uniform sets, points 
 Pipelines = Annotated[str, Option("--pipeline", f"Pipelines, {Names}.", in_run=True)]
 Layouts = Annotated[str | None, Option("--layout", "Layouts: names or TOML files.", files=True, in_run=True)]
 Scenes = Annotated[str, Option("--scene", f"Scenes or mesh files, {Names}.", files=True, in_run=True)]
+Powers = Annotated[
+    str | None,
+    Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),
+]
 LightBuffers = Annotated[str, Option("--light-buffer", f"Light buffers, {Names}.", in_run=True)]
 LightTargets = Annotated[str, Option("--light-targets", "1, 2; comma-separated, or all.")]
 Shadow = Annotated[str, Option("--shadow", "on, off; comma-separated, or all.")]

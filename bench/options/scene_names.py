@@ -13,6 +13,8 @@ from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_
 from ...gbuffer.scenes.files.source import SceneFileError
 from ..output.errors import UsageError, pick_or_read, tell
 
+MAX_POWER = 2048
+
 
 def scenes_named(names: str) -> list[SceneMaker]:
     """The scenes that comma-separated names stand for: those of the catalogue, or mesh files.
@@ -31,6 +33,20 @@ def scenes_named(names: str) -> list[SceneMaker]:
     made = pick_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)
     return made
+
+
+def powers_named(numbers: str) -> list[float]:
+    """The specular powers of comma-separated numbers. Raises UsageError for what is not one of 1 to 2048."""
+    made = []
+    for word in map(str.strip, numbers.split(",")):
+        try:
+            power = float(word)
+        except ValueError:
+            power = 0.0
+        if not 1 <= power <= MAX_POWER:
+            raise UsageError(f"--power {word}: a specular power is 1 to {MAX_POWER}, such as 47,1024")
+        made.append(power)
+    return list(dict.fromkeys(made))
 
 
 def mesh_file(path: Path) -> MeshFile:

@@ -16,13 +16,13 @@ from pathlib import Path
 from ...encodings.codecs.files import file_text
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal, read_lines
+from ..output.sources import sources
 from ..output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Step, Table
 from .plain import key_text, plain
 
 RUN, ROWS = "run.json", "rows.jsonl"
-ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 
 @dataclass(frozen=True)
@@ -65,16 +65,6 @@ def _identity(table: Table | None, row: Row) -> str:
     """What a row is of, and under what conditions."""
     names = [c.name for c in table.of_role(Role.KEY, Role.HOW)] if table else []
     return json.dumps([row.get(name) for name in names], sort_keys=True)
-
-
-def sources() -> str:
-    """A fingerprint of everything that computes: each source file of the package."""
-    root, digest = Path(__file__).parents[2], hashlib.sha256()
-    for room in ROOMS:
-        for path in sorted((root / room).rglob("*")):
-            if path.is_file() and "__pycache__" not in path.parts:
-                digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def facts_of(command: Sequence[str]) -> Row:

@@ -22,8 +22,9 @@ from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..metrics import published
 from ..output.errors import tell
+from ..output.sources import sources
 from ..output.writing import check_folder, check_writable, say, whole_file
-from ..results.runs import Done, Row, read_run, sources
+from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
 from ..tables.cost.measure import OPERATIONS, listing
 from ..tables.cost.sheets import article_rows, order_notes

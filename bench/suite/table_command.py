@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from ..output.errors import MissingError, UsageError, tell
+from ..output.sources import sources
 from ..output.writing import check_writable, say
 from ..results.measuring import Asked, Beside, Nothing, asked, beside, measured
 from ..results.plain import plain
-from ..results.runs import Done, facts_of, sources
+from ..results.runs import Done, facts_of
 from ..tables.table import Measured, Row, Table
 from .showing import say_lines, say_skipped, show
 

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from .table import Table
 
 FOLDERS = (
+    "pick",
     "quality",
     "render",
     "cost",

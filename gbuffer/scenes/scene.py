@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -145,6 +145,10 @@ class Scene:
     @property
     def sun(self) -> Light | None:
         return next((light for light in self.lights if light.kind == "sun"), None)
+
+    def with_power(self, power: float) -> Scene:
+        """The scene with another specular power, 1 to 2048, of all materials."""
+        return replace(self, materials=tuple(replace(material, power=power) for material in self.materials))
 
 
 def placed(positions: ArrayLike, scales: ArrayLike = 1.0, turns: ArrayLike = 0.0) -> np.ndarray:

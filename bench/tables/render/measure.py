@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -27,7 +27,7 @@ STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for s
 # Why a device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
 # Codecs are ranked among rows that agree in these.
-SAME = ("scene", "pipeline", "light_buffer", "light_targets", "shadow")
+SAME = ("scene", "power", "pipeline", "light_buffer", "light_targets", "shadow")
 Row = dict[str, Any]
 
 
@@ -40,6 +40,7 @@ class Case:
         maker, setting: the scene and what it is made with.
         frames: moments that figures are averaged over.
         asked: samples a pixel as asked for; `plan.samples` is what the device gives.
+        power: specular power of all materials; None for each material's own.
     """
 
     pipeline: Pipeline
@@ -48,15 +49,19 @@ class Case:
     setting: Setting
     frames: int
     asked: int
+    power: float | None = None
 
     @property
     def name(self) -> str:
-        parts = (self.maker.name, self.pipeline.name, self.plan.layout.name, self.plan.layout.codec.name)
+        scene = self.maker.name if self.power is None else f"{self.maker.name} at power {self.power:g}"
+        parts = (scene, self.pipeline.name, self.plan.layout.name, self.plan.layout.codec.name)
         return " ".join(parts if self.pipeline.has_gbuffer else parts[:2])
 
-    def scenes(self) -> Iterable[Scene]:
+    def scenes(self) -> Iterator[Scene]:
         """The scene at each moment."""
-        return (self.maker.make(replace(self.setting, time=frame / self.frames)) for frame in range(self.frames))
+        for frame in range(self.frames):
+            scene = self.maker.make(replace(self.setting, time=frame / self.frames))
+            yield scene if self.power is None else scene.with_power(self.power)
 
     @property
     def reference(self) -> Case:
@@ -212,7 +217,12 @@ def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> R
 def _described(case: Case) -> Row:
     plan, pipeline = case.plan, case.pipeline
     row = described(pipeline, plan, case.setting, case.asked)
-    row |= {"scene": case.maker.name, "frames": case.frames, "bytes_per_pixel": bytes_per_pixel(pipeline, plan)}
+    row |= {
+        "scene": case.maker.name,
+        "power": case.power,
+        "frames": case.frames,
+        "bytes_per_pixel": bytes_per_pixel(pipeline, plan),
+    }
     if pipeline.has_gbuffer:
         row |= {"encoding": plan.layout.codec.encoding.name, "storage": plan.layout.normal_storage}
         row |= {"rounding": plan.layout.rounding, "normal_bits": plan.layout.normal_bits}
@@ -227,12 +237,18 @@ def _times(made: Rendering, repeats: int) -> Row:
     return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
 
 
+def shown_scene(row: Row) -> str:
+    """What a row was rendered of, as a sentence names it; a row of an older version has no power."""
+    power = row.get("power")
+    return str(row.get("scene")) + (f" at power {power:g}" if isinstance(power, int | float) else "")
+
+
 def ranked(rows: list[Row]) -> list[Row]:
     """The rows with each codec's place by its image and by its normals, among the rows that differ in nothing else."""
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         if row["normal_psnr_db"] is not None:
-            groups.setdefault(tuple(row[c] for c in SAME), []).append(row)
+            groups.setdefault(tuple(row.get(c) for c in SAME), []).append(row)
     for group in groups.values():
         if len(group) > 1:
             for place, figure in (("rank", "psnr_db"), ("normal_rank", "normal_psnr_db")):

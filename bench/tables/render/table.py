@@ -14,6 +14,7 @@ from ...options.option import (
     Objects,
     Option,
     Pipelines,
+    Powers,
     Repeats,
     Samples,
     Scale,
@@ -44,6 +45,7 @@ class RenderOptions:
     light_buffer: LightBuffers = "rgba32f"
     light_targets: LightTargets = "2"
     scene: Scenes = "gloss"
+    power: Powers = None
     shadow: Shadow = "on"
     size: Size = "640x480"
     samples: Samples = 1
@@ -75,6 +77,7 @@ COLUMNS = (
     Column("light_buffer", "The code that light is added up in.", KEY),
     shared.LIGHT_TARGETS,
     shared.SCENE,
+    Column("power", "Specular power of every material; empty: each material's own.", KEY, drops=7),
     shared.SHADOW,
     shared.SCALE,
     Column("size", "Width and height in pixels.", HOW),
@@ -105,7 +108,9 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
-    Column("rank", "Place by the image, among rows of one pipeline, scene, light buffer and shadow.", better="less"),
+    Column(
+        "rank", "Place by the image, among rows of one pipeline, scene, power, light buffer and shadow.", better="less"
+    ),
     Column("normal_rank", "Place by the normals, among the same rows.", better="less"),
     Column("invalid", "Pixels that are NaN or infinite; each counts as wrong as can be.", better="less", shown=False),
     Column("ms_frame", "Milliseconds a frame, median over the repeats.", TIME, "ms", "less"),

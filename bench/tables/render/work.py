@@ -23,13 +23,13 @@ from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
 from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
-from ...options.scene_names import scenes_named
+from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...output.errors import pick
 from ...output.writing import check_folder, whole_file, without
 from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from .measure import Bench, Case, Drawn, described, ranked
+from .measure import Bench, Case, Drawn, described, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
@@ -82,10 +82,12 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     ]
     made: list[Case] = []
     complaints: list[str] = []
+    powers = [None] if options.power is None else powers_named(options.power)
     for maker in scenes_named(options.scene):
         for pipeline in pick("pipeline", options.pipeline, PIPELINES):
             for plan in suited(device, pipeline, plans, complaints):
-                made.append(Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples))
+                case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples)
+                made += [replace(case, power=power) for power in powers]
     return what_is_left(made, complaints)
 
 
@@ -138,7 +140,7 @@ def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
 
 def _key(case: Case, options: RenderOptions) -> Row:
     key = described(case.pipeline, case.plan, case.setting, case.asked)
-    key |= {"scene": case.maker.name, "codec": case.plan.layout.codec.name, "frames": case.frames}
+    key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
@@ -170,7 +172,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     groups: dict[tuple, list[Row]] = {}
     for row in rows:
         if row["psnr_db"] is not None:
-            groups.setdefault((row["scene"], row["pipeline"], row["layout"]), []).append(row)
+            groups.setdefault((shown_scene(row), row["pipeline"], row["layout"]), []).append(row)
     for (scene, pipeline, layout), part in groups.items():
         order = sorted(part, key=lambda row: -row["psnr_db"])
         where = f"{scene} by {pipeline}" + (f" in layout {layout}" if layout not in (None, "fp32") else "")
@@ -181,7 +183,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 def _write_pictures(folder: Path, case: Case, drawn: Drawn, reference: Drawn) -> None:
     """The first frame, its reference and 16 times their difference."""
     plan = case.plan
-    words = [case.maker.name, case.pipeline.name]
+    words = [case.maker.name, *([] if case.power is None else [f"power{case.power:g}"]), case.pipeline.name]
     if case.pipeline.has_gbuffer:
         words += [plan.layout.name, plan.layout.codec.name.replace("/", "-")]
         words += [f"{plan.light_buffer.name}x{plan.light_targets}"]
@@ -193,8 +195,8 @@ def _write_pictures(folder: Path, case: Case, drawn: Drawn, reference: Drawn) ->
 
 def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     usable = having(rows, "psnr_db", "normal_psnr_db")
-    for at, scene in enumerate(dict.fromkeys(row.get("scene") for row in usable)):
-        part = [row for row in usable if row.get("scene") == scene]
+    for at, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
+        part = [row for row in usable if shown_scene(row) == scene]
         said = "PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The figures "
         said += "are in the table below."
         title = f"The image of {scene} and the normals it was lit by"

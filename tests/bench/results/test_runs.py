@@ -17,8 +17,9 @@ from normalbench.bench.isa import isa, spirv
 from normalbench.bench.normals import normal_sets
 from normalbench.bench.output import journal
 from normalbench.bench.output.errors import UsageError
+from normalbench.bench.output.sources import sources
 from normalbench.bench.results.measuring import files_of
-from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, sources, unfinished
+from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.suite import run as run_command
 from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.quality import measure as quality
@@ -250,7 +251,7 @@ def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
 
 def test_an_unknown_table_is_one_line(run, tmp_path):
     status, out, err = run("run", "--tables", "colours", "-o", str(tmp_path / "run"))
-    assert (status, out) == (2, "") and "unknown table 'colours'; known: all, quality" in err
+    assert (status, out) == (2, "") and "unknown table 'colours'; known: all, pick, quality" in err
     assert not (tmp_path / "run").exists()
 
 

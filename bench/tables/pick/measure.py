@@ -1,0 +1,289 @@
+"""What an answer needs of each code: angles, images and instructions. What was measured before is not measured anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import jax
+import numpy as np
+
+from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import displayed, rendering
+from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ....gbuffer.scenes.setting import Setting
+from ...metrics.images import squared_error
+from ...metrics.meter import psnr_db
+from ...normals.normal_sets import NORMAL_SETS, NormalSet
+from ...output import cache as kept
+from ...output.errors import MissingError
+from ...output.sources import sources
+from ...worst_case.exact_figures import has_twin
+from ..cost import measure as cost
+from ..quality import measure as quality
+from ..render import measure as render
+from .answer import IMAGE, answered
+from .table import TABLE
+
+Row = dict[str, Any]
+# A row's key columns.
+Key = tuple[Any, ...]
+# Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
+SIZE = (320, 240)
+STAGE = "fragment"
+QUALITY = ("angle_mean_deg", "angle_max_deg", "invalid", "count", "device", "skipped")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One code and what is asked of it.
+
+    Attributes:
+        codec: the code.
+        normal_set: what its angles are over.
+        maker, setting, powers: what is rendered, and with which specular powers.
+        said: what the row says of the question.
+    """
+
+    codec: Codec
+    normal_set: NormalSet
+    maker: SceneMaker
+    setting: Setting
+    powers: tuple[float, ...]
+    said: Mapping[str, Any]
+
+
+def rows(chosen: Sequence[Case], device: Device | None, tick: Callable[[str], None]) -> list[Row]:
+    """A row for each case, in their order; `device` draws, and without one there are no images.
+
+    Images and suprema take seconds each. Images are of codes that no other one beats by its angles and instructions;
+    of all that qualify where the image decides. Suprema are of the best; of all where the largest angle decides.
+    """
+    if not chosen:
+        return []
+    costs = Costs(dict.fromkeys(case.codec.encoding for case in chosen), chosen[0].said["family"])
+    pictures = Pictures(device) if device else None
+    # JAX compiles in a thread of its own while the device draws in this one.
+    pool = ThreadPoolExecutor(1)
+    try:
+        questions = [Question(part, pool, costs) for part in _questions(chosen)]
+        for question in questions:
+            question.measure(pictures, tick)
+        return [row for question in questions for row in question.rows()]
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _questions(chosen: Sequence[Case]) -> list[list[Case]]:
+    """Cases by storage, normals and scene, in their order."""
+    found: dict[Key, list[Case]] = {}
+    for case in chosen:
+        found.setdefault((case.codec.storage.name, case.said["normals"], case.said["scene"]), []).append(case)
+    return list(found.values())
+
+
+class Question:
+    """The codes of one storage on one set of normals and in one scene."""
+
+    def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs):
+        self._cases = {case.codec.encoding.name: case for case in chosen}
+        self._pool, self._costs = pool, costs
+        self._suprema: dict[str, Future[float | None]] = {}
+        # What has no twin is measured by GL, in the thread that draws.
+        self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
+        self._angles = pool.submit(_angles, self._by_jax)
+        self._rows: dict[str, Row] = {}
+
+    def measure(self, pictures: Pictures | None, tick: Callable[[str], None]) -> None:
+        """All but what is still computed in the other thread."""
+        by_gl = [case for case in self._cases.values() if case not in self._by_jax]
+        angles = {case.codec.encoding.name: row for case, row in zip(by_gl, _angles(by_gl), strict=True)}
+        names = (case.codec.encoding.name for case in self._by_jax)
+        angles |= dict(zip(names, self._angles.result(), strict=True))
+        for name, case in self._cases.items():
+            self._rows[name] = _described(case) | angles[name] | self._costs.of(case.codec.encoding)
+            tick(f"{case.codec.name} {case.normal_set.name}")
+        aim = next(iter(self._rows.values()))["aim"]
+        if aim == "worst":
+            self._find_suprema(self._qualified("angle"))
+            self._take_suprema()
+        if pictures:
+            drawn = self._qualified("angle") if aim == "image" else [row for row in self.answered() if row["front"]]
+            for row in drawn + [row for row in self._rows.values() if row["against"]]:
+                self._rows[row["encoding"]] |= pictures.of(self._cases[row["encoding"]])
+        self._find_suprema(self.answered()[:1])
+
+    def answered(self) -> list[Row]:
+        """The rows as far as they are known, the best first."""
+        return answered(list(self._rows.values()))
+
+    def _qualified(self, aim: str) -> list[Row]:
+        return [row for row in answered([row | {"aim": aim} for row in self._rows.values()]) if not row["left_out"]]
+
+    def _find_suprema(self, wanted: Iterable[Row]) -> None:
+        for row in wanted:
+            self._suprema[row["encoding"]] = self._pool.submit(_supremum, self._cases[row["encoding"]])
+
+    def _take_suprema(self) -> None:
+        for name, found in self._suprema.items():
+            self._rows[name]["angle_sup_deg"] = found.result()
+
+    def rows(self) -> list[Row]:
+        """The rows, in the order of the cases."""
+        self._take_suprema()
+        return list(self._rows.values())
+
+
+def _described(case: Case) -> Row:
+    encoding = case.codec.encoding
+    return (
+        TABLE.empty(f"{power:g}" for power in case.powers)
+        | dict(case.said)
+        | {"storage": case.codec.storage.name, "encoding": encoding.name, "domain": encoding.domain}
+        | {
+            "bits": case.codec.bits,
+            "seed": case.normal_set.seed,
+            "lost_percent": _lost(case.normal_set, encoding.domain),
+        }
+    )
+
+
+def _angles(chosen: Sequence[Case]) -> list[Row]:
+    """The columns of angles of each case, measured together where they are not kept."""
+    keys = [_key("angles", case.codec, _normals(case)) for case in chosen]
+    rows = [kept.read(key) if key else None for key in keys]
+    missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
+    measured = quality.rows(missing, lambda _: None)
+    for at, key in enumerate(keys):
+        if rows[at] is None:
+            row = {name: value for name, value in next(measured).items() if name in QUALITY}
+            rows[at] = row
+            if key and not row["skipped"]:
+                kept.write(key, row)
+    return [row or {} for row in rows]
+
+
+def _quality_case(case: Case) -> quality.Case:
+    return quality.Case(case.codec, case.normal_set, "jax" if has_twin(case.codec.encoding) else "glsl")
+
+
+def _supremum(case: Case) -> float | None:
+    """The largest angle in exact arithmetic; None of a code in GLSL alone and of a set without a domain."""
+    one = _quality_case(case)
+    if one.backend != "jax":
+        return None
+    key = _key("supremum", case.codec, _normals(case))
+    found = kept.read(key) if key else None
+    if found is None:
+        row = quality.measure(replace(one, worst_case=True))
+        found = {"angle_sup_deg": row["angle_sup_deg"]}
+        if key:
+            kept.write(key, found)
+    return found["angle_sup_deg"]
+
+
+def _normals(case: Case) -> list[Any] | None:
+    """What is kept of a set of normals in a key; None of one that may be another next time."""
+    chosen = case.normal_set
+    return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
+
+
+def _key(what: str, codec: Codec, *parts: Any) -> str:
+    """Where figures are kept for good; empty where they may be others next time."""
+    if None in parts or ENCODINGS.get(codec.encoding.name) is not codec.encoding:
+        return ""
+    return kept.key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))
+
+
+class Pictures:
+    """The error of the image that is lit by a code's normals, each scene's reference drawn once."""
+
+    def __init__(self, device: Device):
+        self._device = device
+        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...]], list[np.ndarray]] = {}
+
+    def of(self, case: Case) -> Row:
+        """The PSNR of the displayed image at each power; none where the device or a layout has no room for the code."""
+        known = case.maker.name if case.maker is SCENES.get(case.maker.name) else None
+        key = _key("image", case.codec, known, case.setting, case.powers, self._device.renderer)
+        found = kept.read(key) if key else None
+        if found is None:
+            try:
+                found = self._measured(case)
+            except (LayoutError, *render.UNMEASURABLE):
+                return {}
+            if key:
+                kept.write(key, found)
+        return found
+
+    def _measured(self, case: Case) -> Row:
+        images = self._drawn(case, LAYOUTS["fp32"].with_codec(case.codec))
+        question = (case.maker, case.setting, case.powers)
+        if question not in self._references:
+            self._references[question] = self._drawn(case, LAYOUTS["fp32"])
+        errors = [squared_error(*pair)[0] for pair in zip(images, self._references[question], strict=True)]
+        return {f"{IMAGE}{power:g}": psnr_db(mse) for power, mse in zip(case.powers, errors, strict=True)}
+
+    def _drawn(self, case: Case, layout: Layout) -> list[np.ndarray]:
+        plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+        scene, shown = case.maker.make(case.setting), []
+        with rendering(self._device, PIPELINES["hybrid"], scene, plan) as made:
+            for power in case.powers:
+                made.draw(scene.with_power(power))
+                shown.append(displayed(made.image()))
+        return shown
+
+
+@cache
+def _lost(normals: NormalSet, domain: str) -> float:
+    """The percentage of normals that lie outside a domain."""
+    if domain == "sphere":
+        return 0.0
+    lost = count = 0
+    for load in normals.loads():
+        chunk = load()
+        n, view, covered = ([np.asarray(c) for c in chunk.n], [np.asarray(c) for c in chunk.view], chunk.covered)
+        is_lost = n[2] < 0 if domain == "hemisphere" else sum(a * b for a, b in zip(n, view, strict=True)) > 0
+        covered = np.asarray(covered)
+        lost, count = lost + int(np.count_nonzero(is_lost & covered)), count + int(np.count_nonzero(covered))
+    return 100.0 * lost / max(count, 1)
+
+
+def _nobody(_: str) -> None:
+    """For ticks that no bar shows."""
+
+
+class Costs:
+    """Instructions of encodings on one family; unknown where this machine has no compilers."""
+
+    def __init__(self, encodings: Iterable[Encoding], family: str):
+        self.missing: list[str] = []
+        try:
+            found = cost.isa_rows(cost.cases(encodings, (), cost.OPERATIONS), [STAGE], [family], self.missing, _nobody)
+            rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
+        except MissingError as error:
+            self.missing.append(str(error))
+            rows = []
+        self._rows = {(row["encoding"], row["operation"]): row for row in rows}
+
+    def of(self, encoding: Encoding) -> Row:
+        """The columns of instructions; None where they are not known."""
+        encode, decode = (self._rows.get((encoding.name, operation)) for operation in cost.OPERATIONS)
+        if not encode or not decode:
+            return {}
+        return {
+            "encode_instructions": encode["instructions"],
+            "decode_instructions": decode["instructions"],
+            "instructions": encode["instructions"] + decode["instructions"],
+            "loops": (encode["loops"] or 0) + (decode["loops"] or 0),
+        }

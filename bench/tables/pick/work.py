@@ -1,0 +1,180 @@
+"""How the pick table is measured and answered."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.gl.device import Device
+from ....gbuffer.scenes.setting import Setting
+from ...codecs.names import check_twin, codecs_named
+from ...isa.isa import FAMILIES
+from ...machine.devices import found_device, require_jax
+from ...normals.normal_names import normal_sets_named
+from ...options.counts import check_seed, checked_count, in_range
+from ...options.scene_names import powers_named, scenes_named
+from ...output.errors import UsageError, tell
+from ..table import Measured, Row, Sheet, Step, Tick, Work
+from . import measure
+from .answer import AIMS, HOLDS, answered, groups
+from .sentences import sentences
+from .table import TABLE, PickOptions
+
+MOST_INSTRUCTIONS = 10**6
+# How wide sentences are at most.
+WIDTH = 100
+# What people see of the front.
+SHOWN = ("encoding", "place", "bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "instructions")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A case, and the device that draws it."""
+
+    case: measure.Case
+    device: Device | None
+
+
+def cases(options: PickOptions) -> list[measure.Case]:
+    """One case for each code that fits its storage.
+
+    Raises:
+        UsageError: unknown names, counts out of range, or no code that fits.
+    """
+    count = checked_count(options.count)
+    check_seed(options.seed)
+    said = _question(options)
+    against = codecs_named(options.against, options.storage, "nearest") if options.against else []
+    named = {codec.encoding.name for codec in against}
+    codecs = dict.fromkeys([*codecs_named(options.encoding, options.storage, "nearest"), *against])
+    fit, left_out = _fitting(codecs)
+    # Those of the catalogue are traced by tests.
+    for encoding in dict.fromkeys(codec.encoding for codec in fit if ENCODINGS.get(codec.encoding.name) is None):
+        check_twin(encoding)
+    needs_rays = any(codec.encoding.domain == "view" for codec in fit)
+    sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
+    powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
+    for line in left_out:
+        tell(f"left out: {line}")
+    return [
+        measure.Case(
+            codec,
+            normals,
+            maker,
+            Setting(seed=options.seed),
+            powers,
+            said | {"normals": normals.name, "scene": maker.name, "against": codec.encoding.name in named},
+        )
+        for storage in dict.fromkeys(codec.storage for codec in fit)
+        for normals in sets
+        for maker in makers
+        for codec in fit
+        if codec.storage is storage
+    ]
+
+
+def _question(options: PickOptions) -> Row:
+    """What every row says of the question. Raises UsageError for what cannot be asked."""
+    if options.most_instructions is not None:
+        in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
+    (needs,) = [None] if options.domain is None else _one("domain", options.domain, HOLDS)
+    (aim,), (family,) = _one("aim", options.aim, AIMS), _one("family", options.family, FAMILIES)
+    return {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+
+
+def _one(what: str, name: str, known: Any) -> list[str]:
+    """The one of the known names. Raises UsageError."""
+    if name not in known:
+        raise UsageError(f"unknown {what} {name!r}; known: {', '.join(known)}")
+    return [name]
+
+
+def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
+    """The codecs that fit, and a line for each reason why others do not. Raises UsageError where none fits."""
+    reasons: dict[str, list[str]] = {}
+    fit = []
+    for codec in codecs:
+        if codec.misfit:
+            reasons.setdefault(codec.misfit, []).append(codec.encoding.name)
+        else:
+            fit.append(codec)
+    said = [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
+    if not fit:
+        raise UsageError(said[0])
+    return fit, said
+
+
+def _steps(options: PickOptions, _: Any) -> list[Step]:
+    """A step for each code."""
+    require_jax()
+    made = cases(options)
+    device, why = found_device()
+    if not device:
+        tell(f"no images: {why}")
+    return [Step(_key(case), Part(case, device), f"{case.codec.name} {case.normal_set.name}") for case in made]
+
+
+def _key(case: measure.Case) -> Row:
+    key: Row = {"codec": case.codec.name, "count": case.normal_set.count, "seed": case.normal_set.seed}
+    return key | dict(case.said) | {"powers": list(case.powers)}
+
+
+def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+    device = steps[0].case.device if steps else None
+    for row in measure.rows([step.case.case for step in steps], device, tick):
+        yield [row]
+
+
+def _finish(rows: Sequence[Row]) -> list[Row]:
+    return answered(rows)
+
+
+def _paragraphs(group: Sequence[Row], width: int) -> str:
+    first, *rest = sentences(group)
+    more = (textwrap.fill(said, width, initial_indent="- ", subsequent_indent="  ") for said in rest)
+    return "\n".join([textwrap.fill(first, width), *more])
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    """For each question the answer in sentences, and the codes that no other beats."""
+    width = min(shutil.get_terminal_size((WIDTH, 40)).columns, WIDTH)
+    for group in groups(done.rows).values():
+        front = [_short(row) for row in group if row["front"] or row["against"]]
+        yield Sheet(_paragraphs(group, width), front, TABLE.drops(front))
+
+
+def _short(row: Row) -> Row:
+    names = (name for name in row if (column := TABLE.column(name)) and column.name in SHOWN)
+    return {name: row[name] for name in sorted(names, key=lambda name: SHOWN.index(_column(name)))}
+
+
+def _column(name: str) -> str:
+    column = TABLE.column(name)
+    return column.name if column else name
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    for group in groups(rows).values():
+        front = [_short(row) for row in group if row["front"] or row["against"]]
+        yield Sheet(_paragraphs(group, WIDTH), front, TABLE.drops(front))
+
+
+def _failures(rows: Sequence[Row]) -> Iterator[str]:
+    for group in groups(rows).values():
+        if all(row["left_out"] for row in group):
+            yield sentences(group)[0]
+
+
+WORK = Work(
+    steps=_steps,
+    measure=_measure,
+    finish=_finish,
+    shown=_shown,
+    summary=_summary,
+    failures=_failures,
+)
