@@ -14,6 +14,7 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case.search import worst_case
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.normals.tetrahedral import SIDE, UP
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec2, to_array
 
@@ -146,6 +147,12 @@ def test_of_the_fibonacci_lattice_the_nearest_point_is_found():
     lattice, given, found = (np.asarray(to_array(v), np.float64) for v in (encoding.decode(codes, n), n, decoded))
     nearer = np.linalg.norm(found - given, axis=1) - cKDTree(lattice).query(given)[0]
     assert nearer.max() < 1e-6, f"{given[nearer.argmax()]} has a point nearer by {nearer.max():.2g}"
+
+
+def test_a_tetrahedrons_faces_are_as_far_from_each_other_as_can_be():
+    """Any two of their normals, (+-SIDE, 0, UP) and (0, +-SIDE, -UP), have the cosine -1/3."""
+    faces = np.array([(SIDE, 0, UP), (-SIDE, 0, UP), (0, SIDE, -UP), (0, -SIDE, -UP)])
+    np.testing.assert_allclose(faces @ faces.T, np.full((4, 4), -1 / 3) + np.eye(4) * 4 / 3, atol=1e-15)
 
 
 def test_no_normal_is_farther_from_its_tetrahedrons_face_than_a_corner():

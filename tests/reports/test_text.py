@@ -5,6 +5,7 @@ import re
 import pytest
 
 from normalbench.reports import tables
+from normalbench.reports.page import page
 
 HOSTILE = "<script src=//x>[a](http://b) |`@c\x1b[2J"
 
@@ -31,3 +32,16 @@ def test_a_terminal_gets_no_control_characters():
 def test_what_is_code_stays_code():
     assert tables.markdown_text(tables.markdown_text(HOSTILE)) == tables.markdown_text(HOSTILE)
     assert tables.markdown_text("rg8 (a, b)") == "rg8 (a, b)"
+
+
+def test_what_may_be_spared_first_goes_first():
+    rows = [{"name": "one", "first": "a" * 30, "second": "b" * 30}, {"name": "two", "first": "c", "second": "d"}]
+    wide, narrow = (tables.written(rows, "table", width, ("first", "second")).split() for width in (200, 50))
+    assert wide[:3] == ["name", "first", "second"] and narrow[:2] == ["name", "second"], (wide, narrow)
+
+
+def test_figures_of_a_page_sort_by_all_their_digits():
+    """To four digits both are shown alike."""
+    made = page.table("t", [{"name": name, "db": db} for name, db in (("a", 50.00001), ("b", 50.00002))], lambda _: "")
+    one, other = (row[1] for row in made.rows)
+    assert one.text == other.text and float(one.value) < float(other.value), (one, other)

@@ -9,6 +9,8 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -350,3 +352,14 @@ def test_nothing_is_written_over_a_runs_own_files(run, tmp_path, name):
         status, _, err = run(*command, "-o", str(folder / name))
         assert status == 2 and "belongs to the run in its folder" in err and err.count("\n") == 1, err
     assert (folder / name).read_bytes() == before
+
+
+def test_one_table_that_fails_makes_the_run_fail(run, tmp_path, monkeypatch):
+    """The others do not make up for it, before or after."""
+    words = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--count", "64")
+    for at, name in enumerate(("quality", "frames")):
+        failing = replace(TABLES[name].work, failures=lambda _: ["it is not as it should be"])
+        with monkeypatch.context() as patch:
+            patch.setattr(import_module(f"{TABLES[name].package}.work"), "WORK", failing)
+            status, _, err = run("run", "--tables", "quality,frames", *words, "-o", str(tmp_path / str(at)))
+        assert status == 1 and "it is not as it should be" in err, err
