@@ -130,7 +130,7 @@ FAULTS = (
         "SIDE, UP = math.sqrt(2 / 3), math.sqrt(1 / 3)",
         "SIDE, UP = math.sqrt(1 / 3), math.sqrt(2 / 3)",
         "test_reference_figures.py test_parity.py",
-        "tetrahedral",
+        "tetrahed",
     ),
     Fault(
         "best-fit-even-codes",

@@ -99,7 +99,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(render|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|render|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -193,6 +193,16 @@ def test_the_headline_errors_are_what_is_measured(run):
         assert float(worst) == pytest.approx(row["angle_sup_deg"], abs=6e-3), row
     least = code_limit(2**16, SPHERE)
     assert f"{least.mean_deg:.3f}°" in PAGES[README] and f"{least.max_deg:.3f}°" in PAGES[README]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "radv")
+def test_the_answer_is_what_the_command_says(run):
+    """Every sentence of it."""
+    (shown,) = re.findall(r"^<!-- answer: normalbench pick -->\n(.*?)<!-- end -->", PAGES[README], re.S | re.M)
+    answer = " ".join(run("pick", "--format", "markdown")[1].split())
+    for said in re.split(r"^ *- ", shown, flags=re.M)[1:]:
+        assert " ".join(said.split()) in answer, said
 
 
 def test_the_headline_costs_are_what_is_measured(run):
