@@ -42,6 +42,15 @@ def markdown_text(text: str) -> str:
     return text if is_plain or CODE.fullmatch(text) else code_text(text)
 
 
+# What Markdown or HTML may read something into: dots and underscores in words and numbers are plain.
+MARKED = re.compile(r"[^\w\s.,;:%°()+'?-]|^[-+]|(?<=[a-zA-Z])\.(?=\w)|(?<![^\W_])_|_(?![^\W_])", re.MULTILINE)
+
+
+def markdown_sentence(text: str) -> str:
+    """A sentence in which Markdown and HTML read nothing: letters, digits and common marks stay, others are escaped."""
+    return re.sub(MARKED, lambda found: f"&#{ord(found[0])};", visible(text))
+
+
 def code_text(text: str) -> str:
     """Text as Markdown's code."""
     return f"`{' '.join(text.replace('`', chr(39)).split())}`"

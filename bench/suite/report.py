@@ -151,6 +151,7 @@ def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Sec
         says=lambda name: _definition(table, name),
         drawings=_drawings(found, table, rows, remarks),
         asked=asked,
+        leads=said.leads,
     )
 
 
@@ -163,7 +164,7 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
     """A table in short; nothing where its rows are not what this version writes."""
     try:
         finished = table.work.finish([dict(row) for row in rows]) if rows else []
-        return [Sheet(sheet.title, sheet.rows) for sheet in table.work.summary(finished) if sheet.rows]
+        return [Sheet(one.title, one.rows, said=one.said) for one in table.work.summary(finished) if one.rows]
     except UNEXPECTED:
         remarks.append(f"The rows of {table.name} are not those of this version; they are shown as they are.")
         return []

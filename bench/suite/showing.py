@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from ..tables.table import Measured, Role, Row, Sheet, Table
 FOR_PEOPLE = ("table", "markdown")
 # How wide a table in a file may be.
 FILE_WIDTH = 200
+# How wide sentences are at most.
+SENTENCE_WIDTH = 100
 
 
 def show(table: Table, done: Measured, format: str, output: Path | None) -> None:
@@ -47,16 +50,26 @@ def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
 
 
 def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
-    title = f"{sheet.title}\n\n" if sheet.title else ""
+    title = _said(sheet, width) + (f"{sheet.title}\n\n" if sheet.title else "")
     rows = tables.written(sheet.rows, format, width, sheet.drops if spares else ()) if sheet.rows else ""
     return title + rows + "".join(f"{note}\n" for note in sheet.notes)
+
+
+def _said(sheet: Sheet, width: int) -> str:
+    """The paragraphs of a sheet: the first as it is, the others as a list, for a terminal and for Markdown."""
+    if not sheet.said:
+        return ""
+    first, *rest = sheet.said
+    wide = min(width, SENTENCE_WIDTH)
+    made = (textwrap.fill(said, wide, initial_indent="- ", subsequent_indent="  ") for said in rest)
+    return "\n".join([textwrap.fill(first, wide), *made]) + "\n\n"
 
 
 def show_summary(table: Table, rows: Sequence[Row]) -> None:
     """What people look at first, to standard output; every row of a table that has no summary."""
     width = shutil.get_terminal_size((120, 40)).columns
     for sheet in summary(table, rows):
-        say(f"\n{sheet.title}\n\n{tables.written(sheet.rows, 'table', width, sheet.drops)}")
+        say(f"\n{_said(sheet, width)}{sheet.title}\n\n{tables.written(sheet.rows, 'table', width, sheet.drops)}")
 
 
 def summary(table: Table, rows: Sequence[Row]) -> list[Sheet]:

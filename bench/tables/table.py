@@ -71,6 +71,7 @@ class Section:
         method: how it is measured, in sentences.
         parts: a column; rows that differ in it are shown as tables of their own.
         extras: what the page's template shows beside the tables.
+        leads: whether it is the page's first screen.
     """
 
     title: str
@@ -79,6 +80,7 @@ class Section:
     method: str
     parts: str = ""
     extras: tuple[str, ...] = ()
+    leads: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,12 +114,14 @@ class Sheet:
         rows: the lines.
         drops: the columns that a narrow terminal leaves out, the first first.
         notes: lines below them.
+        said: paragraphs above them, the first of which is the answer.
     """
 
     title: str
     rows: Sequence[Row]
     drops: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    said: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,9 @@ def _blocks(found: Found) -> Iterator[str]:
     yield f"## normalbench: {found.name}\n"
     for remark in remarks(found):
         yield f"> {_plain(remark)}\n"
+    for sheet in (sheet for section in found.sections if section.leads for sheet in section.summary if sheet.said):
+        first, *rest = map(tables.markdown_sentence, sheet.said)
+        yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
     for at, contest in enumerate(judged(found)):
         said = [*contest.remarks, *([contest.agreement] if at == 0 or not contest.agrees else [])]
         yield f"**{contest.headline}** {' '.join(said)}".rstrip() + "\n"

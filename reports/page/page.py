@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +67,7 @@ class Table:
     rows: Sequence[Sequence[Cell]]
     constants: str
     folded: bool = False
+    said: Sequence[str] = ()
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str], folded: bool = False) -> Table:
@@ -136,9 +137,11 @@ class Part:
 
 
 def navigation(found: Found) -> list[tuple[str, str]]:
-    """Anchors and their names, in the order of the page."""
+    """Anchors and their names, in the order of the page; what leads is on top of it."""
     made = []
     for section in found.sections:
+        if section.leads:
+            continue
         made.append((section.key, section.short))
         made += [(extra, EXTRAS[extra]) for extra in section.extras if extra in EXTRAS]
     return [*made, ("measured", "Measured")]
@@ -171,6 +174,7 @@ def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> st
         gallery: its pictures.
     """
     script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
+    parts = [_part(found, section, svgs) for section in found.sections]
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
     return _template().render(
         found=found,
@@ -178,7 +182,8 @@ def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> st
         nav=navigation(found),
         contests=[(contest, table(title, contest.rows, lambda name: CONTEST[name])) for contest, title in titled],
         family=instructions(found.tables.get("cost", ()))[1],
-        parts=[_part(found, section, svgs) for section in found.sections],
+        parts=parts,
+        leading=[part for part in parts if part.section.leads and part.is_there],
         spheres=spheres.globes(found.maps),
         directions=found.maps[0].directions if found.maps else 0,
         cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
@@ -196,5 +201,6 @@ def _charts(made: Sequence[Drawing], svgs: Mapping[str, str]) -> list[Chart]:
 
 
 def _part(found: Found, section: Section, svgs: Mapping[str, str]) -> Part:
-    shown = [table(s.title, s.rows, section.says, s.folded) for s in section.sheets(found.domains)]
+    sheets = section.sheets(found.domains)
+    shown = [replace(table(s.title, s.rows, section.says, s.folded), said=s.said) for s in sheets]
     return Part(section, _charts(section.drawings, svgs), shown, section.measured())

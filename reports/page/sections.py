@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..charts.drawings import Drawing
@@ -19,11 +19,13 @@ class Sheet:
         title: its caption.
         rows: all with the same columns.
         folded: whether it is shown only when asked for.
+        said: paragraphs above it, the first of which is the answer.
     """
 
     title: str
     rows: Sequence[Row]
     folded: bool = False
+    said: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Section:
         says: what a column means.
         drawings: its charts.
         asked: whether the run was asked for it.
+        leads: whether it is the page's first screen.
     """
 
     key: str
@@ -58,12 +61,13 @@ class Section:
     says: Callable[[str], str]
     drawings: Sequence[Drawing]
     asked: bool
+    leads: bool = False
 
     def sheets(self, domains: Mapping[str, str]) -> Iterator[Sheet]:
         """Its tables: those that people look at first, then every row."""
         for sheet in self.summary:
             if sheet.rows:
-                yield Sheet(sheet.title, whole(sheet.rows))
+                yield replace(sheet, rows=whole(sheet.rows))
         rows = whole(self.rows)
         for value in dict.fromkeys(row.get(self.parts) for row in rows) if self.parts else (None,):
             part = [row for row in rows if not self.parts or row.get(self.parts) == value]

@@ -323,3 +323,29 @@ def test_maps_are_in_the_page_with_means_by_area(results):
     (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
     (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)
     assert float(mean) == pytest.approx(measured, rel=0.01) and "away" not in text, "it cannot hold what faces away"
+
+
+def pick_row(encoding: str, mean: float, instructions: int) -> dict:
+    """A code of an answer."""
+    about = {"storage": "rg8", "encoding": encoding, "normals": "sphere", "scene": "gloss", "aim": "angle", "bits": 16}
+    about |= {"domain": "sphere", "family": "navi21", "invalid": 0, "lost_percent": 0.0, "against": False}
+    figures = {"angle_mean_deg": mean, "angle_max_deg": 1.0, "image_db_47": 50.0, "instructions": instructions}
+    costs = {"encode_instructions": instructions, "decode_instructions": 0, "loops": 0}
+    return TABLES["pick"].empty(["47"]) | about | figures | costs
+
+
+def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
+    """With its price, whatever names hold."""
+    rows = [pick_row("<b>fine", 0.2, 90), pick_row("_cheap_ www.a.b", 0.3, 10)]
+    folder = a_run(tmp_path / "run", {"pick": rows, "quality": [quality_row("xyz")]})
+    assert run("report", str(folder))[0] == 0
+    page = (folder / "report.html").read_text()
+    answer = page.index('<p class="lead">rg8, on sphere: take &lt;b&gt;fine.</p>')
+    costs = page.index("It costs 90 instructions on navi21: 90 to encode and 0 to decode.")
+    assert answer < costs < page.index('id="quality"')
+    assert page.index("Runner-up: _cheap_ www.a.b, mean error 0.3°") and "<b>fine" not in page
+    text = run("report", str(folder), "--markdown")[1]
+    assert (
+        "**rg8, on sphere: take &#60;b&#62;fine.**" in text
+        and "Runner-up: &#95;cheap&#95; www&#46;a&#46;b, mean" in text
+    )

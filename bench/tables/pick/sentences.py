@@ -16,13 +16,13 @@ MOST_NAMED = 6
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
-    """What the rows of one question answer, in paragraphs of a few sentences. `group` is as `answered` gives it."""
+    """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences."""
     places = {place: row for row in group for place in (row["place"] or "").split(", ") if place}
     where = f"{group[0]['storage']}, on {group[0]['normals']}"
     if BEST not in places:
         return [f"{where}: no code qualifies{_constraints(group[0])}.", *_left_out(group)]
     best = places[BEST]
-    made = [f"{where}: take {best['encoding']}. {_figures(best)} {_price(best)}{_loops(best)}{_reservation(best)}"]
+    made = [f"{where}: take {best['encoding']}.", f"{_figures(best)} {_price(best)}{_loops(best)}{_reservation(best)}"]
     if RUNNER_UP in places:
         other = places[RUNNER_UP]
         made.append(f"Runner-up: {other['encoding']}, {_next(other, best)}.")
@@ -113,8 +113,7 @@ def _picture(places: dict[str, Row], best: Row) -> Iterator[str]:
         return
     row = places[PICTURE]
     if row is best or row is places.get(CHEAPER):
-        also = "It also has" if row is best else f"{row['encoding']} also has"
-        yield from [] if best["aim"] == "image" else [f"{also} the best image."]
+        yield from [] if best["aim"] == "image" else [f"{row['encoding']} also has the best image."]
         return
     count = "" if row["instructions"] is None else f" for {row['instructions']:g} instructions"
     price = f"{count}{_bits(row, best)}; mean error {degrees(row['angle_mean_deg'])}."

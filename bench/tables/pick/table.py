@@ -106,7 +106,7 @@ TABLE = Table(
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
     section=Section(
-        title="Which code to take",
+        title="Which code should I take?",
         short="Answer",
         intro="The best code for each storage, what it costs, and what to take instead.",
         method="Codes that do not meet the constraints are left out. The aim decides among the others; where two are "
@@ -114,5 +114,6 @@ TABLE = Table(
         "instructions. Angles are over the named normals, the largest is a supremum found in float64. Images are one "
         "frame of 320 x 240 of the hybrid pipeline, all else in 32-bit floats. Instructions are counted in fragment "
         "shaders as Mesa compiles them, without the conversion that the render target does.",
+        leads=True,
     ),
 )

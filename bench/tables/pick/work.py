@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,8 +24,6 @@ from .sentences import sentences
 from .table import TABLE, PickOptions
 
 MOST_INSTRUCTIONS = 10**6
-# How wide sentences are at most.
-WIDTH = 100
 # What people see of the front.
 SHOWN = ("encoding", "place", "bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "instructions")
 
@@ -134,18 +130,16 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
     return answered(rows)
 
 
-def _paragraphs(group: Sequence[Row], width: int) -> str:
-    first, *rest = sentences(group)
-    more = (textwrap.fill(said, width, initial_indent="- ", subsequent_indent="  ") for said in rest)
-    return "\n".join([textwrap.fill(first, width), *more])
+def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """For each question the answer in sentences, and the codes that no other beats."""
+    for (storage, normals, _), group in groups(rows).items():
+        front = [_short(row) for row in group if row["front"] or row["place"]]
+        title = f"{storage}, on {normals}: the codes that no other one beats in every figure"
+        yield Sheet(title if front else "", front, TABLE.drops(front), said=tuple(sentences(group)))
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """For each question the answer in sentences, and the codes that no other beats."""
-    width = min(shutil.get_terminal_size((WIDTH, 40)).columns, WIDTH)
-    for group in groups(done.rows).values():
-        front = [_short(row) for row in group if row["front"] or row["against"]]
-        yield Sheet(_paragraphs(group, width), front, TABLE.drops(front))
+    yield from _sheets(done.rows)
 
 
 def _short(row: Row) -> Row:
@@ -156,12 +150,6 @@ def _short(row: Row) -> Row:
 def _column(name: str) -> str:
     column = TABLE.column(name)
     return column.name if column else name
-
-
-def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    for group in groups(rows).values():
-        front = [_short(row) for row in group if row["front"] or row["against"]]
-        yield Sheet(_paragraphs(group, WIDTH), front, TABLE.drops(front))
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
@@ -175,6 +163,6 @@ WORK = Work(
     measure=_measure,
     finish=_finish,
     shown=_shown,
-    summary=_summary,
+    summary=_sheets,
     failures=_failures,
 )

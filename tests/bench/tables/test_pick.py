@@ -97,15 +97,15 @@ def check(group: list[dict], asked: dict) -> None:
 
 def test_the_sentences_say_the_rows_figures(rows):
     for group in groups(answered([row | {"aim": "angle"} for row in rows])).values():
-        first, *rest = sentences(group)
+        answer, first, *rest = sentences(group)
         best = next(row for row in group if row["place"] and "best" in row["place"])
         for said in (
-            f"take {best['encoding']}",
             f"mean error is {best['angle_mean_deg']:.3g}°",
             f"{best['image_db_47']:.1f} dB at power 47 and {best['image_db_1024']:.1f} dB at power 1024",
             f"{best['instructions']} instructions on navi21: {best['encode_instructions']} to encode",
         ):
             assert said in first, (said, first)
+        assert answer.endswith(f"take {best['encoding']}."), answer
         lost = "xy, hemi_octahedral (loss of normals that point away (z < 0): 50 % of these)"
         assert any(lost in said for said in rest), rest
 
