@@ -61,11 +61,27 @@ def list_command(
 
 
 @app.command()
-def doctor(format: FormatOption = Format.table, output: PlainOutput = None) -> None:
-    """What this machine has: versions, cores, the GL device and how it rounds."""
-    from ..results.machine import examine
+def doctor(
+    file: Annotated[Path | None, typer.Argument(help="A GLSL file with an encoding of yours.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", help="Draw the encoding's error over the sphere, in rgba8, into this file.")
+    ] = None,
+    format: FormatOption = Format.table,
+    output: PlainOutput = None,
+) -> int:
+    """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
 
-    write(examine(), format, output)
+    Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
+    directions before any storage.
+    """
+    if file is None and plot is None:
+        from ..results.machine import examine
+
+        write(examine(), format, output)
+        return 0
+    from ..suite.examine import examine_encoding
+
+    return examine_encoding(file, plot, format, output)
 
 
 add_tables(app, TABLES.values())

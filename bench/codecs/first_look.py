@@ -3,9 +3,9 @@
     python -m normalbench.bench.codecs.first_look FILE
 
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
-compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else by domain
-how far a direction is off on average without any storage, and the worst with what it becomes. Of the twin: `error`,
-what it raises; `apart`, where it contradicts the GLSL.
+compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
+what comes back, and `wrong`, a list of what is likely wrong. Of the twin: `error`, what it raises; `apart`, where it
+contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError
 from ..machine import children
 from ..output.errors import UsageError
+from .diagnoses import Trip, diagnoses, guessed
 from .names import check_twin
 from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
 
@@ -60,7 +61,8 @@ def first_look(path: Path) -> dict[str, Any]:
     try:
         encoding, gl = read_encoding(path, NOT_ASKED), device()
         codes, _ = exact_values(gl, encoding, given, view, given)
-        _, decoded = exact_values(gl, encoding, given, view, codes)
+        # As a storage clips them.
+        _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
         broken = _ended(gl, encoding, given, view)
     except NoDeviceError as error:
         return {"missing": str(error)}
@@ -68,7 +70,7 @@ def first_look(path: Path) -> dict[str, Any]:
         return {"error": str(error)}
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
-    return broken or _judged(n, codes[:, : encoding.components], decoded[:, :3])
+    return broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
 
 
 def _of_compiler(path: Path, said: str) -> str:
@@ -86,19 +88,13 @@ def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> d
     return {}
 
 
-def _judged(n: np.ndarray, codes: np.ndarray, decoded: np.ndarray) -> dict[str, Any]:
-    for what, found in (("encode", codes), ("decode", decoded)):
+def _judged(trip: Trip) -> dict[str, Any]:
+    for what, found in (("encode", trip.codes), ("decode", trip.decoded)):
         bad = ~np.isfinite(found).all(axis=1)
         if bad.any():
-            return {"broken": f"{what} of {n[bad][0].tolist()} is {found[bad][0].tolist()}, no number"}
-    length = np.maximum(np.linalg.norm(decoded, axis=1), 1e-20)
-    angles = np.degrees(np.arccos(np.clip(np.sum(n * decoded, axis=1, dtype=np.float64) / length, -1, 1)))
-    worst = int(np.argmax(angles))
-    return {
-        "mean_deg": {"sphere": float(angles.mean()), "hemisphere": float(angles[n[:, 2] >= 0].mean())},
-        "worst": n[worst].round(4).tolist(),
-        "becomes": decoded[worst].round(4).tolist(),
-    }
+            return {"broken": f"{what} of {trip.n[bad][0].tolist()} is {found[bad][0].tolist()}, no number"}
+    domain = guessed(trip)
+    return {"domain": domain, "wrong": diagnoses(trip, domain)}
 
 
 def twin_look(path: Path) -> dict[str, Any]:

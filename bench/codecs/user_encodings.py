@@ -23,7 +23,7 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
-from ..output.errors import UsageError, check_comma, pick, tell
+from ..output.errors import MissingError, UsageError, check_comma, pick, tell
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
@@ -33,7 +33,9 @@ ENDING = ".glsl"
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 # Farther off than that on average it is hardly the decoder of this encoder.
-STRANGE_DEG = 15.0
+# What is said of a domain that is not the whole sphere.
+TAKEN = "taken to be made for"
+HOLDS = {"hemisphere": "normals with z >= 0 alone", "view": "normals that face the viewer alone"}
 
 
 class NoTwinError(Exception):
@@ -83,6 +85,24 @@ def _looked_at(path: Path) -> Encoding | UsageError:
         return replace(read_encoding(path, found.fault), domain=domain)
     except UsageError as error:
         return error
+
+
+def examined(path: Path) -> tuple[Encoding, list[str], bool]:
+    """A file's encoding, what there is to say of it, and whether it can be measured.
+
+    Raises:
+        UsageError: it is not an encoding, or does not compile.
+        MissingError: there is no GL device to look at it with.
+    """
+    found = _look(path)
+    if "missing" in found.glsl:
+        raise MissingError(found.glsl["missing"])
+    if "error" in found.glsl:
+        raise UsageError(found.glsl["error"])
+    of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
+    wrong = [found.glsl["broken"]] if "broken" in found.glsl else findings(found.glsl)
+    encoding = replace(read_encoding(path, found.fault), domain=found.glsl.get("domain") or "sphere")
+    return encoding, [*wrong, *of_twin, *([found.fault] if found.fault else [])], "broken" not in found.glsl
 
 
 def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) -> Encoding:
@@ -234,7 +254,7 @@ def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def _domain(path: Path, found: dict[str, Any]) -> str:
-    """Where the decoder undoes the encoder; that it does nowhere is said on standard error.
+    """Where the decoder undoes the encoder. What is likely wrong is said on standard error.
 
     Raises:
         UsageError: it does not compile, or is not finite.
@@ -243,12 +263,12 @@ def _domain(path: Path, found: dict[str, Any]) -> str:
         raise UsageError(found["error"])
     if "broken" in found:
         raise UsageError(f"{path}: {found['broken']}")
-    for domain, mean in found.get("mean_deg", {}).items():
-        if mean <= STRANGE_DEG:
-            return domain
-    if "mean_deg" in found:
-        tell(
-            f"{path}: decode(encode(n)) is {found['mean_deg']['sphere']:.0f} degrees off on average, "
-            f"without any storage; {found['worst']} comes back as {found['becomes']}"
-        )
-    return "sphere"
+    for line in findings(found):
+        tell(f"{path}: {line}")
+    return found.get("domain") or "sphere"
+
+
+def findings(found: dict[str, Any]) -> list[str]:
+    """What a first look says of a shader that can be measured: what is likely wrong, and a domain that was guessed."""
+    held = HOLDS.get(found.get("domain", ""))
+    return [*found.get("wrong", ()), *([f"{TAKEN} {held}: no others come back"] if held else [])]

@@ -1,0 +1,198 @@
+"""What is likely wrong with an encoder, from what its round trip does to directions before any storage.
+
+Arrays are float of shape (count, ...), a row for each direction: `n` the direction, `codes` its numbers, `decoded` what
+comes back. Each diagnosis is a line with its figure and a direction that shows it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+# Two directions this near are the same one; storages of 8 bits move them by half of it.
+SAME_DEG = 1.0
+# Shares of directions: nearly all, and so few that a singular point may lose them.
+MOST, FEW = 0.95, 0.002
+# Of [-1, 1]: how much a number must use, and how far it may reach beyond.
+USED, BEYOND = 0.8, 1e-3
+# How far a decode's length may be from 1.
+LENGTH = 0.01
+# Of a direction's distance from a pole: how far off it may come back. Beside the pole by this angle.
+POLE_SHARE, POLE_DEG = 0.5, 0.06
+# How much farther off than usual a direction is at a seam or a pole: encodings of few codes are never exact.
+UNUSUAL = 30.0
+AXES = "xyz"
+CLIPPED = "storages clip what is beyond [-1, 1]"
+
+
+@dataclass(frozen=True)
+class Trip:
+    """Directions, where they are seen from, their codes, and what comes back of these as storages clip them."""
+
+    n: np.ndarray
+    view: np.ndarray
+    codes: np.ndarray
+    decoded: np.ndarray
+
+    def of(self, which: np.ndarray) -> Trip:
+        """Some of them."""
+        return Trip(self.n[which], self.view[which], self.codes[which], self.decoded[which])
+
+    def in_domain(self, domain: str) -> Trip:
+        """Those that an encoding of a domain is made for."""
+        return self.of(DOMAINS[domain](self)) if domain else self
+
+    def angles(self) -> np.ndarray:
+        """How far each comes back, in degrees."""
+        return angles(self.n, self.decoded)
+
+    def example(self, at: int) -> str:
+        """A direction and what it becomes."""
+        return f"{vector(self.n[at])} becomes {vector(self.decoded[at])}"
+
+    @property
+    def worst(self) -> str:
+        """The direction that comes back farthest, and what it becomes."""
+        return self.example(int(np.argmax(self.angles())))
+
+
+# In this order: what comes back of z >= 0 does so of much that faces the viewer.
+DOMAINS: Mapping[str, Callable[[Trip], np.ndarray]] = MappingProxyType(
+    {
+        "sphere": lambda trip: np.full(len(trip.n), True),
+        "hemisphere": lambda trip: trip.n[:, 2] >= 0,
+        "view": lambda trip: np.sum(trip.n * trip.view, axis=1) < 0,
+    }
+)
+
+
+def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Degrees between vectors of any length."""
+    one, other = one.astype(np.float64), other.astype(np.float64)
+    across = np.linalg.norm(np.cross(one, other), axis=1)
+    return np.degrees(np.arctan2(across, np.sum(one * other, axis=1)))
+
+
+def vector(values: np.ndarray) -> str:
+    return "(" + ", ".join(f"{value + 0.0:.3g}" for value in values) + ")"
+
+
+def diagnoses(trip: Trip, domain: str) -> list[str]:
+    """What is likely wrong.
+
+    Args:
+        domain: one of DOMAINS; empty where directions of none come back.
+    """
+    held = trip.in_domain(domain)
+    ranges = list(_ranges(trip, held))
+    if domain:
+        return [*_seam(held), *_poles(held), *_lengths(held), *ranges]
+    # What is clipped comes back elsewhere, whatever else is right.
+    turned = [] if any(CLIPPED in said for said in ranges) else list(_turned(trip)) or [_no_pair(trip)]
+    return [*turned, *_lengths(held), *ranges]
+
+
+def guessed(trip: Trip) -> str:
+    """The domain: where the decoder undoes the encoder, seams and poles apart; empty where nowhere."""
+    is_same = trip.angles() < SAME_DEG
+    return next((name for name, which in DOMAINS.items() if is_same[which(trip)].mean() > MOST), "")
+
+
+def _turned(trip: Trip) -> Iterator[str]:
+    """Directions that come back with axes swapped or reversed: all of them, or those of a half."""
+    found = _axes_of(trip)
+    if found:
+        yield f"every direction comes back with {found}: {trip.worst}"
+        return
+    for axis, side in itertools.product(range(3), (1, -1)):
+        half = trip.n[:, axis] * side > 0.02
+        if (trip.of(~half & (trip.n[:, axis] * side < -0.02)).angles() < SAME_DEG).mean() > MOST:
+            what = _axes_of(trip.of(half))
+            sign = ">" if side > 0 else "<"
+            lost = f"with {what}" if what else f"{np.median(trip.of(half).angles()):.3g} degrees off"
+            yield f"directions with {AXES[axis]} {sign} 0 come back {lost}: {trip.of(half).worst}"
+            return
+
+
+def _axes_of(trip: Trip) -> str:
+    """Which axes are swapped or reversed in what comes back; empty where none are."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            if order == (0, 1, 2) and signs == (1, 1, 1):
+                continue
+            if (angles(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
+                return _said(order, signs)
+    return ""
+
+
+def _said(order: Sequence[int], signs: Sequence[int]) -> str:
+    moved = [AXES[at] for at in range(3) if order[at] != at]
+    reversed_ = [AXES[at] for at in range(3) if signs[at] < 0]
+    said = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z in another order"] if moved else []
+    return " and ".join([*said, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])
+
+
+def _no_pair(trip: Trip) -> str:
+    mean = trip.angles().mean()
+    return f"encode and decode are not a pair: {mean:.3g} degrees apart on average without any storage; {trip.worst}"
+
+
+def _seam(trip: Trip) -> Iterator[str]:
+    off = trip.angles() > max(SAME_DEG, UNUSUAL * float(np.median(trip.angles())))
+    at_a_pole = np.abs(trip.n).max(axis=1) > np.cos(np.radians(2 * POLE_DEG))
+    if off.mean() > FEW and at_a_pole[off].all() and len(np.unique(np.round(trip.n[off]), axis=0)) == 1:
+        yield f"a pole is lost: {trip.worst}"
+    elif off.mean() > FEW:
+        share = 100 * off.mean()
+        yield f"a seam: {share:.2g} % of directions come back more than {SAME_DEG:g} degree off; {trip.worst}"
+
+
+def _poles(trip: Trip) -> Iterator[str]:
+    """Directions beside an axis that come back elsewhere, by a large part of their distance from it."""
+    for axis, side in itertools.product(range(3), (1.0, -1.0)):
+        pole = side * np.eye(3)[axis]
+        beside = angles(trip.n, np.broadcast_to(pole, trip.n.shape))
+        near = (beside > POLE_DEG / 2) & (beside < 2 * POLE_DEG)
+        if not near.any():
+            continue
+        around = trip.of(near)
+        lost = around.angles() / beside[near]
+        is_unusual = np.median(around.angles()) > UNUSUAL * np.median(trip.angles())
+        if is_unusual and np.median(lost) > POLE_SHARE and around.angles().max() < SAME_DEG:
+            sign = "+" if side > 0 else "-"
+            at = int(np.argmax(lost))
+            said = f"directions {beside[near][at]:.2g} degrees from it come back {around.angles()[at]:.2g} degrees off"
+            yield f"the pole {sign}{AXES[axis]} loses its neighbourhood: {said}; {around.example(at)}"
+
+
+def _lengths(trip: Trip) -> Iterator[str]:
+    lengths = np.linalg.norm(trip.decoded.astype(np.float64), axis=1)
+    if np.abs(lengths - 1).max() > LENGTH:
+        at = int(np.argmax(np.abs(lengths - 1)))
+        said = f"decode gives lengths from {lengths.min():.3g} to {lengths.max():.3g}; normalize() is missing"
+        yield f"{said}: {trip.example(at)}"
+
+
+def _ranges(trip: Trip, held: Trip) -> Iterator[str]:
+    """Numbers that use less than a storage has, of all directions, or more, of those that the encoding is made for."""
+    clipped = np.clip(trip.codes, -1, 1)
+    low, high = clipped.min(axis=0), clipped.max(axis=0)
+    size = trip.codes.shape[1]
+    constant = [at for at in range(size) if high[at] - low[at] < 1e-4]
+    for at in constant:
+        yield f"number {at + 1} of the code carries nothing: it is always {low[at]:.3g}"
+    others = [at for at in range(size) if at not in constant]
+    if others and all(low[at] > -BEYOND and abs(high[at] - 1) < 0.1 for at in others):
+        yield "codes fill [0, 1] of [-1, 1]: half of each number is unused. Is * 0.5 + 0.5 in it?"
+        return
+    for at in others:
+        if (np.abs(held.codes[:, at]) > 1 + BEYOND).mean() > FEW:
+            worst = int(np.argmax(np.abs(held.codes[:, at])))
+            reach = f"number {at + 1} of the code is {held.codes[worst, at]:.4g} for {vector(held.n[worst])}"
+            yield f"{reach}: {CLIPPED}"
+        elif (used := (high[at] - low[at]) / 2) < USED:
+            yield f"number {at + 1} of the code is {low[at]:.3g} to {high[at]:.3g}: {100 * (1 - used):.0f} % is unused"

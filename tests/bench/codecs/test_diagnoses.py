@@ -1,0 +1,185 @@
+"""What is likely wrong with a user's encoder is named; of a right one nothing is said but what it is made for."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.diagnoses import Trip, diagnoses, guessed
+from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.gbuffer.codecs.codec_passes import exact_values
+
+ENCODE = """vec2 mine_encode(vec3 n, vec3 view) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 f = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    p = n.z < 0.0 ? f : p;
+    return CODE;
+}
+"""
+DECODE = """vec3 mine_decode(vec2 e, vec3 view) {
+    BEFORE
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float t = max(-n.z, 0.0);
+    n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
+    return RESULT;
+}
+"""
+PI = "3.14159265358979"
+BY_ANGLES = f"""vec3 mine_decode(vec2 e, vec3 view) {{
+    BEFORE
+    float a = e.x * {PI}, s = sqrt(max(0.0, 1.0 - e.y * e.y));
+    return vec3(cos(a) * s, sin(a) * s, e.y);
+}}
+"""
+ANGLES = f"vec2 mine_encode(vec3 n, vec3 view) {{ return vec2(atan(n.y, n.x) / {PI}, n.z); }}\n"
+INCLINED = f"""vec2 mine_encode(vec3 n, vec3 view) {{
+    return vec2(atan(n.y, n.x), 2.0 * acos(clamp(n.z, -LARGEST, LARGEST)) - {PI}) / {PI};
+}}
+vec3 mine_decode(vec2 e, vec3 view) {{
+    float a = e.x * {PI}, t = (e.y + 1.0) * 0.5 * {PI};
+    return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));
+}}
+"""
+ALL_THREE = """vec3 mine_encode(vec3 n, vec3 view) { return n; }
+vec3 mine_decode(vec3 e, vec3 view) { return RESULT; }
+"""
+FLAT = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
+vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e)))); }
+"""
+HALF = """vec2 mine_encode(vec3 n, vec3 view) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return vec2(p.x + p.y, p.x - p.y);
+}
+vec3 mine_decode(vec2 e, vec3 view) {
+    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
+    return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
+}
+"""
+DISC = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / sqrt(1.0 + max(n.z, 0.0)); }
+vec3 mine_decode(vec2 e, vec3 view) { float f = dot(e, e); return vec3(e * sqrt(max(0.0, 2.0 - f)), 1.0 - f); }
+"""
+STEREO = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (1.0 + max(n.z, 0.0)); }
+vec3 mine_decode(vec2 e, vec3 view) { float d = 1.0 + dot(e, e); return vec3(2.0 * e, 2.0 - d) / d; }
+"""
+
+
+def octahedral(code="p", before="", result="normalize(n)") -> str:
+    return (ENCODE + DECODE).replace("CODE", code).replace("BEFORE", before).replace("RESULT", result)
+
+
+def three(text: str) -> str:
+    """An encoding of two numbers with a third that is always 0."""
+    return (
+        text.replace("vec2 mine", "vec3 mine")
+        .replace("return p;", "return vec3(p, 0.0);")
+        .replace("decode(vec2 e,", "decode(vec3 e,")
+        .replace("vec3(e, 1.0", "vec3(e.xy, 1.0")
+    )
+
+
+WRONG = {
+    "half of the range": (octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"), "codes fill [0, 1] of [-1, 1]"),
+    "a share of it": (octahedral("p * 0.7", "e /= 0.7;"), "number 1 of the code is -0.7 to 0.7: 30 % is unused"),
+    "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "number 1 of the code is 1.4 for (1, 0, 0)"),
+    "a mirrored half": (
+        octahedral(result="normalize(vec3(abs(n.x), n.yz))"),
+        "directions with x < 0 come back with x reversed: (-1, 0, 0) becomes (1, 0, 0)",
+    ),
+    "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
+    "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
+    "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
+    "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
+    "NaN": (
+        ANGLES.replace("n.z)", "n.z + 1e-9 * acos(n.z * 1.001))") + BY_ANGLES.replace("BEFORE", ""),
+        "no number",
+    ),
+    "a seam": (
+        ANGLES + BY_ANGLES.replace("BEFORE", "if (e.x > 0.97) e.x = -0.9;"),
+        "a seam: 1.9 % of directions come back more than 1 degree off",
+    ),
+    "a number of nothing": (three(octahedral()), "number 3 of the code carries nothing: it is always 0"),
+    "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "the pole +z loses its neighbourhood: directions 0.057"),
+}
+RIGHT = {
+    "octahedral": (octahedral(), "sphere"),
+    "angle and z": (ANGLES + BY_ANGLES.replace("BEFORE", ""), "sphere"),
+    "two angles": (INCLINED.replace("LARGEST", "1.0"), "sphere"),
+    "three numbers": (ALL_THREE.replace("RESULT", "e"), "sphere"),
+    "three, normalised": (ALL_THREE.replace("RESULT", "normalize(e)"), "sphere"),
+    "turned on its side": (octahedral().replace("n.xy / (", "n.yx / (").replace("vec3(e, 1", "vec3(e.yx, 1"), "sphere"),
+    "two of three": (FLAT, "hemisphere"),
+    "half an octahedron": (HALF, "hemisphere"),
+    "an equal-area disc": (DISC, "hemisphere"),
+    "stereographic": (STEREO, "hemisphere"),
+}
+
+
+def looked_at(folder: Path, text: str) -> dict:
+    path = folder / "mine.glsl"
+    path.write_text(text)
+    return first_look(path)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_named_first(tmp_path, what):
+    text, said = WRONG[what]
+    found = looked_at(tmp_path, text)
+    first, *_ = [found["broken"]] if "broken" in found else found["wrong"]
+    assert said in first, found
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("what", RIGHT)
+def test_of_a_right_encoder_nothing_is_said(tmp_path, what):
+    text, domain = RIGHT[what]
+    assert looked_at(tmp_path, text) == {"domain": domain, "wrong": []}
+
+
+@pytest.mark.parametrize("name", ENCODINGS)
+def test_of_the_catalogue_nothing_is_said(gl, name):
+    """And what each is made for is found."""
+    encoding, n = ENCODINGS[name], directions()
+    view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
+    given = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
+    codes, _ = exact_values(gl, encoding, given, view, given)
+    _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
+    trip = Trip(n, view[:, :3], codes[:, : encoding.components + encoding.sign_bits], decoded[:, :3])
+    assert guessed(trip) == encoding.domain and diagnoses(trip, encoding.domain) == []
+
+
+@pytest.mark.usefixtures("gl")
+def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
+    path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.png"
+    path.write_text(octahedral(result="normalize(n.yxz)"))
+    status, out, err = run("doctor", str(path), "--plot", str(picture), "--format", "json")
+    assert status == 1 and "x and y swapped" in out and str(picture) in err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    path.write_text(octahedral())
+    status, out, err = run("doctor", str(path))
+    assert (status, err) == (0, "") and "nothing is likely wrong" in out
+    path.write_text(FLAT)
+    status, out, err = run("doctor", str(path))
+    assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_table_says_it_too(run, tmp_path):
+    path = tmp_path / "mine.glsl"
+    path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"))
+    status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--backend", "glsl", "--count", "64")
+    assert status == 0 and f"{path}: codes fill [0, 1] of [-1, 1]: half of each number is unused" in err
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (("--plot", "a.png"), "name its GLSL file"),
+        (("nothing.glsl",), "No such file"),
+        (("a.glsl", "--plot", "a.txt"), "a.txt"),
+    ],
+)
+def test_what_doctor_cannot_do_is_one_line(run, words, said):
+    status, out, err = run("doctor", *words)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
