@@ -191,7 +191,7 @@ def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
         "        sent.append(os.kill(os.getpid(), signal.SIGINT))\n"
         "sent = []\n"
         "gc.callbacks.append(callback)\n"
-        "sys.exit(cli.main())\n"
+        "cli.program()\n"
     )
     command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
