@@ -8,6 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
+from .spelling import meant, spelled
+
 T = TypeVar("T")
 # Letters of a line: what a word of thousands would make of it is not a message.
 LONGEST = 1500
@@ -45,18 +47,20 @@ def tell(line: str) -> None:
 
 
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:
-    """The values that comma-separated names stand for, or all of them for "all".
+    """The values that comma-separated names stand for, however they are spelled, or all of them for "all".
 
     Raises:
-        UsageError: an unknown name; the message lists the known ones.
+        UsageError: an unknown name; the message says what may have been meant, and lists the known ones.
     """
     asked = [name.strip() for name in names.split(",") if name.strip()]
     if not asked:
         raise UsageError(f"no {what} named; known: all, {', '.join(known)}")
-    unknown = [name for name in asked if name != "all" and name not in known]
+    found = {name: spelled(what, name, known) for name in asked if name != "all"}
+    unknown = [name for name, key in found.items() if key is None]
     if unknown:
-        raise UsageError(f"unknown {what} {quoted(unknown)}; known: all, {', '.join(known)}")
-    chosen = known if "all" in asked else dict.fromkeys(asked)
+        guess = "".join(f" {said}" for name in unknown if (said := meant(name, known)))
+        raise UsageError(f"unknown {what} {quoted(unknown)};{guess} known: all, {', '.join(known)}")
+    chosen = known if "all" in asked else dict.fromkeys(key for key in found.values() if key is not None)
     return [known[name] for name in chosen]
 
 

@@ -16,7 +16,7 @@ from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, tell
+from ...output.errors import UsageError, pick, tell
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure
 from .answer import AIMS, HOLDS, answered, groups
@@ -55,7 +55,7 @@ def cases(options: PickOptions) -> list[measure.Case]:
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
-    for line in left_out:
+    for line in left_out if options.encoding.strip() != "all" else ():
         tell(f"left out: {line}")
     return [
         measure.Case(
@@ -84,10 +84,11 @@ def _question(options: PickOptions) -> Row:
 
 
 def _one(what: str, name: str, known: Any) -> list[str]:
-    """The one of the known names. Raises UsageError."""
-    if name not in known:
-        raise UsageError(f"unknown {what} {name!r}; known: {', '.join(known)}")
-    return [name]
+    """The one of the known names that is meant. Raises UsageError."""
+    found = pick(what, name, {key: key for key in known})
+    if len(found) != 1:
+        raise UsageError(f"one {what} at a time: {', '.join(found)}")
+    return found
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -141,7 +141,7 @@ def _one(what: str, named: Callable[[str], list[Any]], text: str) -> Any:
     try:
         found = named(text)
     except UsageError as error:
-        raise UsageError(str(error).replace("; known: all, ", "; known: ")) from None
+        raise UsageError(str(error).replace("known: all, ", "known: ")) from None
     if len(found) != 1:
         raise UsageError(f"one {what} at a time is tuned, not {len(found)}")
     return found[0]

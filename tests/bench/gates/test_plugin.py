@@ -120,7 +120,7 @@ def test_a_marker_holds_before_the_test(inside):
 
 
 MISUSE = {
-    'quality(encoding="octahedron")': "unknown encoding 'octahedron'; known: all, xyz",
+    'quality(encoding="octahedron")': "unknown encoding 'octahedron'; did you mean octahedral? known: all, xyz",
     "quality(count=0)": "--count 0: a count is 1 to",
     'quality(count="many")': "count is 'many'; it must be a whole number",
     f"quality(**{SMALL}).assert_that()": 'no limit given; add for example psnr_db="at least 47.5"',
@@ -387,7 +387,7 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
             rooms = ("", ".pytest_plugin", ".options", ".output", ".tables")
             assert {m for m in named if not m.startswith(".tables.")} <= {
                 *rooms, ".pytest_plugin.plugin", ".pytest_plugin.own_options", ".options.option", ".options.counts",
-                ".output.errors"
+                ".output.errors", ".output.spelling"
             }
             assert all(m.endswith((".table", ".registry")) or m.count(".") == 2 for m in named if ".tables." in m)
         """

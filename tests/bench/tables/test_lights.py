@@ -351,7 +351,7 @@ def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
     "arguments, said",
     [
         (["--experiment", "glow"], "unknown experiment 'glow'; known: all, equal, random"),
-        (["--light-buffer", "rgbe"], "unknown light buffer 'rgbe'; known: all, rgba32f"),
+        (["--light-buffer", "rgbe"], "unknown light buffer 'rgbe'; did you mean rgb9e5? known: all, rgba32f"),
         (
             ["--light-buffer", "log:2"],
             "light buffer log:2: of linear, srgb, rgbm the range may be given, as in linear:1",

@@ -1,0 +1,58 @@
+"""Names as people type them: in capitals, with hyphens, as an API or a maker of GPUs has them, or nearly right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from types import MappingProxyType
+
+# By what is named: other words for it, in lower case and without marks.
+OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {
+        "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
+        "storage": {
+            "r8g8": "rg8",
+            "r8g8b8a8": "rgba8",
+            "r10g10b10a2": "rgb10a2",
+            "a2r10g10b10": "rgb10a2",
+            "a2b10g10r10": "rgb10a2",
+            "r16g16": "rg16",
+            "r16g16f": "rg16f",
+            "r16g16float": "rg16f",
+        },
+        "family": {
+            "gcn4": "polaris10",
+            "gcn5": "vega10",
+            "rdna": "navi10",
+            "rdna1": "navi10",
+            "rdna2": "navi21",
+            "rdna3": "navi31",
+        },
+    }
+)
+
+
+def plain(word: str) -> str:
+    """A name in lower case without hyphens, underscores and spaces."""
+    return "".join(letter for letter in word.lower() if letter not in "-_ ")
+
+
+def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
+    """The known name that a word stands for; None where it stands for none, or for several."""
+    known = list(known)
+    if word in known:
+        return word
+    wanted = OTHER_WORDS.get(what, {}).get(plain(word), word)
+    found = [name for name in known if plain(name) == plain(wanted)]
+    return found[0] if len(found) == 1 else None
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """What somebody may have meant by an unknown word, as the end of a sentence; empty for no idea."""
+    known = list(known)
+    parts = word.split()
+    if len(parts) > 1 and all(part in known for part in parts):
+        return f"separate names by commas: {','.join(parts)}"
+    by_plain = {plain(name): name for name in known}
+    near = get_close_matches(plain(word), by_plain, n=1, cutoff=0.75)
+    return f"did you mean {by_plain[near[0]]}?" if near else ""
