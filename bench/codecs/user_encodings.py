@@ -53,38 +53,44 @@ def encodings_named(names: str) -> list[Encoding]:
     """
     check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
-    files, complaints = _read_all([word for word in words if word.endswith(ENDING)])
+    files, complaints, notes = _read_all([word for word in words if word.endswith(ENDING)])
     rest = [word for word in words if word in files or not word.endswith(ENDING)]
     if complaints and not rest:
         raise UsageError(complaints[0])
     for line in complaints:
         tell(f"left out: {line}")
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
-    return pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
+    picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
+    # At last: an error is one line alone.
+    for line in notes:
+        tell(line)
+    return picked
 
 
-def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str]]:
-    """The encodings of files, and why others are left out: a line for each."""
+def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str], list[str]]:
+    """The encodings of files, why others are left out, and what is to be said of those that are not: lines."""
     found: dict[str, Encoding] = {}
     complaints: list[str] = []
-    for word, looked in zip(words, on_all_cores(_looked_at, map(Path, words)), strict=True):
+    notes: list[str] = []
+    for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words)), strict=True):
         try:
             found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
+            notes += said
         except UsageError as error:
             complaints.append(str(error))
-    return found, complaints
+    return found, complaints, notes
 
 
-def _looked_at(path: Path) -> Encoding | UsageError:
-    """A file's encoding after the first look, or why there is none."""
+def _looked_at(path: Path) -> tuple[Encoding | UsageError, list[str]]:
+    """A file's encoding after the first look, or why there is none; and what is to be said of it."""
     try:
         found = _look(path)
         domain = _domain(path, found.glsl)
-        if "apart" in found.twin:
-            tell(f"{path.with_suffix('.py')}: {found.twin['apart']}")
-        return replace(read_encoding(path, found.fault), domain=domain)
+        said = [f"{path}: {line}" for line in findings(found.glsl)]
+        said += [f"{path.with_suffix('.py')}: {found.twin['apart']}"] if "apart" in found.twin else []
+        return replace(read_encoding(path, found.fault), domain=domain), said
     except UsageError as error:
-        return error
+        return error, []
 
 
 def examined(path: Path) -> tuple[Encoding, list[str], bool]:
@@ -254,7 +260,7 @@ def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def _domain(path: Path, found: dict[str, Any]) -> str:
-    """Where the decoder undoes the encoder. What is likely wrong is said on standard error.
+    """Where the decoder undoes the encoder.
 
     Raises:
         UsageError: it does not compile, or is not finite.
@@ -263,8 +269,6 @@ def _domain(path: Path, found: dict[str, Any]) -> str:
         raise UsageError(found["error"])
     if "broken" in found:
         raise UsageError(f"{path}: {found['broken']}")
-    for line in findings(found):
-        tell(f"{path}: {line}")
     return found.get("domain") or "sphere"
 
 
