@@ -98,3 +98,8 @@ LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(
         for codec in (LightCodec(encoding, LIGHT_STORAGES[storage]) for storage in encoding.storages)
     }
 )
+
+
+def is_in_catalogue(encoding: Encoding) -> bool:
+    """Whether an encoding is one of these: not tuned, and no user's."""
+    return ENCODINGS.get(encoding.name) is encoding

@@ -13,13 +13,14 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import extract_tb
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ...reports.page.verdict import MADE_FOR
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
@@ -33,9 +34,6 @@ ENDING = ".glsl"
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 # Farther off than that on average it is hardly the decoder of this encoder.
-# What is said of a domain that is not the whole sphere.
-TAKEN = "taken to be made for"
-HOLDS = {"hemisphere": "normals with z >= 0 alone", "view": "normals that face the viewer alone"}
 
 
 class NoTwinError(Exception):
@@ -85,16 +83,25 @@ def _looked_at(path: Path) -> tuple[Encoding | UsageError, list[str]]:
     """A file's encoding after the first look, or why there is none; and what is to be said of it."""
     try:
         found = _look(path)
-        domain = _domain(path, found.glsl)
-        said = [f"{path}: {line}" for line in findings(found.glsl)]
+        _check(path, found.glsl)
+        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes)]
         said += [f"{path.with_suffix('.py')}: {found.twin['apart']}"] if "apart" in found.twin else []
-        return replace(read_encoding(path, found.fault), domain=domain), said
+        return replace(read_encoding(path, found.fault), domain=found.domain), said
     except UsageError as error:
         return error, []
 
 
-def examined(path: Path) -> tuple[Encoding, list[str], bool]:
-    """A file's encoding, what there is to say of it, and whether it can be measured.
+class Examined(NamedTuple):
+    """A file's encoding, what is likely wrong with it, what else there is to say, and whether it can be measured."""
+
+    encoding: Encoding
+    wrong: list[str]
+    notes: list[str]
+    is_measurable: bool
+
+
+def examined(path: Path) -> Examined:
+    """What there is to say of a file.
 
     Raises:
         UsageError: it is not an encoding, or does not compile.
@@ -105,10 +112,11 @@ def examined(path: Path) -> tuple[Encoding, list[str], bool]:
         raise MissingError(found.glsl["missing"])
     if "error" in found.glsl:
         raise UsageError(found.glsl["error"])
+    broken = [found.glsl["broken"]] if "broken" in found.glsl else []
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
-    wrong = [found.glsl["broken"]] if "broken" in found.glsl else findings(found.glsl)
-    encoding = replace(read_encoding(path, found.fault), domain=found.glsl.get("domain") or "sphere")
-    return encoding, [*wrong, *of_twin, *([found.fault] if found.fault else [])], "broken" not in found.glsl
+    of_twin += [found.fault] if found.fault else []
+    encoding = replace(read_encoding(path, found.fault), domain=found.domain)
+    return Examined(encoding, [*broken, *found.wrong, *of_twin], found.notes, not broken)
 
 
 def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) -> Encoding:
@@ -220,6 +228,22 @@ class Looks:
     twin: dict[str, Any]
     fault: str
 
+    @property
+    def domain(self) -> str:
+        """What the shader is made for, as far as what comes back of it says."""
+        return self.glsl.get("domain") or "sphere"
+
+    @property
+    def wrong(self) -> list[str]:
+        """What is likely wrong with a shader that can be measured."""
+        return self.glsl.get("wrong", [])
+
+    @property
+    def notes(self) -> list[str]:
+        """What was guessed of it."""
+        held = MADE_FOR.get(self.domain)
+        return [f"taken to be made for {held} alone: no others come back"] if held else []
+
 
 def _look(path: Path) -> Looks:
     """A first look in a process of its own. Raises UsageError where its shader does not let it end well."""
@@ -259,20 +283,9 @@ def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
     return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
 
 
-def _domain(path: Path, found: dict[str, Any]) -> str:
-    """Where the decoder undoes the encoder.
-
-    Raises:
-        UsageError: it does not compile, or is not finite.
-    """
+def _check(path: Path, found: dict[str, Any]) -> None:
+    """Raises UsageError where a shader does not compile, or is not finite."""
     if "error" in found:
         raise UsageError(found["error"])
     if "broken" in found:
         raise UsageError(f"{path}: {found['broken']}")
-    return found.get("domain") or "sphere"
-
-
-def findings(found: dict[str, Any]) -> list[str]:
-    """What a first look says of a shader that can be measured: what is likely wrong, and a domain that was guessed."""
-    held = HOLDS.get(found.get("domain", ""))
-    return [*found.get("wrong", ()), *([f"{TAKEN} {held}: no others come back"] if held else [])]

@@ -7,7 +7,7 @@ from pathlib import Path
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES
 from ...reports.charts import charts
-from ..codecs.user_encodings import TAKEN, examined
+from ..codecs.user_encodings import examined
 from ..output.errors import UsageError, tell
 from ..output.writing import check_plot, save_plot, write
 from ..tables.quality.sphere_maps import sphere_map
@@ -27,12 +27,11 @@ def examine_encoding(file: Path | None, plot: Path | None, format: str, output: 
     if file is None:
         raise UsageError("--plot draws an encoding's error: name its GLSL file")
     check_plot(plot)
-    encoding, said, is_measurable = examined(file)
+    encoding, wrong, notes, is_measurable = examined(file)
     about = {"file": file.name, "encoding": encoding.name, "domain": encoding.domain}
-    write([about | {"finding": line} for line in said or ["nothing is likely wrong"]], format, output)
+    write([about | {"finding": line} for line in [*wrong, *notes] or ["nothing is likely wrong"]], format, output)
     if plot and is_measurable:
         found = sphere_map(Codec(encoding, STORAGES[STORAGE]))
         save_plot(plot, charts.sphere_chart({f"{encoding.name}/{STORAGE}": found.mean_deg}))
         tell(f"the error over the sphere is in {plot}")
-    # What is said of the domain alone is not a fault.
-    return int(any(not line.startswith(TAKEN) for line in said))
+    return int(bool(wrong))

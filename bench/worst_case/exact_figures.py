@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
 
-from ...encodings.catalogue import ENCODINGS
+from ...encodings.catalogue import is_in_catalogue
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.vec import Vec3
@@ -25,10 +26,11 @@ T = TypeVar("T")
 Row = dict[str, Any]
 
 
+@cache
 def has_twin(encoding: Encoding) -> bool:
     """Whether an encoding is there in JAX."""
     # Tracing takes a tenth of a second, and those of the catalogue all have one.
-    if ENCODINGS.get(encoding.name) is encoding:
+    if is_in_catalogue(encoding):
         return True
     n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
     try:

@@ -196,6 +196,10 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
 
 
+def nobody(_: str) -> None:
+    """For ticks that no bar shows."""
+
+
 def static_notes(rows: Iterable[Row]) -> list[str]:
     """Why counts of some rows are not what a lane runs: a line for loops and one for branches."""
     notes = {

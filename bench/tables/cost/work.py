@@ -144,10 +144,6 @@ class Part:
             return [TABLE.empty() | {"measure": self.name, "skipped": str(error)}]
 
 
-def _nobody(_: str) -> None:
-    """For ticks that no bar shows."""
-
-
 def _isa(asked: Costing) -> list[Row]:
     asked.listed = list(_listings(asked, asked.missing))
     return [row for row, _ in asked.listed]
@@ -155,7 +151,7 @@ def _isa(asked: Costing) -> list[Row]:
 
 def _listings(asked: Costing, missing: list[str]) -> Iterator[tuple[Row, str]]:
     """Rows with their disassembly; from the cache once they were measured."""
-    return measure.isa_rows(asked.cases, asked.stages, asked.families, missing, _nobody)
+    return measure.isa_rows(asked.cases, asked.stages, asked.families, missing, measure.nobody)
 
 
 def _time(asked: Costing) -> Iterable[Row]:
@@ -166,7 +162,7 @@ def _time(asked: Costing) -> Iterable[Row]:
     device = require_device()
     usual = clocks.SOFTWARE_SIZE if device.is_software else clocks.SIZE
     size, _ = checked_target(asked.options.size or usual, 1, 1, device)
-    return clocks.time_rows(device, asked.cases, size, asked.options.repeats, _nobody)
+    return clocks.time_rows(device, asked.cases, size, asked.options.repeats, measure.nobody)
 
 
 def _jax(asked: Costing) -> Iterable[Row]:
@@ -175,7 +171,7 @@ def _jax(asked: Costing) -> Iterable[Row]:
 
     require_jax()
     chosen = measure.cases(asked.encodings, (), asked.operations)
-    return jax_rows(chosen, asked.options.count, asked.options.repeats, _nobody)
+    return jax_rows(chosen, asked.options.count, asked.options.repeats, measure.nobody)
 
 
 def _article(asked: Costing) -> list[Row]:

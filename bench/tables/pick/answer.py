@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from ....reports.page.verdict import MADE_FOR
+
 Row = dict[str, Any]
 
 IMAGE = "image_db_"
@@ -21,7 +23,6 @@ HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
 )
 # What normals outside an encoding's domain do.
 BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer"}
-MADE_FOR = {"hemisphere": "normals with z >= 0", "view": "normals that face the viewer"}
 # Of `cheaper`: its instructions' share of the best's.
 CHEAP = 0.5
 

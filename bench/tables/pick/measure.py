@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
@@ -11,7 +11,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.frame.plan import Plan
@@ -36,11 +36,10 @@ from .answer import IMAGE, answered
 from .table import TABLE
 
 Row = dict[str, Any]
-# A row's key columns.
-Key = tuple[Any, ...]
 # Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
 SIZE = (320, 240)
 STAGE = "fragment"
+SUPREMUM = "angle_sup_deg"
 QUALITY = ("angle_mean_deg", "angle_max_deg", "invalid", "count", "device", "skipped")
 
 
@@ -63,33 +62,30 @@ class Case:
     said: Mapping[str, Any]
 
 
-def rows(chosen: Sequence[Case], device: Device | None, tick: Callable[[str], None]) -> list[Row]:
-    """A row for each case, in their order; `device` draws, and without one there are no images.
+def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[[str], None]) -> Iterator[list[Row]]:
+    """The rows of each question: the codes of one storage on one set of normals and in one scene, in their order.
 
     Images and suprema take seconds each. Images are of codes that no other one beats by its angles and instructions;
     of all that qualify where the image decides. Suprema are of the best; of all where the largest angle decides.
+
+    Args:
+        device: draws; without one there are no images.
     """
-    if not chosen:
-        return []
-    costs = Costs(dict.fromkeys(case.codec.encoding for case in chosen), chosen[0].said["family"])
+    if not asked:
+        return
+    encodings = dict.fromkeys(case.codec.encoding for chosen in asked for case in chosen)
+    costs = Costs(encodings, asked[0][0].said["family"])
     pictures = Pictures(device) if device else None
     # JAX compiles in a thread of its own while the device draws in this one.
     pool = ThreadPoolExecutor(1)
     try:
-        questions = [Question(part, pool, costs) for part in _questions(chosen)]
+        questions = [Question(chosen, pool, costs) for chosen in asked]
         for question in questions:
             question.measure(pictures, tick)
-        return [row for question in questions for row in question.rows()]
+        for question in questions:
+            yield question.rows()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _questions(chosen: Sequence[Case]) -> list[list[Case]]:
-    """Cases by storage, normals and scene, in their order."""
-    found: dict[Key, list[Case]] = {}
-    for case in chosen:
-        found.setdefault((case.codec.storage.name, case.said["normals"], case.said["scene"]), []).append(case)
-    return list(found.values())
 
 
 class Question:
@@ -99,17 +95,16 @@ class Question:
         self._cases = {case.codec.encoding.name: case for case in chosen}
         self._pool, self._costs = pool, costs
         self._suprema: dict[str, Future[float | None]] = {}
-        # What has no twin is measured by GL, in the thread that draws.
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
+        # What has no twin is measured by GL, in the thread that draws.
+        self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
         self._angles = pool.submit(_angles, self._by_jax)
         self._rows: dict[str, Row] = {}
 
     def measure(self, pictures: Pictures | None, tick: Callable[[str], None]) -> None:
         """All but what is still computed in the other thread."""
-        by_gl = [case for case in self._cases.values() if case not in self._by_jax]
-        angles = {case.codec.encoding.name: row for case, row in zip(by_gl, _angles(by_gl), strict=True)}
-        names = (case.codec.encoding.name for case in self._by_jax)
-        angles |= dict(zip(names, self._angles.result(), strict=True))
+        measured = zip([*self._by_gl, *self._by_jax], [*_angles(self._by_gl), *self._angles.result()], strict=True)
+        angles = {case.codec.encoding.name: row for case, row in measured}
         for name, case in self._cases.items():
             self._rows[name] = _described(case) | angles[name] | self._costs.of(case.codec.encoding)
             tick(f"{case.codec.name} {case.normal_set.name}")
@@ -136,7 +131,7 @@ class Question:
 
     def _take_suprema(self) -> None:
         for name, found in self._suprema.items():
-            self._rows[name]["angle_sup_deg"] = found.result()
+            self._rows[name][SUPREMUM] = found.result()
 
     def rows(self) -> list[Row]:
         """The rows, in the order of the cases."""
@@ -183,13 +178,17 @@ def _supremum(case: Case) -> float | None:
     if one.backend != "jax":
         return None
     key = _key("supremum", case.codec, _normals(case))
+    return _kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
+
+
+def _kept(key: str, make: Callable[[], Row]) -> Row:
+    """What is kept by a key, or what is made now, and kept where the key is not empty."""
     found = kept.read(key) if key else None
     if found is None:
-        row = quality.measure(replace(one, worst_case=True))
-        found = {"angle_sup_deg": row["angle_sup_deg"]}
+        found = make()
         if key:
             kept.write(key, found)
-    return found["angle_sup_deg"]
+    return found
 
 
 def _normals(case: Case) -> list[Any] | None:
@@ -200,7 +199,7 @@ def _normals(case: Case) -> list[Any] | None:
 
 def _key(what: str, codec: Codec, *parts: Any) -> str:
     """Where figures are kept for good; empty where they may be others next time."""
-    if None in parts or ENCODINGS.get(codec.encoding.name) is not codec.encoding:
+    if None in parts or not is_in_catalogue(codec.encoding):
         return ""
     return kept.key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))
 
@@ -216,15 +215,10 @@ class Pictures:
         """The PSNR of the displayed image at each power; none where the device or a layout has no room for the code."""
         known = case.maker.name if case.maker is SCENES.get(case.maker.name) else None
         key = _key("image", case.codec, known, case.setting, case.powers, self._device.renderer)
-        found = kept.read(key) if key else None
-        if found is None:
-            try:
-                found = self._measured(case)
-            except (LayoutError, *render.UNMEASURABLE):
-                return {}
-            if key:
-                kept.write(key, found)
-        return found
+        try:
+            return _kept(key, lambda: self._measured(case))
+        except (LayoutError, *render.UNMEASURABLE):
+            return {}
 
     def _measured(self, case: Case) -> Row:
         images = self._drawn(case, LAYOUTS["fp32"].with_codec(case.codec))
@@ -259,20 +253,15 @@ def _lost(normals: NormalSet, domain: str) -> float:
     return 100.0 * lost / max(count, 1)
 
 
-def _nobody(_: str) -> None:
-    """For ticks that no bar shows."""
-
-
 class Costs:
     """Instructions of encodings on one family; unknown where this machine has no compilers."""
 
     def __init__(self, encodings: Iterable[Encoding], family: str):
-        self.missing: list[str] = []
+        chosen = cost.cases(encodings, (), cost.OPERATIONS)
         try:
-            found = cost.isa_rows(cost.cases(encodings, (), cost.OPERATIONS), [STAGE], [family], self.missing, _nobody)
+            found = cost.isa_rows(chosen, [STAGE], [family], [], cost.nobody)
             rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
-        except MissingError as error:
-            self.missing.append(str(error))
+        except MissingError:
             rows = []
         self._rows = {(row["encoding"], row["operation"]): row for row in rows}
 

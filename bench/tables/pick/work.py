@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import Any
 
-from ....encodings.catalogue import ENCODINGS
+from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.gl.device import Device
 from ....gbuffer.scenes.setting import Setting
@@ -17,7 +18,7 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, pick, tell
-from ..table import Measured, Row, Sheet, Step, Tick, Work
+from ..table import Row, Sheet, Step, Tick, Work
 from . import measure
 from .answer import AIMS, HOLDS, answered, groups
 from .sentences import sentences
@@ -30,14 +31,14 @@ SHOWN = ("encoding", "place", "bits", "angle_mean_deg", "angle_max_deg", "image_
 
 @dataclass(frozen=True)
 class Part:
-    """A case, and the device that draws it."""
+    """The cases of a question, and the device that draws them."""
 
-    case: measure.Case
+    cases: Sequence[measure.Case]
     device: Device | None
 
 
-def cases(options: PickOptions) -> list[measure.Case]:
-    """One case for each code that fits its storage.
+def questions(options: PickOptions) -> list[list[measure.Case]]:
+    """For each storage, set of normals and scene a case for each code that fits.
 
     Raises:
         UsageError: unknown names, counts out of range, or no code that fits.
@@ -50,7 +51,7 @@ def cases(options: PickOptions) -> list[measure.Case]:
     codecs = dict.fromkeys([*codecs_named(options.encoding, options.storage, "nearest"), *against])
     fit, left_out = _fitting(codecs)
     # Those of the catalogue are traced by tests.
-    for encoding in dict.fromkeys(codec.encoding for codec in fit if ENCODINGS.get(codec.encoding.name) is None):
+    for encoding in dict.fromkeys(codec.encoding for codec in fit if not is_in_catalogue(codec.encoding)):
         check_twin(encoding)
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
@@ -58,19 +59,21 @@ def cases(options: PickOptions) -> list[measure.Case]:
     for line in left_out if options.encoding.strip() != "all" else ():
         tell(f"left out: {line}")
     return [
-        measure.Case(
-            codec,
-            normals,
-            maker,
-            Setting(seed=options.seed),
-            powers,
-            said | {"normals": normals.name, "scene": maker.name, "against": codec.encoding.name in named},
-        )
+        [
+            measure.Case(
+                codec,
+                normals,
+                maker,
+                Setting(seed=options.seed),
+                powers,
+                said | {"normals": normals.name, "scene": maker.name, "against": codec.encoding.name in named},
+            )
+            for codec in fit
+            if codec.storage is storage
+        ]
         for storage in dict.fromkeys(codec.storage for codec in fit)
         for normals in sets
         for maker in makers
-        for codec in fit
-        if codec.storage is storage
     ]
 
 
@@ -107,28 +110,30 @@ def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def _steps(options: PickOptions, _: Any) -> list[Step]:
-    """A step for each code."""
+    """A step for each question: what is measured of a code depends on the others."""
     require_jax()
-    made = cases(options)
+    asked = questions(options)
     device, why = found_device()
     if not device:
         tell(f"no images: {why}")
-    return [Step(_key(case), Part(case, device), f"{case.codec.name} {case.normal_set.name}") for case in made]
+    return [Step(_key(chosen), Part(chosen, device), _name(chosen), len(chosen)) for chosen in asked]
 
 
-def _key(case: measure.Case) -> Row:
-    key: Row = {"codec": case.codec.name, "count": case.normal_set.count, "seed": case.normal_set.seed}
-    return key | dict(case.said) | {"powers": list(case.powers)}
+def _name(chosen: Sequence[measure.Case]) -> str:
+    return f"{chosen[0].codec.storage.name} {chosen[0].normal_set.name}"
+
+
+def _key(chosen: Sequence[measure.Case]) -> Row:
+    one = chosen[0]
+    key: Row = {"codecs": [case.codec.name for case in chosen], "powers": list(one.powers)}
+    key |= {"count": one.normal_set.count, "seed": one.normal_set.seed}
+    against = [case.codec.name for case in chosen if case.said["against"]]
+    return key | dict(one.said) | {"against": against}
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
     device = steps[0].case.device if steps else None
-    for row in measure.rows([step.case.case for step in steps], device, tick):
-        yield [row]
-
-
-def _finish(rows: Sequence[Row]) -> list[Row]:
-    return answered(rows)
+    return measure.rows([step.case.cases for step in steps], device, tick)
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -139,18 +144,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title if front else "", front, TABLE.drops(front), said=tuple(sentences(group)))
 
 
-def _shown(done: Measured) -> Iterator[Sheet]:
-    yield from _sheets(done.rows)
-
-
 def _short(row: Row) -> Row:
-    names = (name for name in row if (column := TABLE.column(name)) and column.name in SHOWN)
-    return {name: row[name] for name in sorted(names, key=lambda name: SHOWN.index(_column(name)))}
-
-
-def _column(name: str) -> str:
-    column = TABLE.column(name)
-    return column.name if column else name
+    return {name: row[name] for pattern in SHOWN for name in row if fnmatchcase(name, pattern)}
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
@@ -162,8 +157,8 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
 WORK = Work(
     steps=_steps,
     measure=_measure,
-    finish=_finish,
-    shown=_shown,
+    finish=answered,
+    shown=lambda done: _sheets(done.rows),
     summary=_sheets,
     failures=_failures,
 )

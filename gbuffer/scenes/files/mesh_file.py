@@ -85,6 +85,11 @@ class MeshFile:
         return self.baked.positions[np.unique(self.baked.triangles)]
 
 
+def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
+    """A file of one mesh where it stands, in one grey material seen from both sides."""
+    return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
+
+
 def mesh_of(
     path: Path, place: str, positions, triangles, normals=None, uv=None, tangents=None
 ) -> tuple[Mesh, list[str]]:

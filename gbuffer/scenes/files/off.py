@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..scene import Material
-from .mesh_file import MeshFile, Piece, mesh_of
+from .mesh_file import MeshFile, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 
@@ -40,7 +39,7 @@ def read_off(path: Path) -> MeshFile:
     except (ValueError, Warning) as error:
         raise SceneFileError(f"{path}: no OFF file, cut off or damaged; export it again") from error
     mesh, notes = mesh_of(path, "the mesh", positions, triangles)
-    return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
+    return of_one_mesh(path, mesh, notes)
 
 
 def _triangles(lines: Sequence[str]) -> np.ndarray:

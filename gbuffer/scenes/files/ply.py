@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..scene import Material
-from .mesh_file import MeshFile, Piece, mesh_of
+from .mesh_file import MeshFile, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 SIZES = {"i1": "char int8", "u1": "uchar uint8", "i2": "short int16", "u2": "ushort uint16"}
@@ -69,7 +68,7 @@ def read_ply(path: Path) -> MeshFile:
         else:
             tables[element.name], at = _ascii(path, tokens, at, element)
     mesh, notes = _mesh(path, tables)
-    return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
+    return of_one_mesh(path, mesh, notes)
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:

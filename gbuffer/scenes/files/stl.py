@@ -14,8 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..scene import Material
-from .mesh_file import MeshFile, Piece, mesh_of
+from .mesh_file import MeshFile, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 
@@ -42,7 +41,7 @@ def read_stl(path: Path) -> MeshFile:
     except Exception as error:  # of a dozen kinds, by what is damaged
         raise SceneFileError(f"{path}: no STL file, cut off or damaged; export it again") from error
     mesh, notes = mesh_of(path, "the mesh", positions, faces, np.repeat(normals, 3, axis=0))
-    return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
+    return of_one_mesh(path, mesh, notes)
 
 
 def _loaded(data: bytes) -> dict:
