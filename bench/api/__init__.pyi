@@ -31,6 +31,7 @@ def pick(
     seed: int = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
+    curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
     view_matrix: Names | None = ...,
@@ -58,6 +59,7 @@ def pick(
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
@@ -80,6 +82,7 @@ def quality(
     codes: bool = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
+    curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
     view_matrix: Names | None = ...,
@@ -104,6 +107,7 @@ def quality(
         codes: Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
@@ -334,6 +338,7 @@ def tune(
     seed: int = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
+    curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
     view_matrix: Names | None = ...,
@@ -356,6 +361,7 @@ def tune(
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.codecs.files import called, file_text
+from ...encodings.storages.rounding import from_srgb, to_srgb
 from ..options.option import Reading
-from ..output.errors import UsageError, pick
+from ..output.errors import UsageError, pick_one
+from .capture_diagnoses import MIRRORED, some_pixels, which_way
 from .normal_sets import NormalSet, from_arrays
 from .pixel_files import READERS, Pixels, read_pixels, refused
 
@@ -29,7 +34,17 @@ AXES = ("XYZ", "xyz", "RGB", "rgb")
 NORMAL_WORDS = re.compile(r"n|nrm.*|.*norm.*", re.IGNORECASE)
 # A left-handed view space, z into the screen, as Direct3D and most engines on it have it.
 SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
-    {"view": np.eye(3), "view-left-handed": np.diag([1.0, 1.0, -1.0]), "world": None}
+    {"view": np.eye(3), "view-left-handed": MIRRORED, "world": None}
+)
+
+
+def _by(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda stored: np.asarray(curve(jnp.asarray(stored)))
+
+
+# What takes a curve off that the components of a file were given, (3, ...) in [0, 1].
+CURVES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
+    {"linear": lambda stored: stored, "srgb": _by(from_srgb), "srgb-removed": _by(to_srgb)}
 )
 
 
@@ -39,16 +54,16 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     Raises:
         UsageError: it cannot be read, or does not hold unit normals as `reading` says.
     """
-    to_view = view_matrix(reading)
-    _check_numbers(reading)
+    reading = checked(reading)
+    to_view, notes = view_matrix(reading)
     pixels = read_pixels(path, lambda names: chosen_channels(path, names, reading.channels))
     surface = _mask(path, reading, pixels.shape)
-    n, covered, notes = _directions(path, pixels, surface, reading)
+    n, covered, of_lengths = _directions(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
-    if to_view is not None:
+    notes += of_lengths + _which_way(n, covered, to_view, reading)
+    if not np.array_equal(to_view, np.eye(3)):
         n = np.tensordot(to_view, n, 1)
-    notes += _which_way(n[2][covered], reading.space)
     shape = pixels.shape if len(pixels.shape) == 2 else None
     n = np.moveaxis(n, 0, -1).astype(np.float32)
     name = called(path.name)
@@ -56,11 +71,14 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     return made, notes
 
 
-def _check_numbers(reading: Reading) -> None:
+def checked(reading: Reading) -> Reading:
+    """How files are read, by the names that are known. Raises UsageError."""
     if not 0 <= reading.nan_share <= 1:
         raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
         raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
+    space, curve = pick_one("space", reading.space, SPACES), pick_one("curve", reading.curve, CURVES)
+    return replace(reading, space=space, curve=curve)
 
 
 # Channels
@@ -142,6 +160,7 @@ def _directions(
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Normals as planes, unit where they count; where they do; and what is to be said of them."""
     stored = pixels.planes if pixels.full is None else pixels.planes / pixels.planes.dtype.type(pixels.full)
+    stored = CURVES[reading.curve](stored)
     unpack = pixels.full is not None if reading.unpack is None else reading.unpack
     # What a cleared target holds is background however it is packed.
     surface = surface & (stored != 0).any(axis=0)
@@ -152,7 +171,7 @@ def _directions(
     covered = surface & finite & (length >= BACKGROUND)
     if not covered.any():
         raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
-    notes = [] if reading.normalise else _checked_unit(path, stored, length, covered, unpack)
+    notes = _checked_unit(path, stored, length, covered, reading, unpack)
     far = covered & (abs(length - 1) > ROUNDING)
     return np.divide(n, length, out=n.copy(), where=far), covered, notes
 
@@ -176,21 +195,22 @@ def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: fl
         )
 
 
-def _checked_unit(path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, unpacked: bool) -> list[str]:
+def _checked_unit(
+    path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, reading: Reading, unpacked: bool
+) -> list[str]:
     """What is to be said where a few normals are not unit. Raises UsageError where more are, with the option that would
     read them."""
     off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
-    if off <= OFF_UNIT_SHARE:
-        return [f"{off:.3%} of the normals are not unit: normalised"] if off > 0 else []
-    found = stored[:, covered]
-    other = _lengths(found if unpacked else found * 2 - 1)
-    fits = np.mean(abs(other - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE
-    low, high = (float(f(found)) for f in (np.min, np.max))
     said = f"{off:.1%} of the normals are not unit"
-    if fits and not unpacked and low >= 0:
-        raise refused(path, f"{said}, all components are in [{low:.3g}, {high:.3g}]: packed", "--unpack reads them")
-    if fits and unpacked:
-        raise refused(path, f"{said} when unpacked, but are as they stand", "leave --unpack out, or --no-unpack")
+    if off <= OFF_UNIT_SHARE:
+        return [] if off == 0 or reading.normalise else [f"{off:.3%} of the normals are not unit: normalised"]
+    found = stored[:, covered]
+    low, high = (float(f(found)) for f in (np.min, np.max))
+    remedy = next(_readings_that_fit(found, reading.curve, unpacked), None)
+    if reading.normalise:
+        return [f"{said}, normalised; {remedy} would read them as unit"] if remedy else []
+    if remedy:
+        raise refused(path, f"{said}, all components are in [{low:.3g}, {high:.3g}]", f"{remedy} reads them")
     median = float(np.median(length[covered]))
     raise refused(
         path,
@@ -200,33 +220,64 @@ def _checked_unit(path: Path, stored: np.ndarray, length: np.ndarray, covered: n
     )
 
 
+def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
+    """Options with which normals are unit that are not as they are read.
+
+    Args:
+        found: the components, (3, count), by `curve`.
+    """
+    if curve != "linear":
+        return
+    is_share = bool((found >= 0).all() and (found <= 1).all())
+    for name, apply in CURVES.items():
+        for unpack in (True, False):
+            if (name, unpack) == (curve, unpacked) or not (is_share or (name, unpack) == ("linear", False)):
+                continue
+            read = apply(found) * 2 - 1 if unpack else found
+            if np.mean(abs(_lengths(read) - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE:
+                packing = "" if unpack == unpacked else " --unpack" if unpack else " --no-unpack"
+                yield ("" if name == curve else f" --curve {name}").strip() + packing
+
+
 # Where they point
 
 
-def view_matrix(reading: Reading) -> np.ndarray | None:
-    """What turns the file's normals to view space, (3, 3) for column vectors; None where they are there.
+def view_matrix(reading: Reading) -> tuple[np.ndarray, list[str]]:
+    """What turns the file's normals to view space, (3, 3) for column vectors, and what is to be said of it.
 
     Raises:
-        UsageError: an unknown space, world space without a matrix, or a matrix that is not a rotation.
+        UsageError: world space without a matrix, a matrix without world space, or a matrix that is not a rotation.
     """
-    matrix = pick("space", reading.space, dict(zip(SPACES, SPACES.items(), strict=True)))
-    if len(matrix) != 1:
-        raise UsageError(f"--space {reading.space}: one of {', '.join(SPACES)}")
-    ((name, known),) = matrix
+    known = SPACES[reading.space]
     if known is not None:
         if reading.view_matrix is not None:
-            raise UsageError(f"--view-matrix turns world space to view space; --space {name} needs none")
-        return None if np.array_equal(known, np.eye(3)) else known
+            raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
+        return known, []
     if reading.view_matrix is None:
         raise UsageError(
-            f"--space {name} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which turn world "
-            "space to view space: x right, y up, z towards the viewer"
+            f"--space {reading.space} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which "
+            "turn world space to view space: x right, y up, z towards the viewer"
         )
     return _rotation(reading.view_matrix)
 
 
-def _rotation(text: str) -> np.ndarray:
+def _rotation(text: str) -> tuple[np.ndarray, list[str]]:
     said = f"--view-matrix {text}"
+    matrix = _numbers_of(text, said)
+    linear = matrix[:3, :3]
+    if matrix.shape == (4, 4):
+        _check_affine(matrix, said)
+    square = linear @ linear.T
+    scale = np.trace(square) / 3
+    if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
+        raise UsageError(f"{said}: not a rotation: its rows are not at right angles, or of different lengths")
+    size = math.sqrt(scale)
+    is_scaled = abs(size - 1) > ROTATION_WITHIN
+    return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is left out"] * is_scaled
+
+
+def _numbers_of(text: str, said: str) -> np.ndarray:
+    """A matrix of 3 or 4 rows."""
     try:
         if re.search(r"[^-+0-9.eE,;\s]", text):
             text = file_text(Path(text))[:4096]
@@ -236,22 +287,42 @@ def _rotation(text: str) -> np.ndarray:
     if len(numbers) not in (9, 16):
         raise UsageError(f"{said}: {len(numbers)} numbers; 9 or 16, row by row")
     side = math.isqrt(len(numbers))
-    linear = np.array(numbers).reshape(side, side)[:3, :3]
-    square = linear @ linear.T
-    scale = np.trace(square) / 3
-    if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
-        raise UsageError(f"{said}: no rotation: its rows are not at right angles, or of different lengths")
-    return linear / math.sqrt(scale)
+    return np.array(numbers).reshape(side, side)
 
 
-def _which_way(z: np.ndarray, space: str) -> list[str]:
-    """What is to be said of normals that face away: what one sees faces the viewer, give or take interpolation."""
-    away = float(np.mean(z < 0))
-    if away <= 0.9:
-        return []
-    other = next(name for name in SPACES if name != space)
-    remedy = f"is it --space {other}, or world?" if SPACES[space] is not None else "check --view-matrix"
-    return [f"{away:.0%} of the normals face away from the viewer: {remedy}"]
+def _check_affine(matrix: np.ndarray, said: str) -> None:
+    """Raises UsageError for a matrix of 4 x 4 numbers that moves row vectors, or projects."""
+    below, beside = matrix[3, :3], matrix[:3, 3]
+    if below.any() and not beside.any():
+        turned = typed(matrix[:3, :3].T)
+        raise UsageError(
+            f"{said}: its translation is in the last row, for row vectors; --view-matrix {turned} turns it"
+        )
+    if below.any():
+        raise UsageError(f"{said}: its last row is not 0, 0, 0, 1: is a projection in it? give the view matrix alone")
+
+
+def typed(matrix: np.ndarray) -> str:
+    """A matrix as --view-matrix takes it."""
+    return ",".join(f"{value + 0.0:.7g}" for value in matrix.ravel())
+
+
+def _which_way(n: np.ndarray, covered: np.ndarray, to_view: np.ndarray, reading: Reading) -> list[str]:
+    """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
+    is_world = SPACES[reading.space] is None
+    pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
+    return [f"{said}: {_remedy(found, is_world)}" for said, found in which_way(pixels, to_view, reading.fov, is_world)]
+
+
+def _remedy(found: object, is_world: bool) -> str:
+    if isinstance(found, np.ndarray):
+        space = next(
+            (name for name, known in SPACES.items() if known is not None and np.array_equal(known, found)), None
+        )
+        return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(found)}"
+    if found is not None:
+        return "check --fov, which is the vertical angle"
+    return "check --view-matrix" if is_world else "is it in world space? --space world --view-matrix turns it"
 
 
 def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:

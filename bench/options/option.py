@@ -71,6 +71,7 @@ class Reading:
     Attributes:
         channels: a layer, or three channels by name; None for what looks like normals.
         unpack: whether [0, 1] stands for [-1, 1]; None: in files of whole numbers, which have nothing else.
+        curve: one of captures.CURVES: what was done to the components before they were stored.
         normalise: whether any length will do.
         space: one of captures.SPACES.
         view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
@@ -87,6 +88,9 @@ class Reading:
         bool | None,
         Option("--unpack/--no-unpack", "Captures: [0,1] stands for [-1,1]. PNG: always.", in_run=True),
     ] = None
+    curve: Annotated[
+        str, Option("--curve", "Captures: linear, srgb (to be undone), srgb-removed (to be redone).", in_run=True)
+    ] = "linear"
     normalise: Annotated[bool, Option("--normalise", "Captures: accept normals of any length.", in_run=True)] = False
     space: Annotated[str, Option("--space", "Captures: view, view-left-handed, world.", in_run=True)] = "view"
     view_matrix: Annotated[

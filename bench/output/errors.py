@@ -58,10 +58,24 @@ def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:
     found = {name: spelled(what, name, known) for name in asked if name != "all"}
     unknown = [name for name, key in found.items() if key is None]
     if unknown:
-        guess = "".join(f" {said}" for name in unknown if (said := meant(name, known)))
-        raise UsageError(f"unknown {what} {quoted(unknown)};{guess} known: all, {', '.join(known)}")
+        raise _unknown(what, unknown, known, f"all, {', '.join(known)}")
     chosen = known if "all" in asked else dict.fromkeys(key for key in found.values() if key is not None)
     return [known[name] for name in chosen]
+
+
+def pick_one(what: str, name: str, known: Collection[str]) -> str:
+    """The known name that is meant, however it is spelled. Raises UsageError for an unknown one, and for several."""
+    key = spelled(what, name.strip(), known)
+    if key is None and "," in name:
+        raise UsageError(f"one {what} at a time, not {name}; known: {', '.join(known)}")
+    if key is None:
+        raise _unknown(what, [name], known, ", ".join(known))
+    return key
+
+
+def _unknown(what: str, names: list[str], known: Iterable[str], listed: str) -> UsageError:
+    guess = "".join(f" {said}" for name in names if (said := meant(name, known)))
+    return UsageError(f"unknown {what} {quoted(names)};{guess} known: {listed}")
 
 
 def pick_or_read(

@@ -17,7 +17,7 @@ from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, pick, tell
+from ...output.errors import UsageError, pick_one, tell
 from ..table import Row, Sheet, Step, Tick, Work
 from . import measure
 from .answer import AIMS, HOLDS, answered, groups
@@ -81,17 +81,9 @@ def _question(options: PickOptions) -> Row:
     """What every row says of the question. Raises UsageError for what cannot be asked."""
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
-    (needs,) = [None] if options.domain is None else _one("domain", options.domain, HOLDS)
-    (aim,), (family,) = _one("aim", options.aim, AIMS), _one("family", options.family, FAMILIES)
+    needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
+    aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, FAMILIES)
     return {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
-
-
-def _one(what: str, name: str, known: Any) -> list[str]:
-    """The one of the known names that is meant. Raises UsageError."""
-    found = pick(what, name, {key: key for key in known})
-    if len(found) != 1:
-        raise UsageError(f"one {what} at a time: {', '.join(found)}")
-    return found
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -21,7 +21,7 @@ from ...machine.devices import require_jax
 from ...normals.normal_names import normal_sets_named
 from ...normals.normal_sets import NormalSet
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, pick, tell
+from ...output.errors import UsageError, pick, pick_one, tell
 from ...output.writing import check_writable, whole_file
 from ..quality import measure as quality
 from ..table import Measured, Sheet, Step, Tick, Work, each
@@ -86,7 +86,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
-    _one("error", lambda names: pick("error", names, {name: name for name in POWERS}), options.error)
+    options = replace(options, error=pick_one("error", options.error, POWERS))
     if table and not chosen.has_table:
         raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
     if table and set(str(table)) & {MARK, ","}:

@@ -24,7 +24,7 @@ from written import (
 )
 
 from normalbench.bench.normals import captures, pixel_files, pixel_process
-from normalbench.bench.normals.captures import Reading, chosen_channels, view_matrix
+from normalbench.bench.normals.captures import Reading, checked, chosen_channels, view_matrix
 from normalbench.bench.normals.normal_sets import NormalSet, playground
 from normalbench.bench.normals.pixel_files import read_pixels
 from normalbench.bench.output.errors import UsageError
@@ -178,14 +178,14 @@ def test_layers_and_parts_of_an_exr_by_name(tmp_path):
 def test_packed_floats_are_read_with_unpack(tmp_path, run):
     np.save(tmp_path / "frame.npy", some_normals() * np.float32(0.5) + np.float32(0.5))
     err = refusal(run, tmp_path / "frame.npy")
-    assert "packed" in err and "--unpack reads them" in err
+    assert "all components are in [0" in err and "--unpack reads them" in err
     made, covered = given(capture(tmp_path / "frame.npy", Reading(unpack=True)))
     assert covered.all() and np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
 
 
 def test_floats_that_are_not_packed_are_not_read_with_unpack(tmp_path, run):
     np.save(tmp_path / "frame.npy", some_normals())
-    assert "leave --unpack out" in refusal(run, tmp_path / "frame.npy", "--unpack")
+    assert "--no-unpack reads them" in refusal(run, tmp_path / "frame.npy", "--unpack")
 
 
 def test_what_is_not_unit_is_refused_with_what_it_is(tmp_path, run):
@@ -230,18 +230,18 @@ def test_world_space_is_turned_to_view_space(tmp_path):
     assert np.array_equal(made, n.reshape(-1, 3))
     assert captures.capture(tmp_path / "left.npy", Reading(space="view-left-handed"))[1] == []
     (note,) = captures.capture(tmp_path / "left.npy", Reading())[1]
-    assert "face away from the viewer: is it --space view-left-handed" in note
+    assert "if z points the other way: read it with --space view-left-handed" in note
 
 
 @pytest.mark.parametrize(
     "space, matrix, said",
     [
         ("world", None, "needs --view-matrix"),
-        ("screen", None, "unknown space 'screen'; known: all, view, view-left-handed, world"),
+        ("screen", None, "unknown space 'screen'; known: view, view-left-handed, world"),
         ("view", "1,0,0,0,1,0,0,0,1", "--space view needs none"),
         ("world", "1,0,0,0,1,0", "6 numbers; 9 or 16"),
-        ("world", "1,0,0,0,2,0,0,0,1", "no rotation"),
-        ("world", "0,0,0,0,0,0,0,0,0", "no rotation"),
+        ("world", "1,0,0,0,2,0,0,0,1", "not a rotation"),
+        ("world", "0,0,0,0,0,0,0,0,0", "not a rotation"),
         ("world", "nan,0,0,0,1,0,0,0,1", "neither numbers nor a text file"),
         ("world", "missing.txt", "neither numbers nor a text file"),
     ],
@@ -249,7 +249,7 @@ def test_world_space_is_turned_to_view_space(tmp_path):
 def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix, said):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UsageError, match=said) as error:
-        view_matrix(Reading(space=space, view_matrix=matrix))
+        view_matrix(checked(Reading(space=space, view_matrix=matrix)))
     assert "\n" not in str(error.value)
 
 

@@ -312,7 +312,7 @@ def one_direction(tmp_path):
         (["stereographic", "--normals", "sphere", "--count", "200"], "200 normals are too few"),
         (["stereographic", "--normals", "sphere", "--count", "17000000"], "at most 16777216"),
         (["stereographic", "--error", "median"], "unknown error 'median'; did you mean mean? known: psnr"),
-        (["stereographic", "--error", "all"], "one error at a time"),
+        (["stereographic", "--error", "psnr,rms"], "one error at a time"),
         (["stereographic", "--table", "x.npy"], "no look-up"),
         (["stereographic", "--seed", "-1"], "--seed -1"),
         (["stereographic", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),

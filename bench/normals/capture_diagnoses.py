@@ -1,0 +1,126 @@
+"""What is likely wrong with a captured frame, from what no camera can see.
+
+A camera sees a surface from its front: n . ray < 0 for the ray from the eye through the pixel. In a frame that is read
+as it was meant nearly all normals obey that at some angle of view. In a frame of another space, with a transposed
+matrix or with swapped channels, many do not.
+
+Arrays are float of shape (count, 3): unit normals as the file has them, before they are turned to view space.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+# Smooth normals at a silhouette and normal maps reach beyond what is seen: n . ray up to this is nothing special.
+BEYOND = 0.1
+# The share of normals beyond it that a right frame may have, and how much smaller another reading's must be.
+AWAY, LESS = 0.02, 0.2
+# Of normals without places in a picture, only nearly all say anything.
+AWAY_OF_A_LIST = 0.9
+# Vertical angles of view to try where none is given; 0 stands for parallel rays.
+FIELDS = (0.0, *range(5, 121, 5))
+# Pixels looked at.
+MOST = 2**15
+MIRRORED = np.diag([1.0, 1.0, -1.0])
+# How a frame in view space is read wrongly: what mends it turns the file's normals to view space.
+IN_VIEW_SPACE: Mapping[str, np.ndarray] = MappingProxyType(
+    {
+        "z points the other way": MIRRORED,
+        "z points towards the viewer": np.eye(3),
+        "y points down": np.diag([1.0, -1.0, 1.0]),
+        "y points down and z into the screen": np.diag([1.0, -1.0, -1.0]),
+        "red and blue are swapped": np.eye(3)[::-1],
+    }
+)
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Some pixels of a frame.
+
+    Attributes:
+        n: their normals.
+        across, up: where they lie in the picture, each of shape (count,), in halves of its height from its middle; 0
+            for normals without places.
+        has_places: whether they have any.
+    """
+
+    n: np.ndarray
+    across: np.ndarray
+    up: np.ndarray
+    has_places: bool
+
+    def away(self, to_view: np.ndarray, fov: float) -> float:
+        """The share of normals that no camera of this angle of view sees, once `to_view` (3, 3) has turned them."""
+        half = math.tan(math.radians(fov) / 2)
+        x, y, z = to_view @ self.n.T
+        along = (x * self.across + y * self.up) * half - z
+        return float(np.mean(along > BEYOND * np.sqrt(1 + half * half * (self.across**2 + self.up**2))))
+
+    def least_away(self, to_view: np.ndarray, fov: float | None) -> tuple[float, float]:
+        """The smallest such share, and the angle of view that has it: of `fov`, or of all where that is None."""
+        fields = FIELDS if fov is None and self.has_places else (fov or 0.0,)
+        return min((self.away(to_view, field), field) for field in fields)
+
+
+def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
+    """At most MOST of a frame's pixels, spread over it.
+
+    Args:
+        n: (height, width, 3) or (count, 3).
+        covered: which count, of the shape before the 3.
+    """
+    index = np.flatnonzero(covered)
+    index = index[:: max(1, -(-len(index) // MOST))]
+    found = n.reshape(-1, 3)[index].astype(np.float64)
+    if covered.ndim != 2:
+        return Pixels(found, np.zeros(len(index)), np.zeros(len(index)), False)
+    height, width = covered.shape
+    row, column = np.divmod(index, width)
+    return Pixels(found, (2 * column + 1 - width) / height, 1 - (2 * row + 1) / height, True)
+
+
+def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Iterator[tuple[str, object]]:
+    """What is likely wrong with the space that the normals are read in: at most one finding.
+
+    Args:
+        to_view: what turns the file's normals to view space, as the frame is read.
+        fov: the vertical angle of view in degrees as it was given, if it was.
+        is_world: whether `to_view` is a view matrix.
+
+    Returns:
+        a line that lacks its remedy, and the remedy: a matrix (3, 3) to use instead of `to_view`, an angle of view, or
+        None where nothing helps that is known here.
+    """
+    share, _ = pixels.least_away(to_view, fov)
+    if share <= (AWAY if pixels.has_places else AWAY_OF_A_LIST):
+        return
+    said = f"{share:.0%} of the normals face away from the viewer"
+    if fov is not None and pixels.has_places:
+        other, field = pixels.least_away(to_view, None)
+        if other < LESS * share and other < AWAY:
+            yield f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field
+            return
+    readings = _of_a_matrix(to_view) if is_world else IN_VIEW_SPACE
+    for what, matrix in readings.items():
+        other, _ = pixels.least_away(matrix, fov)
+        if other < LESS * share and other < AWAY:
+            yield f"{said}, {other:.0%} if {what}", matrix
+            return
+    yield said, None
+
+
+def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:
+    """How a frame in world space is read wrongly."""
+    return {
+        "the matrix is transposed (it may be for row vectors, or turn view space to world space)": to_view.T,
+        "the matrix turns to a left-handed view space, z into the screen": MIRRORED @ to_view,
+        "the matrix is transposed and left-handed": MIRRORED @ to_view.T,
+        "they are in view space already": np.eye(3),
+        "they are in left-handed view space already": MIRRORED,
+    }
