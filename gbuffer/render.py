@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..encodings.storages.rounding import SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
 from .frame.canvas import built
 from .frame.contract import Pass, Pipeline, Run
 from .frame.frame import Frame
@@ -166,10 +165,3 @@ def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
     itself and what has a size in pixels of its own; one copy of each, all copies of what the next frame reads."""
     kept = (resource for resource in pipeline.resources.values() if resource != FINAL)
     return float(sum(resource.bytes_per_pixel(pipeline.planned(plan)) for resource in kept))
-
-
-def displayed(linear: np.ndarray) -> np.ndarray:
-    """Linear light as a display is sent it: clipped to [0, 1], by the sRGB curve (IEC 61966-2-1), not yet in 8 bits."""
-    x = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
-    curved = (1 + SRGB_OFFSET) * np.maximum(x, SRGB_KNEE) ** (1 / SRGB_POWER) - SRGB_OFFSET
-    return np.where(x <= SRGB_KNEE, SRGB_SLOPE * x, curved)

@@ -28,7 +28,7 @@ def scenes_named(names: str) -> list[SceneMaker]:
         file = mesh_file(path)
         notes[path] = file.notes
         name = called(path.name)
-        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES)
+        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, exposure=None)
 
     made = pick_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)

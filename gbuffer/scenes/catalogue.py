@@ -13,12 +13,20 @@ from .setting import Setting
 
 @dataclass(frozen=True)
 class SceneMaker:
-    """A procedural scene: what it is, how it is made, and over how many moments a figure is averaged."""
+    """A scene.
+
+    Attributes:
+        name, title: what it is called, and what it shows.
+        make: it, at a moment.
+        frames: over how many moments a figure is averaged.
+        exposure: in stops; None to have it measured, of a scene whose light nobody has set.
+    """
 
     name: str
     title: str
     make: Callable[[Setting], Scene]
     frames: int
+    exposure: float | None = 0.0
 
 
 SCENES: Mapping[str, SceneMaker] = MappingProxyType(

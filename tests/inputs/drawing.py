@@ -8,11 +8,12 @@ from functools import cache
 import numpy as np
 
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.frame.resources import LIGHT, SHADOW_MAP, SHADOW_SIZE
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
-from normalbench.gbuffer.render import displayed, rendering
+from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.scene import Light, Scene
 from normalbench.gbuffer.scenes.setting import Setting

@@ -16,13 +16,14 @@ from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4, light_or_none
 from ....gbuffer.codecs.light_passes import Resolved, read_samples, resolved
+from ....gbuffer.display import displayed
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.frame.resources import FINAL, LIGHT
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import Rendering, displayed, rendering
+from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import Colour, Scene
 from ...metrics.images import squared_error
 from ...metrics.meter import psnr_db

@@ -18,8 +18,8 @@ from ....encodings.storages.rounding import to_srgb
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.codecs.light_passes import LightPasses, Sum
+from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
-from ....gbuffer.render import displayed
 
 Row = dict[str, Any]
 CHANNELS = "rgba"

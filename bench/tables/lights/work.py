@@ -12,9 +12,9 @@ import numpy as np
 
 from ....encodings.codecs.light_codec import LightCodec
 from ....gbuffer.codecs.light_passes import Resolved
+from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import displayed
 from ....reports.charts import pictures, plots
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import found_device, require_jax

@@ -14,12 +14,13 @@ import numpy as np
 from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout, LayoutError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
-from ....gbuffer.render import displayed, rendering
+from ....gbuffer.render import rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.images import squared_error
@@ -225,8 +226,11 @@ class Pictures:
         question = (case.maker, case.setting, case.powers)
         if question not in self._references:
             self._references[question] = self._drawn(case, LAYOUTS["fp32"])
-        errors = [squared_error(*pair)[0] for pair in zip(images, self._references[question], strict=True)]
-        return {f"{IMAGE}{power:g}": psnr_db(mse) for power, mse in zip(case.powers, errors, strict=True)}
+        found: Row = {}
+        for power, image, right in zip(case.powers, images, self._references[question], strict=True):
+            display = _display(case.maker, right)
+            found[f"{IMAGE}{power:g}"] = psnr_db(squared_error(display.image(image), display.image(right))[0])
+        return found
 
     def _drawn(self, case: Case, layout: Layout) -> list[np.ndarray]:
         plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
@@ -234,8 +238,15 @@ class Pictures:
         with rendering(self._device, PIPELINES["hybrid"], scene, plan) as made:
             for power in case.powers:
                 made.draw(scene.with_power(power))
-                shown.append(displayed(made.image()))
+                shown.append(made.image())
         return shown
+
+
+def _display(maker: SceneMaker, right: np.ndarray) -> Display:
+    """As the render table shows a scene, by its reference in linear light."""
+    if maker.exposure is not None:
+        return Display(maker.exposure)
+    return Display(measured_exposure(right.reshape(-1, 3)))
 
 
 @cache

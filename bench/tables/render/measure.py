@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.display import CLIPPED_ALONE, Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import Rendering, bytes_per_pixel, displayed, rendering
+from ....gbuffer.render import Rendering, bytes_per_pixel, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
@@ -41,6 +42,8 @@ class Case:
         frames: moments that figures are averaged over.
         asked: samples a pixel as asked for; `plan.samples` is what the device gives.
         power: specular power of all materials; None for each material's own.
+        exposure: in stops; None to measure it of the reference.
+        tone_mapping: one of TONE_MAPPINGS.
     """
 
     pipeline: Pipeline
@@ -50,6 +53,8 @@ class Case:
     frames: int
     asked: int
     power: float | None = None
+    exposure: float | None = 0.0
+    tone_mapping: str = "none"
 
     @property
     def name(self) -> str:
@@ -62,6 +67,12 @@ class Case:
         for frame in range(self.frames):
             scene = self.maker.make(replace(self.setting, time=frame / self.frames))
             yield scene if self.power is None else scene.with_power(self.power)
+
+    @property
+    def coverage(self) -> Case:
+        """The same scene in a G-buffer in fp32 with one sample a pixel, which says what is covered."""
+        plan = replace(self.reference.plan, samples=1, light_targets=2)
+        return replace(self.reference, pipeline=PIPELINES["hybrid"], plan=plan, asked=1)
 
     @property
     def reference(self) -> Case:
@@ -85,16 +96,18 @@ class Drawn:
         linear: the image, float32 of shape (height, width, 3).
         normals, kinds: what the G-buffer says, (height, width, 3) and (height, width); None where there is no G-buffer
             or it has several samples a pixel. The kind of what is not covered is -1.
+        display: how it is shown.
     """
 
     linear: np.ndarray
     normals: np.ndarray | None
     kinds: np.ndarray | None
+    display: Display = CLIPPED_ALONE
 
     @cached_property
     def shown(self) -> np.ndarray:
         """The image as displayed."""
-        return displayed(self.linear)
+        return self.display.image(self.linear)
 
 
 def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
@@ -123,8 +136,24 @@ class Bench:
         """The frames of a case's reference."""
         case = case.reference
         if case not in self._references:
-            self._references[case] = self._frames(case)
+            self._keep_reference(case, self._frames(case))
         return self._references[case]
+
+    def _keep_reference(self, case: Case, frames: list[Drawn]) -> None:
+        exposure = case.exposure
+        if exposure is None:
+            covered = self._covered(case, frames)
+            pixels = [frame.linear[where] for frame, where in zip(frames, covered, strict=True)]
+            exposure = measured_exposure(np.concatenate(pixels))
+        display = Display(exposure, case.tone_mapping)
+        self._references[case] = [replace(frame, display=display) for frame in frames]
+
+    def _covered(self, case: Case, reference: list[Drawn]) -> list[np.ndarray]:
+        """Where there is opaque surface in each frame, bool of shape (height, width)."""
+        if reference[0].kinds is None and case.coverage not in self._references:
+            self._references[case.coverage] = self._frames(case.coverage)
+        frames = self._references[case.coverage] if reference[0].kinds is None else reference
+        return [frame.kinds >= 0 for frame in frames if frame.kinds is not None]
 
     def _frames(self, case: Case, then: Callable[[Rendering], None] = lambda _: None) -> list[Drawn]:
         """A case's frames; `then` is called with the last one, still on the device."""
@@ -144,12 +173,14 @@ class Bench:
             frames = self._frames(
                 case, lambda made: times.update(_times(made, self._repeats)) if self._repeats else None
             )
-            if case == case.reference:
-                self._references.setdefault(case, frames)
+            if case == case.reference and case not in self._references:
+                self._keep_reference(case, frames)
             reference = self.reference(case)
+            covered = self._covered(case, reference)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
-        return row | times | self._compared(case, frames, reference), frames[0]
+        frames = [replace(frame, display=reference[0].display) for frame in frames]
+        return row | times | _seen(reference, covered) | self._compared(case, frames, reference, covered), frames[0]
 
     def worst(self, case: Case) -> Worst | None:
         """The normal of a case's first frame that its G-buffer gives back farthest off; None where there is none."""
@@ -158,12 +189,13 @@ class Bench:
         except UNMEASURABLE:
             return None
 
-    def _compared(self, case: Case, frames: list[Drawn], reference: list[Drawn]) -> Row:
+    def _compared(self, case: Case, frames: list[Drawn], reference: list[Drawn], covered: list[np.ndarray]) -> Row:
         pairs = list(zip(frames, reference, strict=True))
         errors = [squared_error(one.shown, other.shown) for one, other in pairs]
         mse = float(np.mean([error for error, _ in errors]))
         row: Row = {"mse": mse, "psnr_db": psnr_db(mse), "exact": mse == 0}
         row["invalid"] = sum(broken for _, broken in errors)
+        row["psnr_covered_db"] = _psnr_of_covered(pairs, covered)
         if self._with_flip:
             row["flip"] = float(np.mean([flip(one.shown, other.shown) for one, other in pairs]))
         # Where the G-buffer has a size of its own, its pixels are not the reference's.
@@ -172,6 +204,25 @@ class Bench:
             apart = [_normal_error(one, other, has_kind) for one, other in pairs]
             row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
         return row
+
+
+def _seen(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
+    """What a row says of what the reference shows."""
+    surface = np.concatenate([frame.linear[where] for frame, where in zip(reference, covered, strict=True)])
+    display = reference[0].display
+    return {
+        "exposure": display.exposure,
+        "covered_percent": 100.0 * float(np.mean(covered)),
+        "clipped_percent": 100.0 * display.clipped(surface),
+    }
+
+
+def _psnr_of_covered(pairs: list[tuple[Drawn, Drawn]], covered: list[np.ndarray]) -> float | None:
+    one, other = (
+        np.concatenate([frame.shown[where] for frame, where in zip(frames, covered, strict=True)])
+        for frames in zip(*pairs, strict=True)
+    )
+    return psnr_db(squared_error(one, other)[0]) if len(one) else None
 
 
 def _farthest(one: Drawn, other: Drawn) -> Worst | None:
@@ -221,12 +272,19 @@ def _described(case: Case) -> Row:
         "scene": case.maker.name,
         "power": case.power,
         "frames": case.frames,
-        "bytes_per_pixel": bytes_per_pixel(pipeline, plan),
+        "tone_mapping": None if case.tone_mapping == "none" else case.tone_mapping,
+        "bytes_per_pixel": None if _is_exact_but_for_normals(case) else bytes_per_pixel(pipeline, plan),
     }
     if pipeline.has_gbuffer:
         row |= {"encoding": plan.layout.codec.encoding.name, "storage": plan.layout.normal_storage}
         row |= {"rounding": plan.layout.rounding, "normal_bits": plan.layout.normal_bits}
     return row
+
+
+def _is_exact_but_for_normals(case: Case) -> bool:
+    """Whether a code lies in the exact layout, whose bytes nobody asked about."""
+    layout, exact = case.plan.layout, LAYOUTS["fp32"]
+    return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact
 
 
 def _times(made: Rendering, repeats: int) -> Row:
@@ -241,6 +299,21 @@ def shown_scene(row: Row) -> str:
     """What a row was rendered of, as a sentence names it; a row of an older version has no power."""
     power = row.get("power")
     return str(row.get("scene")) + (f" at power {power:g}" if isinstance(power, int | float) else "")
+
+
+def in_order(rows: list[Row]) -> list[Row]:
+    """Rows by what was rendered, as it comes, then by the bits of the normal's code, then the best image first."""
+    groups = list(dict.fromkeys(_group(row) for row in rows))
+    return sorted(rows, key=lambda row: (groups.index(_group(row)), row["normal_bits"] or 0, *_worse(row)))
+
+
+def _group(row: Row) -> tuple[Any, ...]:
+    return (*(row.get(c) for c in SAME), row["layout"])
+
+
+def _worse(row: Row) -> tuple[bool, float]:
+    """Images that are exact first, rows without figures last."""
+    return row["mse"] is None, row["mse"] or 0.0
 
 
 def ranked(rows: list[Row]) -> list[Row]:

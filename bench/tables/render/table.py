@@ -47,6 +47,11 @@ class RenderOptions:
     scene: Scenes = "gloss"
     power: Powers = None
     shadow: Shadow = "on"
+    exposure: Annotated[
+        str | None,
+        Option("--exposure", "Stops, or auto: clip 1 % at most. Default: 0, and auto for files.", in_run=True),
+    ] = None
+    tone_mapping: Annotated[str, Option("--tone-mapping", "none, reinhard or aces.", in_run=True)] = "none"
     size: Size = "640x480"
     samples: Samples = 1
     scale: Scale = 1.0
@@ -78,8 +83,10 @@ COLUMNS = (
     shared.LIGHT_TARGETS,
     shared.SCENE,
     Column("power", "Specular power of every material; empty: each material's own.", KEY, drops=7),
+    Column("tone_mapping", "How light beyond 1 is shown; empty: it is clipped.", KEY, drops=15),
     shared.SHADOW,
     shared.SCALE,
+    Column("exposure", "Light is multiplied by 2 to this power before it is shown.", HOW, "stops", drops=14),
     Column("size", "Width and height in pixels.", HOW),
     Column("samples", "Samples per pixel that the device gave, which may be more than asked for.", HOW),
     shared.SAMPLES_ASKED,
@@ -89,7 +96,7 @@ COLUMNS = (
     Column(
         "bytes_per_pixel",
         "G-buffer, light buffer (both copies of one that is read), depth and stencil (5 bytes), and 4 for linear depth "
-        "resolved from it where the layout keeps none; times the samples.",
+        "resolved from it where the layout keeps none; times the samples. Empty where a code lies in the exact layout.",
         unit="bytes",
         better="less",
     ),
@@ -101,6 +108,20 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
+    Column(
+        "psnr_covered_db",
+        "The same over covered pixels, those with an opaque surface.",
+        unit="dB",
+        better="more",
+        drops=12,
+    ),
+    Column(
+        "clipped_percent",
+        "Covered pixels of the reference that lose a channel to clipping. Errors there cannot be seen.",
+        unit="%",
+        drops=13,
+    ),
+    Column("covered_percent", "Pixels with an opaque surface.", unit="%", drops=11),
     Column("flip", "NVIDIA FLIP, a perceptual difference.", better="less", option="flip"),
     Column(
         "normal_psnr_db",
@@ -140,7 +161,7 @@ TABLE = Table(
         intro="The same codes in the G-buffer of a renderer that is exact otherwise: how far is the final image, as "
         "displayed, from one in 32-bit floats?",
         method="Each codec's image against that of the same pipeline with every target in 32-bit floats, clipped and "
-        "in "
-        "sRGB before 8 bits, every pixel, averaged over the moments of the scene.",
+        "in sRGB before 8 bits, every pixel, averaged over the moments of the scene. A scene from a file is exposed so "
+        "that at most 1 % of its covered pixels are clipped.",
     ),
 )

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout, LayoutError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import check
+from ....gbuffer.scenes.catalogue import SceneMaker
 from ....reports.charts import charts, pictures
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin, codecs_named
@@ -25,14 +27,16 @@ from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...output.errors import pick
+from ...output.errors import UsageError, pick, pick_one
 from ...output.writing import check_folder, whole_file, without
 from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from .measure import Bench, Case, Drawn, described, ranked, shown_scene
+from .measure import Bench, Case, Drawn, described, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
+# Percent of covered pixels beyond which a line says that they are clipped.
+MUCH_CLIPPED = 5.0
 
 T = TypeVar("T")
 
@@ -80,15 +84,33 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         for targets in pick("number of light targets", options.light_targets, TARGETS)
         for shadows in pick("shadow", options.shadow, SHADOWS)
     ]
+    tone_mapping = pick_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
     made: list[Case] = []
     complaints: list[str] = []
     powers = [None] if options.power is None else powers_named(options.power)
     for maker in scenes_named(options.scene):
+        exposure = _exposure(options.exposure, maker)
         for pipeline in pick("pipeline", options.pipeline, PIPELINES):
             for plan in suited(device, pipeline, plans, complaints):
                 case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples)
+                case = replace(case, exposure=exposure, tone_mapping=tone_mapping)
                 made += [replace(case, power=power) for power in powers]
     return what_is_left(made, complaints)
+
+
+def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
+    """Stops; None to measure them. Raises UsageError."""
+    if asked is None:
+        return maker.exposure
+    if asked.strip().lower() == "auto":
+        return None
+    try:
+        stops = float(asked)
+    except ValueError:
+        raise UsageError(f"--exposure {asked}: a number of stops, such as -1.5, or auto") from None
+    if not abs(stops) <= MAX_EXPOSURE:
+        raise UsageError(f"--exposure {asked}: {-MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
+    return stops
 
 
 def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
@@ -141,6 +163,7 @@ def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
 def _key(case: Case, options: RenderOptions) -> Row:
     key = described(case.pipeline, case.plan, case.setting, case.asked)
     key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
+    key |= {"exposure": case.exposure, "tone_mapping": case.tone_mapping}
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
@@ -159,12 +182,34 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         if row["invalid"]:
             what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
             yield f"{what} on {row['scene']}: {row['invalid']} pixels are NaN or infinite"
+    for scene, clipped in _clipped(rows).items():
+        if clipped > MUCH_CLIPPED:
+            remedy = "--exposure auto or --tone-mapping reinhard shows them"
+            yield f"{scene}: {clipped:.0f} % of the covered pixels are clipped, where errors cannot be seen; {remedy}"
+
+
+def _clipped(rows: Sequence[Row]) -> dict[str, float]:
+    """The most clipped pixels of each scene in percent."""
+    found: dict[str, float] = {}
+    for row in rows:
+        scene = shown_scene(row)
+        found[scene] = max(found.get(scene, 0.0), row["clipped_percent"] or 0.0)
+    return found
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    as_asked = all(row["samples"] == row["samples_asked"] for row in done.rows)
-    rows = without(TABLE.without_hidden(done.rows), ("samples_asked",) if as_asked else ())
+    rows = without(TABLE.without_hidden(done.rows), _usual_columns(done.rows))
     yield Sheet("", rows, TABLE.drops(rows))
+
+
+def _usual_columns(rows: Sequence[Row]) -> tuple[str, ...]:
+    """Columns that say only what goes without saying."""
+    usual = {
+        ("samples_asked",): all(row["samples"] == row["samples_asked"] for row in rows),
+        ("exposure",): not any(row["exposure"] for row in rows),
+        ("psnr_covered_db", "covered_percent"): all(row["covered_percent"] in (None, 100.0) for row in rows),
+    }
+    return tuple(name for names, is_usual in usual.items() if is_usual for name in names)
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -204,7 +249,7 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
-    return ranked(list(rows))
+    return in_order(ranked(list(rows)))
 
 
 def _worst(step: Step) -> Any:

@@ -26,10 +26,11 @@ from normalbench.bench.tables.lights.sums import (
 )
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.pipelines import PIPELINES
-from normalbench.gbuffer.render import displayed, rendering
+from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 

@@ -17,13 +17,16 @@ from normalbench.bench.tables.render.work import cases
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
-from normalbench.gbuffer.render import WALL, displayed
+from normalbench.gbuffer.render import WALL
 from normalbench.gbuffer.render import rendering as render
 from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.mesh import box, sphere
 from normalbench.gbuffer.scenes.setting import Setting
+from normalbench.gbuffer.scenes.teapot import teapot
 
 pytestmark = pytest.mark.usefixtures("gl")
 SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
@@ -54,10 +57,62 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     )
     assert octahedral["psnr_db"] > xy["psnr_db"] > 20 and xy["flip"] is None
     assert (octahedral["rank"], xy["rank"], octahedral["normal_rank"], xy["normal_rank"]) == (1, 2, 1, 2)
-    assert octahedral["bytes_per_pixel"] == 64 + 4 + 5 + 16, "the normal's RGBA32F still holds the depth"
+    assert octahedral["bytes_per_pixel"] is None, "nobody asked about the bytes of the exact rest"
     assert forward["layout"] is None and forward["exact"] and forward["psnr_db"] is None
     assert octahedral["ms_frame"] > 0 and octahedral["ms_lights"] > 0 and octahedral["ms_forward"] is None
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
+
+
+def test_rows_stand_by_bits_and_then_the_best_first(run):
+    _, out, _ = run("render", *SMALL, "--scene", "room", "--encoding", "xy,xyz,octahedral", "--format", "json")
+    assert [row["encoding"] for row in json.loads(out)] == ["octahedral", "xy", "xyz"]
+
+
+def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
+    """It is black in both images, so that the mean over every pixel is that over covered ones times their share."""
+    words = ["--scene", "playground", "--encoding", "octahedral", "--storage", "rg8", "--format", "json"]
+    for more in ([], ["--samples", "4"], ["--pipeline", "forward"]):
+        _, out, _ = run("render", *SMALL, *words, *more)
+        (row,) = json.loads(out)
+        share = row["covered_percent"] / 100
+        assert share == pytest.approx(0.97, abs=0.01), "the playground leaves 3 % of the picture black"
+        if row["psnr_db"] is not None:
+            expected = row["psnr_db"] + 10 * np.log10(share)
+            # Of a pixel at an edge some samples are background.
+            assert row["psnr_covered_db"] == pytest.approx(expected, abs=0.2 if more else 1e-6)
+
+
+@pytest.mark.parametrize("name", ["ball", "slab", "pot"])
+def test_a_mesh_of_ones_own_clips_at_most_a_hundredth(run, tmp_path, name):
+    """Whatever its size and shape: sphere, plate and teapot a thousand times as large and as small."""
+    mesh = {"ball": sphere(1e-3, 12, 12), "slab": box(1e3, 10.0, 1e3), "pot": teapot(4)}[name]
+    path = tmp_path / f"{name}.obj"
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in mesh.positions)
+    path.write_text(corners + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in mesh.triangles))
+    words = ["--scene", str(path), "--power", "16,1024", "--encoding", "octahedral", "--format", "json"]
+    for more in ([], ["--tone-mapping", "aces"]):
+        _, out, err = run("render", *SMALL, *words, *more)
+        assert "clipped" not in err
+        for row in json.loads(out):
+            assert row["clipped_percent"] <= 1 and row["exposure"] != 0, row
+    _, out, err = run("render", *SMALL, *words, "--exposure", "9")
+    assert {row["exposure"] for row in json.loads(out)} == {9}
+    assert f"{path.name} at power 16: " in err and "of the covered pixels are clipped" in err
+    assert all(row["clipped_percent"] > 5 for row in json.loads(out))
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["--exposure", "bright"], "--exposure bright: a number of stops, such as -1.5, or auto"),
+        (["--exposure", "nan"], "--exposure nan: -20 to 20 stops"),
+        (["--exposure=-21"], "--exposure -21: -20 to 20 stops"),
+        (["--tone-mapping", "Filmic"], "unknown tone mapping 'Filmic'; known: none, reinhard, aces"),
+    ],
+)
+def test_a_display_that_cannot_be_is_one_line(run, words, said):
+    status, out, err = run("render", *SMALL, "--encoding", "octahedral", *words)
+    assert (status, out) == (2, "") and err == f"normalbench: {said}\n"
 
 
 def test_what_does_not_fit_says_why(run):
