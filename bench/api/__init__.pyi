@@ -129,6 +129,8 @@ def render(
     scene: Names = ...,
     power: Names | None = ...,
     shadow: Names = ...,
+    exposure: Names | None = ...,
+    tone_mapping: Names = ...,
     size: Names = ...,
     samples: int = ...,
     scale: float = ...,
@@ -154,6 +156,8 @@ def render(
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
         shadow: on, off; comma-separated, or all.
+        exposure: Stops, or auto: clip 1 % at most. Default: 0, and auto for files.
+        tone_mapping: none, reinhard or aces.
         size: WIDTHxHEIGHT of the image.
         samples: Samples per pixel; the device may give more.
         scale: Size of inferred's buffers relative to the image's, up to 1.

@@ -9,7 +9,10 @@ STORAGE = Column("storage", "The texel format that the numbers are stored in.", 
 BACKEND = Column(
     "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", Role.KEY
 )
-BITS = Column("bits", "Bits that the code occupies in its texel.")
+BITS = Column(
+    "bits",
+    "Bits that the code needs: all of its channels, but for a component of few values only what tells those apart.",
+)
 PIPELINE = Column("pipeline", "The order of passes that rendered it.", Role.KEY)
 LIGHT_TARGETS = Column(
     "light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", Role.KEY, drops=4
