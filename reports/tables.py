@@ -20,6 +20,8 @@ CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2
 PLAIN, CODE = re.compile(r"[\w .,+%():;>=<'/-]*"), re.compile(r"`[^`\n]*`")
 # What a spreadsheet takes for a formula.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
+# What it takes for a number is harmless.
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 def text_of(value: Any) -> str:
@@ -83,7 +85,8 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 def _no_formula(value: Any) -> Any:
     """A spreadsheet shows text behind an apostrophe, and computes nothing."""
     storable = _storable(value)
-    return f"'{storable}" if isinstance(storable, str) and storable.startswith(FORMULA) else storable
+    is_formula = isinstance(storable, str) and storable.startswith(FORMULA) and not NUMBER.fullmatch(storable)
+    return f"'{storable}" if is_formula else storable
 
 
 def _storable(value: Any) -> Any:

@@ -46,7 +46,7 @@ NOT_RUN = [line for line in LINES if line.startswith(("pip install ", ". .venv/"
 HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
-    *("normalbench frames", "normalbench cost"),
+    *("normalbench frames", "normalbench cost", "normalbench published"),
 }
 
 
@@ -61,7 +61,8 @@ def users_files(folder: Path) -> None:
     n = some_normals()
     for name in ("frame.exr", "world.exr"):
         write_exr(folder / name, planes_of(n))
-    np.save(folder / "list.npy", n)
+    for name in ("list.npy", "cube.npy"):
+        np.save(folder / name, n)
     (folder / "frame.png").write_bytes(png_bytes(packed(n, np.uint16)))
     (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
     np.savetxt(folder / "view.txt", np.eye(4))

@@ -374,3 +374,15 @@ def tune(
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
     """
+
+def published(
+    *,
+    source: Names = ...,
+) -> Rows:
+    """Figures of articles and engines, measured anew: what is printed, what is measured here, and why they differ.
+
+    A figure that is neither reproduced nor explained makes the exit status 1.
+
+    Args:
+        source: Words of the sources' names, comma-separated, such as cigolle,2010; or all.
+    """

@@ -63,3 +63,21 @@ CYCLES = {
     ("per_pixel_view", "encode"): ((3, 11.0), (3, 2.75), (2, 0.8), (4, 12.0), (4, 8.0), (8, 24.0)),
     ("per_pixel_view", "decode"): ((3, 11.0), (3, 2.75), (2, 0.8), (3, 12.0), (3, 9.0), (12, 29.0)),
 }
+# A. Pranckevicius, Compact Normal Storage for Small G-Buffers (Old and Wrong), 2009: instructions of SM3.0 by d3dx9_40
+# (November 2008). Its decoders are counted without the read of the G-buffer.
+SLOTS_2009 = {
+    ("xy", "encode"): 1,
+    ("xy", "decode"): 6,
+    ("spherical", "encode"): 26,
+    ("spherical", "decode"): 10,
+    ("spherical_lut", "encode"): 4,
+    ("spherical_lut", "decode"): 3,
+    ("spheremap_classic", "encode"): 7,
+    ("spheremap_classic", "decode"): 8,
+    ("cryengine3", "encode"): 9,
+    ("cryengine3", "decode"): 7,
+    ("spheremap", "encode"): 4,
+    ("spheremap", "decode"): 7,
+    ("stereographic", "encode"): 5,
+    ("stereographic", "decode"): 7,
+}

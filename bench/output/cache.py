@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,16 @@ def read(key: str) -> dict[str, Any] | None:
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return value if is_whole and isinstance(value, dict) else None
+
+
+def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The value of a key, or what is made now, and kept where the key is not empty."""
+    found = read(key) if key else None
+    if found is None:
+        found = make()
+        if key:
+            write(key, found)
+    return found
 
 
 def _digest(value: Any) -> str:

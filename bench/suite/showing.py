@@ -52,7 +52,9 @@ def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
 def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
     title = _said(sheet, width) + (f"{sheet.title}\n\n" if sheet.title else "")
     rows = tables.written(sheet.rows, format, width, sheet.drops if spares else ()) if sheet.rows else ""
-    return title + rows + "".join(f"{note}\n" for note in sheet.notes)
+    # In Markdown a line right below a table is one of its rows.
+    above, mark = ("\n", "- ") if format == "markdown" and sheet.notes else ("", "")
+    return title + rows + above + "".join(f"{mark}{note}\n" for note in sheet.notes)
 
 
 def _said(sheet: Sheet, width: int) -> str:

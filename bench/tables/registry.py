@@ -18,6 +18,7 @@ FOLDERS = (
     "tangent_frames",
     "sweep",
     "tune",
+    "published",
 )
 TABLES: Mapping[str, Table] = MappingProxyType(
     {table.name: table for table in (import_module(f".{folder}.table", __package__).TABLE for folder in FOLDERS)}

@@ -20,11 +20,11 @@ COUNT, BYTE = 2**16, 256
 RINGS = round(math.sqrt(math.pi * COUNT / 4))
 
 
-def _points_needed(radius: float) -> np.ndarray:
-    """How many points each ring needs, so that a point and half a step around reach the ring's borders."""
-    theta = np.arange(1, RINGS - 1) * np.pi / (RINGS - 1)
-    needed = np.ones(RINGS)
-    for border in (theta - 0.5 * np.pi / (RINGS - 1), theta + 0.5 * np.pi / (RINGS - 1)):
+def points_needed(radius: float, count: int = RINGS) -> np.ndarray:
+    """How many points each of `count` rings needs, so that a point and half a step around reach the ring's borders."""
+    theta = np.arange(1, count - 1) * np.pi / (count - 1)
+    needed = np.ones(count)
+    for border in (theta - 0.5 * np.pi / (count - 1), theta + 0.5 * np.pi / (count - 1)):
         # cos(radius) = cos(theta) cos(border) + sin(theta) sin(border) cos(pi / points)
         across = (math.cos(radius) - np.cos(theta) * np.cos(border)) / (np.sin(theta) * np.sin(border))
         with np.errstate(divide="ignore"):
@@ -34,13 +34,19 @@ def _points_needed(radius: float) -> np.ndarray:
 
 
 @cache
-def rings() -> np.ndarray:
-    """For each ring how many points it has, and how many the rings before it have; float32 of shape (RINGS, 2)."""
+def covering_radius() -> float:
+    """The largest angle between a direction and the point that stands for it, in radians: as small as COUNT allow."""
     low, high = 0.0, math.pi
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _points_needed(middle).sum() <= COUNT else (middle, high)
-    counts = _points_needed(high)
+        low, high = (low, middle) if points_needed(middle).sum() <= COUNT else (middle, high)
+    return high
+
+
+@cache
+def rings() -> np.ndarray:
+    """For each ring how many points it has, and how many the rings before it have; float32 of shape (RINGS, 2)."""
+    counts = points_needed(covering_radius())
     return np.stack([counts, np.cumsum(counts) - counts], axis=1).astype(np.float32)
 
 

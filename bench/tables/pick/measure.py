@@ -179,17 +179,7 @@ def _supremum(case: Case) -> float | None:
     if one.backend != "jax":
         return None
     key = _key("supremum", case.codec, _normals(case))
-    return _kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
-
-
-def _kept(key: str, make: Callable[[], Row]) -> Row:
-    """What is kept by a key, or what is made now, and kept where the key is not empty."""
-    found = kept.read(key) if key else None
-    if found is None:
-        found = make()
-        if key:
-            kept.write(key, found)
-    return found
+    return kept.kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
 
 
 def _normals(case: Case) -> list[Any] | None:
@@ -217,7 +207,7 @@ class Pictures:
         known = case.maker.name if case.maker is SCENES.get(case.maker.name) else None
         key = _key("image", case.codec, known, case.setting, case.powers, self._device.renderer)
         try:
-            return _kept(key, lambda: self._measured(case))
+            return kept.kept(key, lambda: self._measured(case))
         except (LayoutError, *render.UNMEASURABLE):
             return {}
 

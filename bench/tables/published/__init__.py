@@ -1,0 +1,1 @@
+"""Figures of articles, books and engines, measured anew."""

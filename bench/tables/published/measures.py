@@ -1,0 +1,190 @@
+"""How figures are measured as their sources describe them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import jax
+import numpy as np
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ...codecs.names import codecs_named
+from ...metrics import published
+from ...normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from ...output import cache as kept
+from ...output.errors import MissingError
+from ...output.sources import sources
+from ..cost import measure as cost
+from ..quality import measure as quality
+
+COUNT = 2**20
+# Angles have a standard deviation of about half their mean, and two means of a million are compared: four deviations.
+SCATTER_OF_MEANS = 4 * 0.5 * 2**0.5 / COUNT**0.5
+FAMILY, STAGE = "polaris10", "fragment"
+SUPREMUM = "angle_sup_deg"
+# What is taken of a row of the quality table.
+FIGURES = ("angle_mean_deg", SUPREMUM, "limit_max_deg", "psnr_article_db")
+
+
+def codec_of(encoding: str, storage: str, rounding: str = "nearest") -> Codec:
+    """A codec of the catalogue."""
+    (found,) = codecs_named(encoding, storage, rounding)
+    return found
+
+
+@cache
+def _row(codec: Codec, normals: NormalSet, worst_case: bool) -> quality.Row:
+    """A row of the quality table, measured once for good."""
+    case = quality.Case(codec, normals, "jax", worst_case=worst_case)
+    words = (codec.name, codec.rounding, normals.name, str(normals.count), str(worst_case))
+    key = kept.key_of("published", sources(), jax.__version__, *words)
+    return kept.kept(key, lambda: {name: value for name, value in quality.measure(case).items() if name in FIGURES})
+
+
+@cache
+def _set(name: str) -> NormalSet:
+    return NORMAL_SETS[name](COUNT, 0)
+
+
+@dataclass(frozen=True)
+class Quality:
+    """A column of the quality table."""
+
+    encoding: str
+    storage: str
+    column: str
+    normals: str = "sphere"
+    rounding: str = "nearest"
+
+    @property
+    def command(self) -> str:
+        """What shows it."""
+        more = f" --rounding {self.rounding}" if self.rounding != "nearest" else ""
+        more += " --worst-case" if self.column == SUPREMUM else ""
+        words = f"--encoding {self.encoding} --storage {self.storage} --normals {self.normals}"
+        return f"normalbench quality {words} --backend jax{more}"
+
+    @property
+    def scatter(self) -> float:
+        """Of a mean; suprema and pictures have none."""
+        return SCATTER_OF_MEANS if self.column == "angle_mean_deg" else 0.0
+
+    def figure(self) -> float | None:
+        """The column's value."""
+        codec = codec_of(self.encoding, self.storage, self.rounding)
+        return _row(codec, _set(self.normals), self.column == SUPREMUM)[self.column]
+
+
+@dataclass(frozen=True)
+class ArticleMse:
+    """The squared error that the article's PSNR stands for."""
+
+    encoding: str
+
+    @property
+    def command(self) -> str:
+        """What shows it."""
+        return f"{Quality(self.encoding, published.STORAGE, '', published.NORMALS).command}; 10^(-psnr_article_db / 10)"
+
+    @property
+    def scatter(self) -> float:
+        """None: it is a picture's."""
+        return 0.0
+
+    def figure(self) -> float | None:
+        """10^(-PSNR / 10)"""
+        found = Quality(self.encoding, published.STORAGE, "psnr_article_db", published.NORMALS).figure()
+        return None if found is None else 10 ** (-found / 10)
+
+
+@cache
+def in_a_cube(is_half: bool) -> NormalSet:
+    """Directions of points spread evenly in a cube, and so denser towards its corners; or those of them with z >= 0."""
+    points = np.random.default_rng(0).random((COUNT, 3)) * 2 - 1
+    n = points / np.linalg.norm(points, axis=1, keepdims=True)
+    n[:, 2] = np.abs(n[:, 2]) if is_half else n[:, 2]
+    view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    return from_arrays("cube.npy", "points of a cube", n.astype(np.float32), view, np.ones(COUNT, bool))
+
+
+@dataclass(frozen=True)
+class InACube:
+    """A mean over directions of points spread evenly in a cube."""
+
+    encoding: str
+    storage: str
+    is_half: bool = False
+
+    @property
+    def command(self) -> str:
+        """What shows it."""
+        return f"normalbench quality --encoding {self.encoding} --storage {self.storage} --normals cube.npy"
+
+    @property
+    def scatter(self) -> float:
+        """Of a mean."""
+        return SCATTER_OF_MEANS
+
+    def figure(self) -> float | None:
+        """The mean angle in degrees."""
+        return _row(codec_of(self.encoding, self.storage), in_a_cube(self.is_half), False)["angle_mean_deg"]
+
+
+@cache
+def _instructions() -> dict[tuple[str, str], float]:
+    names = {*(name for name, _ in published.SLOTS), *(name for name, _ in published.SLOTS_2009)}
+    chosen = cost.cases((ENCODINGS[name] for name in sorted(names)), (), cost.OPERATIONS)
+    found = cost.isa_rows(chosen, [STAGE], [FAMILY], [], cost.nobody)
+    rows = [row for row, _ in found if row["family"] == FAMILY and row["instructions"] is not None]
+    return {(row["encoding"], row["operation"]): float(row["instructions"]) for row in rows}
+
+
+@dataclass(frozen=True)
+class Instructions:
+    """Instructions of an operation in a fragment shader."""
+
+    encoding: str
+    operation: str
+
+    @property
+    def command(self) -> str:
+        """What shows it."""
+        words = f"--encoding {self.encoding} --operation {self.operation}"
+        return f"normalbench cost --isa --family {FAMILY} --stage {STAGE} {words}"
+
+    @property
+    def scatter(self) -> float:
+        """None: they are counted."""
+        return 0.0
+
+    def figure(self) -> float | None:
+        """How many; None where there is no compiler."""
+        try:
+            return _instructions().get((self.encoding, self.operation))
+        except MissingError:
+            return None
+
+
+@dataclass(frozen=True)
+class Counted:
+    """What a few lines compute."""
+
+    compute: Callable[[], float]
+    source: str
+
+    @property
+    def command(self) -> str:
+        """What shows it."""
+        return f"normalbench published --source {self.source}"
+
+    @property
+    def scatter(self) -> float:
+        """None: it is exact."""
+        return 0.0
+
+    def figure(self) -> float | None:
+        """Its value."""
+        return self.compute()

@@ -1,0 +1,118 @@
+"""Published figures, measured anew: every one has a verdict, and a wrong one is noticed."""
+
+import json
+import math
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.tables.published import sources, work
+from normalbench.bench.tables.published.figure import Figure, Source
+from normalbench.bench.tables.published.sources import SOURCES
+from normalbench.bench.tables.published.table import PublishedOptions
+
+PAGE = Path(__file__).parents[3] / "docs" / "published-figures.md"
+FIGURES = [(source, figure) for source in SOURCES for figure in source.figures]
+
+
+@dataclass(frozen=True)
+class Known:
+    """A measure that gives what it is told."""
+
+    value: float | None
+    scatter: float = 0.0
+    command: str = "normalbench published"
+
+    def figure(self) -> float | None:
+        return self.value
+
+
+PRINTED = Figure("a mean", "a table", 0.337, 3, "degrees", Known(None))
+
+
+@pytest.mark.parametrize(
+    "ours, more, expected",
+    [
+        # Half a unit of the last digit.
+        (0.3365, {}, "reproduced"),
+        (0.3375, {}, "reproduced"),
+        (0.3376, {}, "unexplained"),
+        (0.3376, {"why": "because"}, "different"),
+        (0.34, {"within": 0.003}, "reproduced"),
+        # A maximum of samples is below the supremum, by 2 % at most.
+        (0.343, {"is_maximum": True}, "short by sampling"),
+        (0.345, {"is_maximum": True}, "unexplained"),
+        (0.336, {"is_maximum": True}, "unexplained"),
+        (0.1, {"bound": "below"}, "holds"),
+        (0.4, {"bound": "below"}, "unexplained"),
+        (0.4, {"bound": "above"}, "holds"),
+        # Slots and instructions are never the same thing.
+        (0.337, {"why": "another thing", "is_comparable": False}, "different"),
+        (None, {}, "not measured"),
+    ],
+)
+def test_a_verdict_is_what_the_figures_say(ours, more, expected):
+    assert replace(PRINTED, **more).verdict(ours) == expected
+
+
+def test_samples_scatter():
+    figure = replace(PRINTED, ours=Known(None, scatter=0.01))
+    assert figure.verdict(0.337 * 1.011) == "reproduced" and figure.verdict(0.337 * 1.013) == "unexplained"
+
+
+def test_there_are_more_than_eighty_and_each_is_named_once():
+    names = [(source.name, figure.what) for source, figure in FIGURES]
+    assert len(names) > 130 and len(set(names)) == len(names)
+    for source, figure in FIGURES:
+        assert float(figure.printed) == pytest.approx(figure.value), figure.what
+        assert figure.place and source.name and figure.ours.command.startswith("normalbench ")
+
+
+def test_a_wrong_constant_fails_the_command_and_names_the_figure(run, monkeypatch):
+    """A hundredth off."""
+    right = next(figure for _, figure in FIGURES if figure.what == "mean of oct16, 8:8")
+    wrong = Source("Z. Cigolle", (right, replace(right, what="a slip", value=right.value * 1.01)))
+    monkeypatch.setattr(sources, "SOURCES", (wrong,))
+    status, out, err = run("published", "--source", "Cigolle", "--format", "json")
+    assert status == 1 and [row["verdict"] for row in json.loads(out)] == ["reproduced", "unexplained"]
+    assert err.count("\n") == 1 and "Z. Cigolle: a slip: 0.34046 degrees is published and 0.33689 measured" in err
+
+
+def test_sources_are_chosen_by_words(run):
+    assert [source.name[:6] for source in work.chosen("XEOKIT, smith")] == ["J. Smi", "xeokit"]
+    assert work.chosen("all") == list(SOURCES)
+    status, out, err = run("published", "--source", "knuth")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "--source knuth: a word of one of these names" in err
+
+
+def test_what_is_counted_is_what_is_printed(run):
+    """Of the sources that take no samples: layouts, light, depth, points on rings."""
+    words = "smith,drobot,jo kyeong,ols,shared_exponent,kemen,golubev,normal_pack"
+    status, out, _ = run("published", "--source", words, "--format", "json")
+    rows = json.loads(out)
+    verdicts = {row["figure"]: row["verdict"] for row in rows}
+    assert status == 0 and len(rows) == 29
+    others = [figure for figure, verdict in verdicts.items() if verdict not in ("reproduced", "holds")]
+    assert others == ["step at 0.1 km, C = 1", "distance where a step exceeds 1 m"]
+
+
+@pytest.mark.slow
+def test_every_figure_has_a_verdict_and_the_manual_has_it(run):
+    """Figure, verdict and reason to the letter, ours to a five-hundredth."""
+    status, out, _ = run("published", "--format", "markdown")
+    assert status == 0
+    (page,) = re.findall(r"^<!-- normalbench published -->\n(.*?)^<!-- end -->", PAGE.read_text(), re.S | re.M)
+    lines, shown = (re.sub(r" +|-{3,}", " ", text).splitlines() for text in (out, page))
+    assert len(lines) == len(shown)
+    for line, at in zip(lines, shown, strict=True):
+        measured, printed = ([cell.strip() for cell in text.split("|")] for text in (line, at))
+        if len(measured) > 4 and measured[3] != printed[3]:
+            assert float(printed[3]) == pytest.approx(float(measured[3]), rel=2e-3), at
+            measured[3] = printed[3]
+        assert measured == printed
+    rows = [row for step in work._steps(PublishedOptions(), None) for row in work.measured(step.case)]
+    assert {row["verdict"] for row in rows} == {"reproduced", "holds", "short by sampling", "different"}
+    assert all(row["why"] and row["command"] for row in rows if row["verdict"] == "different")
+    assert all(math.isfinite(row["ours"]) for row in rows)
