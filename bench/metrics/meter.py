@@ -78,14 +78,6 @@ def _errors(n: Vec3, decoded: Vec3, covered):
     return dot(difference, difference), dot(eighths, eighths), angle, invalid
 
 
-def _farthest(decode: Callable[[Any], Vec3], chunk):
-    """The largest angle of a chunk, the normal that has it, and what that was decoded as."""
-    decoded = decode(chunk)
-    _, _, angle, _ = _errors(chunk.n, decoded, chunk.covered)
-    at = jnp.argmax(angle)
-    return angle[at], jnp.stack([c[at] for c in chunk.n]), jnp.stack([c[at] for c in decoded])
-
-
 def _histogram_key(angle, covered):
     key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
     return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED)
@@ -144,8 +136,8 @@ def compiled(function):
 
 
 _scan = compiled(_traced_scan)
-# Sums, the largest angle, and how many normals lie in each bin of the histogram.
-Part = tuple[np.ndarray, float, np.ndarray]
+# Sums, the largest angle, how many normals lie in each bin of the histogram, and the normal with the largest angle.
+Part = tuple[np.ndarray, float, np.ndarray, "Worst | None"]
 
 
 def squared_errors(codec: Codec):
@@ -192,6 +184,7 @@ class Statistics:
         angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
             first holds 0 as well.
         within: for each power of two of degrees, ascending, how many angles are below it.
+        worst: the normal that came back farthest off.
     """
 
     count: int
@@ -205,6 +198,7 @@ class Statistics:
     angle_max_deg: float
     angle_counts: tuple[tuple[float, int], ...]
     within: tuple[tuple[float, int], ...]
+    worst: Worst | None
 
 
 @dataclass(frozen=True)
@@ -249,16 +243,39 @@ def _within(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
     return tuple((float(2.0 ** (first + k + 1)), int(count)) for k, count in enumerate(below))
 
 
+def _worst(keys: np.ndarray, n: Vec3, decoded: Vec3) -> Worst | None:
+    """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
+    highest = int(np.max(keys, where=keys < BINS, initial=-1))
+    if highest < 0:
+        return None
+    at = np.flatnonzero(keys == highest)
+    normals, found = (np.stack([np.asarray(plane).ravel()[at] for plane in planes], axis=1) for planes in (n, decoded))
+    angles = _angles(normals.astype(np.float64), found.astype(np.float64))
+    first = int(np.argmax(angles))
+    return Worst(normals[first], found[first], float(angles[first]))
+
+
+def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
+    """As `angle_between`, in float64, of rows; 180 where a decode is not a number."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        across, along = np.linalg.norm(np.cross(n, decoded - n), axis=1), np.sum(n * decoded, axis=1)
+        angles = np.degrees(np.arctan2(across, along))
+    return np.where(np.isfinite(along) & (decoded != 0).any(axis=1), angles, 180.0)
+
+
 class Total:
     """What chunks add up to."""
 
     def __init__(self):
         self.sums, self.largest, self.histogram = np.zeros(len(Sums._fields)), 0.0, np.zeros(BINS + 1, np.int64)
+        self.worst: Worst | None = None
 
     def add(self, part: Part) -> None:
-        """One chunk's sums, largest angle and histogram."""
-        sums, largest, counts = part
+        """One chunk's sums, largest angle, histogram and worst normal."""
+        sums, largest, counts, worst = part
         self.sums, self.largest, self.histogram = self.sums + sums, max(self.largest, largest), self.histogram + counts
+        if worst and (self.worst is None or worst.angle_deg > self.worst.angle_deg):
+            self.worst = worst
 
 
 class Once:
@@ -286,15 +303,16 @@ class Meter:
 
     def __init__(self, decode: Callable[[Any], Vec3]):
         self._decode = jax.jit(decode)
-        self._farthest = compiled(lambda chunk: _farthest(decode, chunk))
 
     def one(self, load: Callable[[], Any]) -> Part:
         """One chunk's part of the statistics."""
         with jax.enable_x64(True):
             chunk = jax.tree.map(jnp.asarray, load())
-            sums, largest, keys = _scan(Decoded(chunk.n, self._decode(chunk), chunk.covered))
-            histogram = np.bincount(np.asarray(keys), minlength=BINS + 1)
-            return np.array([float(s) for s in sums]), float(largest), histogram
+            decoded = self._decode(chunk)
+            sums, largest, keys = _scan(Decoded(chunk.n, decoded, chunk.covered))
+            keys = np.asarray(keys)
+            histogram = np.bincount(keys, minlength=BINS + 1)
+            return np.array([float(s) for s in sums]), float(largest), histogram, _worst(keys, chunk.n, decoded)
 
     def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
         """Statistics of a set, its chunks shared among the cores.
@@ -306,15 +324,6 @@ class Meter:
             tick: called when a chunk is done.
         """
         return measure_together([self], loads, pixels, lambda _: tick())[0]
-
-    def worst(self, loads: Iterable[Callable[[], Any]]) -> Worst:
-        """Where the largest angle of a set is: a pass of its own, which `measure` need not be slowed down by."""
-        return max((self._farthest_of(load()) for load in loads), key=lambda found: found.angle_deg)
-
-    def _farthest_of(self, chunk: Any) -> Worst:
-        with jax.enable_x64(True):
-            angle, normal, decoded = self._farthest(jax.tree.map(jnp.asarray, chunk))
-            return Worst(np.asarray(normal), np.asarray(decoded), float(angle))
 
 
 def measure_together(
@@ -334,12 +343,13 @@ def measure_together(
         index = next(whose)
         totals[index].add(part)
         tick(index)
-    return [_statistics(pixels, total.sums, total.largest, total.histogram) for total in totals]
+    return [_statistics(pixels, total) for total in totals]
 
 
-def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.ndarray) -> Statistics:
+def _statistics(pixels: int, total: Total) -> Statistics:
+    largest, histogram = total.largest, total.histogram
     count = int(histogram[:BINS].sum())
-    squared, article_squared, angle, angle_squared, invalid = sums
+    squared, article_squared, angle, angle_squared, invalid = total.sums
     return Statistics(
         count=count,
         pixels=pixels,
@@ -352,4 +362,5 @@ def _statistics(pixels: int, sums: np.ndarray, largest: float, histogram: np.nda
         angle_max_deg=largest,
         angle_counts=_counts(histogram),
         within=_within(histogram),
+        worst=total.worst,
     )

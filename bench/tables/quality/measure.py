@@ -173,7 +173,7 @@ def worst(case: Case) -> Worst | None:
     """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
     try:
         with BACKENDS[case.backend](case) as found:
-            return found.meter.worst(found.loads)
+            return found.meter.measure(found.loads, case.normal_set.count).worst
     except UNMEASURABLE:
         return None
 
@@ -189,10 +189,17 @@ def _figures(s: Statistics, area: float | None) -> Row:
         "angle_rms_deg": s.angle_rms_deg,
         "angle_p99_deg": s.angle_p99_deg,
         "angle_max_deg": s.angle_max_deg,
+        "worst_normal": _components(s.worst.normal) if s.worst else None,
+        "worst_decode": _components(s.worst.decoded) if s.worst else None,
         "angle_counts": " ".join(f"{edge:.6g}:{count}" for edge, count in s.angle_counts),
         "effective_bits": effective_bits(s.angle_rms_deg, area),
         "exact": s.mse == 0,
     }
+
+
+def _components(vector: np.ndarray) -> str:
+    """Three float32, as they are."""
+    return f"({', '.join(map(str, vector))})"
 
 
 def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:

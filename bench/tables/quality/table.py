@@ -96,6 +96,8 @@ COLUMNS = (
     _angle("angle_rms_deg", "Root of the mean squared angle.", drops=12),
     _angle("angle_p99_deg", "99 % of the angles are below it.", drops=14),
     _angle("angle_max_deg", "The largest angle that was met; the supremum is angle_sup_deg."),
+    Column("worst_normal", "The normal that came back farthest off: x, y and z.", RAW, drops=1),
+    Column("worst_decode", "What it came back as.", RAW, drops=1),
     _supremum(
         "angle_sup_deg",
         "The supremum: the largest angle of exact arithmetic, searched for in float64. Of a finite set it is the set's "
@@ -113,7 +115,13 @@ COLUMNS = (
         HOW,
     ),
     _supremum("sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"),
-    Column("angle_counts", "A histogram of the angles, `from:count`, eight bins an octave.", RAW, shown=False),
+    Column(
+        "angle_counts",
+        "A histogram of the angles, `from:count`, eight bins an octave.",
+        RAW,
+        shown=False,
+        is_histogram=True,
+    ),
     Column(
         "effective_bits",
         "log2 of the number of ideally placed codes that have this RMS angle; uniform sets only.",
@@ -190,6 +198,7 @@ TABLE = Table(
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
     "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by "
     "a camera (glTF, GLB, OBJ, PLY, STL, OFF).",
+    example="normalbench quality --encoding octahedral,spheremap --storage rg8,rgb10a2 --normals sphere",
     options=QualityOptions,
     outputs=QualityOutputs,
     columns=COLUMNS,

@@ -100,6 +100,34 @@ def test_the_background_counts_for_the_articles_measure_alone():
     assert half.article_mse == pytest.approx(only.article_mse / 2)
 
 
+def test_the_worst_normal_is_the_one_that_was_turned_most():
+    """Of several chunks, among background that is farther off, and of decodes that are not numbers."""
+    n, degrees = random_directions(CHUNK + 5000), np.full(CHUNK + 5000, 1.0)
+    degrees[[77, CHUNK + 3]] = 2.0, 2.5
+    covered = np.arange(len(n)) != 5
+    other = turned(n, degrees).astype(np.float32)
+    other[5] = -n[5]
+    found = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert found.worst.angle_deg == pytest.approx(2.5, abs=1e-4) == pytest.approx(found.angle_max_deg, abs=1e-4)
+    assert np.array_equal(found.worst.normal, n[CHUNK + 3]) and np.array_equal(found.worst.decoded, other[CHUNK + 3])
+    other[9] = np.nan
+    found = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert found.worst.angle_deg == 180 and np.array_equal(found.worst.normal, n[9])
+    assert measured(DECODED, from_arrays("", "", n[:9], n[:9], covered[:9])).worst.angle_deg == 0
+
+
+@pytest.mark.usefixtures("gl")
+def test_both_back_ends_name_the_worst_normal():
+    """A row's own columns, GLSL's too: the angle between the two is the largest that was met."""
+    for backend in ("jax", "glsl"):
+        row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(5000), backend))
+        normal, decode = (
+            np.array([float(c) for c in row[f"worst_{what}"][1:-1].split(",")]) for what in ("normal", "decode")
+        )
+        across = np.linalg.norm(np.cross(normal, decode))
+        assert np.degrees(np.arctan2(across, normal @ decode)) == pytest.approx(row["angle_max_deg"], rel=1e-5), backend
+
+
 def test_psnr_is_scikit_images():
     rng = np.random.default_rng(0)
     a, b = rng.uniform(-1, 1, (2, 64, 64, 3))
