@@ -10,6 +10,7 @@ import os
 import re
 import signal
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
@@ -27,17 +28,36 @@ from ..output.writing import abandon_output, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from .commands import add_tables, command_with
-from .formats import Format, FormatOption
+from .formats import FormatOption, format_of
+from .typed import added_up
 
 app = typer.Typer(
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     help="Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does.",
 )
 
+# What `list` leaves out where the terminal is narrow.
+SPARED = ("from", "holds", "bytes_per_pixel", "components", "domain")
 INTERRUPTED, TERMINATED = 130, 143
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02
+
+
+def _version(is_asked: bool) -> None:
+    """Say the version, and end."""
+    if is_asked:
+        from importlib.metadata import version
+
+        print(version("normalbench"))
+        raise typer.Exit
+
+
+@app.callback()
+def every_command(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")] = False,
+) -> None:
+    """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
@@ -51,13 +71,13 @@ def list_command(
             help="encodings, storages, depths, frames, normals, layouts, pipelines, scenes, lights, or all."
         ),
     ] = "all",
-    format: FormatOption = Format.table,
+    format: FormatOption = None,
     output: PlainOutput = None,
 ) -> None:
     """What there is: encodings, storages, codes of depth and frames, sets, layouts, pipelines, scenes, lights."""
     from ..options.listing import listing
 
-    write(listing(what), format, output)
+    write(listing(what), format_of(format, output), output, SPARED, by="kind")
 
 
 @app.command()
@@ -66,7 +86,7 @@ def doctor(
     plot: Annotated[
         Path | None, typer.Option("--plot", help="Draw the encoding's error over the sphere, in rgba8, into this file.")
     ] = None,
-    format: FormatOption = Format.table,
+    format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
     """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
@@ -77,11 +97,11 @@ def doctor(
     if file is None and plot is None:
         from ..results.machine import examine
 
-        write(examine(), format, output)
+        write(examine(), format_of(format, output), output)
         return 0
     from ..suite.examine import examine_encoding
 
-    return examine_encoding(file, plot, format, output)
+    return examine_encoding(file, plot, format_of(format, output), output)
 
 
 add_tables(app, TABLES.values())
@@ -107,28 +127,28 @@ app.command(
 @app.command("columns")
 def columns_command(
     table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
-    format: FormatOption = Format.table,
+    format: FormatOption = None,
     output: PlainOutput = None,
 ) -> None:
     """What a table's columns mean: definitions, units, which way is better."""
     from ..tables.columns import columns
 
-    write(columns(table), format, output, by="table")
+    write(columns(table), format_of(format, output), output, by="table")
 
 
 @app.command()
 def check(
-    gates: Annotated[Path, typer.Argument(help="A TOML file of [[gate]] tables.")],
+    gates: Annotated[Path, typer.Argument(help=r"A TOML file of \[\[gate]] tables.")],
     run: Annotated[
         Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
     ] = None,
-    format: FormatOption = Format.table,
+    format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
     """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
     from ..gates.check_command import check_command
 
-    return check_command(gates, run, format, output)
+    return check_command(gates, run, format_of(format, output), output)
 
 
 class FailOn(StrEnum):
@@ -142,7 +162,7 @@ def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
     fail_on: Annotated[FailOn, typer.Option("--fail-on", help="What makes the exit status 1.")] = FailOn.never,
-    format: FormatOption = Format.table,
+    format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
     """What changed between two runs, the worst first: figures exactly, times only where it is more than chance.
@@ -151,7 +171,7 @@ def compare(
     """
     from ..results.compare_command import compare_command
 
-    return compare_command(before, after, fail_on, format, output)
+    return compare_command(before, after, fail_on, format_of(format, output), output)
 
 
 @app.command()
@@ -216,7 +236,8 @@ def main() -> int:
         if sys.stdout is None:
             _without_output(sys.argv)
         # Alone, the command shows its help; that is no error.
-        status = app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
+        command: Any = typer.main.get_command(app)
+        status = command(_words(sys.argv[1:], command.commands) or ["--help"], standalone_mode=False) or 0
         if status == INTERRUPTED:
             _say("interrupted")
         return status
@@ -238,6 +259,12 @@ def main() -> int:
         abandon_output()
         _say(f"cannot write: {error.strerror or error}")
         return UsageError.exit_code
+
+
+def _words(words: list[str], commands: Mapping[str, Any]) -> list[str]:
+    """What was typed, with each option once. Raises UsageError."""
+    is_known = bool(words) and words[0] in commands
+    return [words[0], *added_up(words[1:], commands[words[0]].params)] if is_known else words
 
 
 def _without_output(words: list[str]) -> None:

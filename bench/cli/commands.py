@@ -9,33 +9,43 @@ from typing import Annotated, Any
 
 import typer
 
-from ..options.option import Field, fields_of
+from ..options.counts import whole_number
+from ..options.option import Field, Reading, fields_of
 from ..tables.table import Table
-from .formats import Format, FormatOption, OutputOption
+from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
+from .names import NAMES, completion_of
 
+# Panels of a command's help.
+MEASURED, FILES = "What is measured", "How files of normals are read"
 ReportOption = Annotated[
     Path | None,
-    typer.Option("--report", help="Write a page of this table, with its charts and pictures, to this file."),
+    typer.Option(
+        "--report",
+        help="Write a page of this table, with its charts and pictures, to this file.",
+        rich_help_panel=WRITTEN,
+    ),
 ]
 
 
 def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
     """A command for each table."""
     for table in tables:
-        app.command(table.name, help=table.help)(command_of(table))
+        app.command(table.name, help=table.help, epilog=f"Example: {table.example}")(command_of(table))
 
 
 def command_of(table: Table) -> Callable[..., int]:
     """A table's command, with its options, what it writes, and what every table takes."""
 
-    def command(format: Format, output: Path | None, report: Path | None, **typed: Any) -> int:
+    def command(format: Format | None, output: Path | None, report: Path | None, **typed: Any) -> int:
         from ..suite.table_command import table_command
 
         options, outputs = (_made(group, typed) for group in (table.options, table.outputs))
-        return table_command(table, options, outputs, format, output, report)
+        return table_command(table, options, outputs, format_of(format, output), output, report)
 
-    ends = {"format": (FormatOption, Format.table), "output": (OutputOption, None), "report": (ReportOption, None)}
-    typed = [parameter_of(field) for group in (table.options, table.outputs) for field in fields_of(group).values()]
+    ends = {"format": (FormatOption, None), "output": (OutputOption, None), "report": (ReportOption, None)}
+    reads = fields_of(Reading) if issubclass(table.options, Reading) else {}
+    typed = [parameter_of(f, FILES if f.name in reads else MEASURED) for f in fields_of(table.options).values()]
+    typed += [parameter_of(field, WRITTEN) for field in fields_of(table.outputs).values()]
     typed += [
         inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in ends.items()
     ]
@@ -58,14 +68,26 @@ def _made(group: type, typed: dict[str, Any]) -> Any:
     return group(**{name: typed[name] for name in fields_of(group)})
 
 
-def parameter_of(field: Field) -> inspect.Parameter:
-    """An option as typer sees it; without dashes it is an argument."""
+def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
+    """An option as typer sees it, in a panel of its help; without dashes it is an argument."""
     option, kind = field.option, inspect.Parameter.KEYWORD_ONLY
     if not option.flag.startswith("-"):
         shown = Annotated[field.type, typer.Argument(help=option.help, metavar=option.flag)]
         return inspect.Parameter(field.name, kind, annotation=shown)
-    shown = Annotated[field.type, typer.Option(option.flag, help=option.help)]
+    more: dict[str, Any] = {"rich_help_panel": panel}
+    if field.kind is int:
+        more |= {"parser": _whole_number, "metavar": "<int>"}
+    if field.name in NAMES:
+        more |= {"autocompletion": completion_of(field.name)}
+    shown = Annotated[field.type, typer.Option(option.flag, help=option.help, **more)]
     return inspect.Parameter(field.name, kind, default=field.default, annotation=shown)
+
+
+def _whole_number(text: str) -> int:
+    try:
+        return whole_number(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
 
 
 def with_parameters(command: Callable[..., int], parameters: list[inspect.Parameter]) -> Callable[..., int]:

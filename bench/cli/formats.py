@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated
 
 import typer
+
+from ..output.errors import MissingError, UsageError
+
+WRITTEN = "What is written"
 
 
 class Format(StrEnum):
@@ -14,10 +20,44 @@ class Format(StrEnum):
     json = "json"
     csv = "csv"
     markdown = "markdown"
+    parquet = "parquet"
 
 
-FormatOption = Annotated[Format, typer.Option("--format", help="How to write the rows.")]
+ENDINGS: Mapping[str, Format] = MappingProxyType(
+    {".csv": Format.csv, ".json": Format.json, ".md": Format.markdown, ".parquet": Format.parquet}
+)
+FormatOption = Annotated[
+    Format | None,
+    typer.Option(
+        "--format",
+        help=f"{', '.join(Format)}. Default: as the name of -o ends, or table.",
+        metavar="<name>",
+        rich_help_panel=WRITTEN,
+    ),
+]
 OutputOption = Annotated[
     Path | None,
-    typer.Option("-o", "--output", help="Write the rows to this file; a command that was stopped then goes on."),
+    typer.Option(
+        "-o",
+        "--output",
+        help="Write the rows to this file; a command that was stopped then goes on.",
+        rich_help_panel=WRITTEN,
+    ),
 ]
+
+
+def format_of(format: Format | None, output: Path | None) -> Format:
+    """How rows are written: as asked, or as the file's name says.
+
+    Raises:
+        UsageError: Parquet to the terminal.
+        MissingError: Parquet without pyarrow.
+    """
+    from ...reports.tables import has_parquet
+
+    chosen = format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table
+    if chosen is Format.parquet and output is None:
+        raise UsageError("--format parquet is not text; name a file with -o FILE.parquet")
+    if chosen is Format.parquet and not has_parquet():
+        raise MissingError("Parquet files need pyarrow; pip install pyarrow")
+    return chosen

@@ -12,7 +12,7 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
 from ..options.words import given_in
-from ..output.errors import UsageError, pick
+from ..output.errors import UsageError, by_reason, pick
 from .user_encodings import NoTwinError, encodings_named
 
 
@@ -38,14 +38,14 @@ def storages_named(names: str) -> list[Storage]:
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
-    """The codecs whose storage has room for their components, and a line for each that is left out.
+    """The codecs whose storage has room for their components, and a line for each reason why others are left out.
 
     Raises:
         UsageError: none is left.
     """
     codecs = list(codecs)
     fit = [codec for codec in codecs if codec.fits]
-    left_out = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
+    left_out = by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
     if not fit:
         raise UsageError(left_out[0] if left_out else "nothing to measure")
     return fit, left_out

@@ -8,11 +8,12 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import extract_tb
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...encodings.catalogue import ENCODINGS
@@ -31,6 +32,17 @@ from . import tuned_names
 ENCODE = re.compile(r"\bvec([23])\s+(\w+)_encode\s*\(\s*vec3\s+\w+\s*,\s*vec3\s+\w+\s*\)")
 MAIN = re.compile(r"\bvoid\s+main\s*\(")
 ENDING = ".glsl"
+# Endings of other languages: what they are called, and how a shader becomes GLSL.
+LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        ".hlsl": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
+        ".hlsli": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
+        ".fx": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
+        ".slang": ("Slang", "slangc -target glsl translates it"),
+        ".wgsl": ("WGSL", "naga FILE.wgsl FILE.frag translates it, or write it as GLSL"),
+        ".metal": ("Metal", "write it as GLSL"),
+    }
+)
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 # Farther off than that on average it is hardly the decoder of this encoder.
@@ -51,6 +63,8 @@ def encodings_named(names: str) -> list[Encoding]:
     """
     check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
+    for word in words:
+        _check_language(word)
     files, complaints, notes = _read_all([word for word in words if word.endswith(ENDING)])
     rest = [word for word in words if word in files or not word.endswith(ENDING)]
     if complaints and not rest:
@@ -63,6 +77,13 @@ def encodings_named(names: str) -> list[Encoding]:
     for line in notes:
         tell(line)
     return picked
+
+
+def _check_language(word: str) -> None:
+    """Raises UsageError for a shader of another language."""
+    if (ending := Path(word).suffix.lower()) in LANGUAGES:
+        language, how = LANGUAGES[ending]
+        raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
 
 
 def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str], list[str]]:
@@ -107,6 +128,7 @@ def examined(path: Path) -> Examined:
         UsageError: it is not an encoding, or does not compile.
         MissingError: there is no GL device to look at it with.
     """
+    _check_language(str(path))
     found = _look(path)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])

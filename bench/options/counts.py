@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TypeVar
+from decimal import Decimal
+from typing import Any, TypeVar
 
 from ..output.errors import UsageError
 
@@ -15,6 +16,25 @@ MAX_COUNT = 2**32
 # Held in memory at once, where JAX is timed.
 MAX_TIMED_COUNT = 2**28
 MAX_REPEATS = 1000
+
+
+# Of a thousand, and so on, as people write them.
+TIMES = {"k": 10**3, "m": 10**6, "g": 10**9}
+
+
+def whole_number(text: str | int) -> int:
+    """A whole number as people write it: 1000, 1e6, 4M, 2^22, 1_000_000. Raises ValueError for anything else."""
+    word = str(text).strip().replace("_", "").lower()
+    if power := re.fullmatch(r"(\d{1,9})(?:\^|\*\*)(\d{1,4})", word):
+        return int(power[1]) ** int(power[2])
+    if re.fullmatch(r"[-+]?\d+", word):
+        return int(word)
+    if number := re.fullmatch(r"([-+]?\d+(?:\.\d+)?)(?:e\+?(\d{1,2})|([kmg]))", word):
+        times = 10 ** int(number[2]) if number[2] else TIMES[number[3]]
+        value = Decimal(number[1]) * times
+        if value == int(value):
+            return int(value)
+    raise ValueError(f"{text} is not a whole number, such as 1000, 1e6, 4M or 2^22")
 
 
 def in_range(option: str, value: int, low: int, high: int) -> None:
@@ -47,7 +67,8 @@ def checked_numbers(option: str, text: str, kind: Callable[[str], N], least: N, 
     """Comma-separated numbers, each once. Raises UsageError for none, or one that is none or out of range."""
     words = [word.strip() for word in text.split(",") if word.strip()]
     try:
-        found = tuple(dict.fromkeys(map(kind, words)))
+        read: Any = whole_number if kind is int else kind
+        found: tuple[N, ...] = tuple(dict.fromkeys(map(read, words)))
     except ValueError:
         found = ()
     if not found or not all(least <= number <= most for number in found):

@@ -15,6 +15,7 @@ from types import MappingProxyType, NoneType
 from typing import Annotated, Any, get_args, get_type_hints
 
 from ..output.errors import UsageError
+from .counts import whole_number
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ class Field:
         """A value that may be typed text, as this option's kind. Raises UsageError."""
         if isinstance(value, str) and self.kind in (int, float):
             try:
-                return self.kind(value)
+                return whole_number(value) if self.kind is int else float(value)
             except ValueError as error:
                 raise UsageError(f"{self.name} is {value!r}; it must be {KINDS[self.kind]}") from error
         return value

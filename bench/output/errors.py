@@ -15,6 +15,14 @@ T = TypeVar("T")
 LONGEST = 1500
 
 
+def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
+    """A line for each reason, with the names of what is left out for it."""
+    reasons: dict[str, list[str]] = {}
+    for name, why in left_out:
+        reasons.setdefault(str(why), []).append(name)
+    return [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
+
+
 class UsageError(Exception):
     """Bad input or usage: one line that says what would have been right. Exit status 2."""
 

@@ -20,8 +20,12 @@ from .errors import UsageError
 OWN_SUFFIXES = (".json", ".jsonl", ".csv", ".parquet")
 
 
-def check_writable(path: Path) -> None:
-    """Raises UsageError where a file of this name cannot be written; asked before anything is measured."""
+def check_writable(path: Path, makes_folder: bool = False) -> None:
+    """Raises UsageError where a file of this name cannot be written; asked before anything is measured.
+
+    Args:
+        makes_folder: whether a folder that is not there will be made.
+    """
     try:
         if path.is_dir():
             raise UsageError(f"{path} is a folder; name a file")
@@ -32,7 +36,10 @@ def check_writable(path: Path) -> None:
         _partial(path).exists()
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
-    check_folder(path.resolve().parent)
+    folder = path.resolve().parent
+    if not (makes_folder or folder.is_dir()):
+        raise UsageError(f"cannot write {path}: there is no folder {path.parent}")
+    check_folder(folder)
 
 
 def _check_own(path: Path) -> None:
@@ -150,7 +157,10 @@ def write(
         return
     check_writable(output)
     with whole_file(output) as partial:
-        partial.write_text(tables.written(rows, format, by=by), encoding="utf-8")
+        if format == "parquet":
+            tables.write_parquet(rows, partial)
+        else:
+            partial.write_text(tables.written(rows, format, by=by), encoding="utf-8")
 
 
 def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:

@@ -66,7 +66,7 @@ def _check_baseline(path: Path | None) -> None:
     if not path:
         raise pytest.UsageError(f"{flag(WRITE_BASELINE)} needs {flag(BASELINE)} FILE")
     try:
-        check_writable(path)
+        check_writable(path, makes_folder=True)
     except UsageError as error:
         raise pytest.UsageError(str(error)) from error
 

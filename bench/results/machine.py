@@ -77,5 +77,7 @@ def lacks_compilers() -> bool:
 
 def examine() -> list[dict[str, str]]:
     """Rows of name and value. "GL rounds ..." is the device's own conversion; where it is not what a codec asks for,
-    the shader rounds before the write."""
-    return [{"name": name, "value": value} for name, value in machine().items()]
+    the shader rounds before the write. At last what can be measured here."""
+    from .capabilities import capabilities
+
+    return [{"name": name, "value": value} for name, value in (machine() | capabilities()).items()]

@@ -27,14 +27,37 @@ def show(table: Table, done: Measured, format: str, output: Path | None) -> None
         return
     check_writable(output)
     with whole_file(output) as partial:
-        partial.write_text(written(table, done, format, FILE_WIDTH, spares=False), encoding="utf-8")
+        if format == "parquet":
+            tables.write_parquet(_flat(table, done.rows), partial)
+        else:
+            partial.write_text(written(table, done, format, FILE_WIDTH, spares=False), encoding="utf-8")
 
 
 def written(table: Table, done: Measured, format: str, width: int, spares: bool = True) -> str:
     """The rows as text; `spares` leaves out columns where the width does not do."""
+    if format == "json":
+        return tables.written(_with_lists(table, done.rows), format)
     if format not in FOR_PEOPLE:
-        return tables.written(done.rows, format)
+        return tables.written(_flat(table, done.rows), format)
     return "\n".join(_sheet(sheet, format, width, spares) for sheet in sheets(table, done))
+
+
+def _flat(table: Table, rows: Sequence[Row]) -> list[Row]:
+    """Rows of single values: without histograms."""
+    hidden = {column.name for column in table.columns if column.is_histogram}
+    return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
+
+
+def _with_lists(table: Table, rows: Sequence[Row]) -> list[Row]:
+    """Rows with histograms as lists of a bin's lower edge and its count."""
+    names = [column.name for column in table.columns if column.is_histogram]
+    return [row | {name: bins(row[name]) for name in names if row.get(name) is not None} for row in rows]
+
+
+def bins(text: str) -> list[tuple[float, int]]:
+    """The bins of `from:count` words."""
+    pairs = (word.split(":") for word in text.split())
+    return [(float(edge), int(count)) for edge, count in pairs]
 
 
 def sheets(table: Table, done: Measured) -> Iterator[Sheet]:

@@ -44,6 +44,7 @@ class Column:
         drops: in which order a narrow terminal leaves it out, from 1; 0 where it stays.
         option: the option without which it is not measured.
         shown: whether tables for people have it.
+        is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Column:
     drops: int = 0
     option: str = ""
     shown: bool = True
+    is_histogram: bool = False
 
     def is_called(self, name: str) -> bool:
         """Whether a row's column is this one."""
@@ -195,6 +197,7 @@ class Table:
         name: the command, the table of a run and the anchor on the page; one word.
         package: where its code is: `__package__` of the file that makes it.
         help: what the command's help says: a sentence, and a paragraph if need be.
+        example: a command that answers a usual question.
         options: the dataclass of what is measured; the command line, tests, gates and Python read it.
         outputs: the dataclass of what may be written beside the rows.
         columns: the columns of its rows, in order.
@@ -213,6 +216,7 @@ class Table:
     name: str
     package: str
     help: str
+    example: str
     options: type
     columns: tuple[Column, ...]
     section: Section

@@ -10,10 +10,15 @@ from normalbench.reports.page import page
 HOSTILE = "<script src=//x>[a](http://b) |`@c\x1b[2J"
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1"])
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1+2", "-A1", "@SUM(A1)", "\t=1"])
 def test_no_cell_of_csv_is_a_formula(text):
     (_, line) = tables.to_csv([{"name": text, "figure": -1.5}]).splitlines()
     assert line.lstrip('"').startswith("'") and line.endswith(",-1.5")
+
+
+@pytest.mark.parametrize("text", ["-1", "-0.52032965", "17"])
+def test_a_number_as_it_is_printed_stays_one_in_csv(text):
+    assert tables.to_csv([{"printed": text}]).splitlines()[1] == text
 
 
 def test_markdown_reads_nothing_into_a_cell():

@@ -152,6 +152,7 @@ TABLE = Table(
     package=__package__ or "",
     help="What encoding and decoding cost: instructions on five GPU families, and time; all of it by default.\n\n"
     "Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.",
+    example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     options=CostOptions,
     outputs=CostOutputs,
     columns=COLUMNS,

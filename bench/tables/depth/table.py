@@ -78,6 +78,7 @@ TABLE = Table(
     help="How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.\n\n"
     "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "
     "depths up to a sixteenth of it nearer or farther.",
+    example="normalbench depth --depth reversed_window,logarithmic --near 0.1 --far 1000",
     options=DepthOptions,
     outputs=DepthOutputs,
     columns=COLUMNS,

@@ -119,6 +119,7 @@ TABLE = Table(
     package=__package__ or "",
     help="What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.\n\n"
     "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",
+    example="normalbench lights --experiment equal,banding --light-buffer rgbm,r11g11b10f",
     options=LightsOptions,
     outputs=LightsOutputs,
     columns=COLUMNS,

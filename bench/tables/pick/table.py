@@ -101,6 +101,7 @@ TABLE = Table(
     help="Which code to take for each storage, at what price, and what to take instead.\n\n"
     "Codes that do not meet the constraints are left out, with the reason. Of the others the aim decides. The exit "
     "status is 1 where no code meets them.",
+    example="normalbench pick --storage rg8 --most-instructions 40 --scene gloss --power 256",
     options=PickOptions,
     columns=COLUMNS,
     partial=True,

@@ -17,7 +17,7 @@ from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, pick_one, tell
+from ...output.errors import UsageError, by_reason, pick_one, tell
 from ..table import Row, Sheet, Step, Tick, Work
 from . import measure
 from .answer import AIMS, HOLDS, answered, groups
@@ -88,14 +88,13 @@ def _question(options: PickOptions) -> Row:
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     """The codecs that fit, and a line for each reason why others do not. Raises UsageError where none fits."""
-    reasons: dict[str, list[str]] = {}
-    fit = []
+    left_out, fit = [], []
     for codec in codecs:
         if codec.misfit:
-            reasons.setdefault(codec.misfit, []).append(codec.encoding.name)
+            left_out.append((codec.encoding.name, codec.misfit))
         else:
             fit.append(codec)
-    said = [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
+    said = by_reason(left_out)
     if not fit:
         raise UsageError(said[0])
     return fit, said

@@ -44,6 +44,7 @@ TABLE = Table(
     package=__package__ or "",
     help="Figures of articles and engines, measured anew: what is printed, what is measured here, and why they differ."
     "\n\nA figure that is neither reproduced nor explained makes the exit status 1.",
+    example="normalbench published --source cigolle,tyler",
     options=PublishedOptions,
     columns=COLUMNS,
     usual=({"source": "pranckevicius,cigolle,smith"},),

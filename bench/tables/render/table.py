@@ -150,6 +150,7 @@ TABLE = Table(
     help="What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.\n\n"
     "Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of "
     "--encoding, --storage and --rounding the layouts are measured as they are.",
+    example="normalbench render --encoding octahedral,spheremap --storage rg8 --scene gloss --power 47,1024",
     options=RenderOptions,
     outputs=RenderOutputs,
     columns=COLUMNS,

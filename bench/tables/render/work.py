@@ -27,7 +27,7 @@ from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...output.errors import UsageError, pick, pick_one
+from ...output.errors import UsageError, by_reason, pick, pick_one
 from ...output.writing import check_folder, whole_file, without
 from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work
@@ -59,7 +59,7 @@ def layouts(options: RenderOptions) -> list[Layout]:
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     made: list[Layout] = []
-    complaints = [f"{codec.name}: {codec.misfit}" for codec in codecs if not codec.fits]
+    complaints = by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
     for layout in chosen:
         for codec in (codec for codec in codecs if codec.fits):
             _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)

@@ -72,6 +72,7 @@ TABLE = Table(
     help="What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost "
     "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "
     "its uv.",
+    example="normalbench frames --encoding quaternion --backend jax",
     options=FramesOptions,
     columns=COLUMNS,
     single={"encoding": "smallest_three", "backend": "jax"},

@@ -58,6 +58,7 @@ TABLE = Table(
     help="Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out."
     "\n\nWhat is found has a name that --encoding and --storage take in every command, such as "
     "stereographic:scale=1.31.",
+    example="normalbench tune stereographic --normals playground --storage rg8",
     options=TuneOptions,
     outputs=TuneOutputs,
     columns=COLUMNS,

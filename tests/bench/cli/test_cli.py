@@ -89,6 +89,7 @@ def test_the_formats_carry_the_same_figures(run):
 
 def test_rows_go_to_a_file_whole(run, tmp_path):
     path = tmp_path / "new" / "rows.json"
+    path.parent.mkdir()
     status, out, _ = run(*QUICK, "--backend", "jax", "--format", "json", "-o", str(path))
     assert status == 0 and out == ""
     assert len(json.loads(path.read_text())) == 2

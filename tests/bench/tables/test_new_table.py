@@ -31,6 +31,7 @@ TABLE = Table(
     name="echo",
     package=__package__ or "",
     help="How long words are.",
+    example="normalbench echo --word two,words",
     options=EchoOptions,
     columns=(
         Column("word", "The word that was repeated.", Role.KEY),

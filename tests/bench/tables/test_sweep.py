@@ -109,6 +109,7 @@ def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, 
         "-o",
         "new/rows.csv",
     )
+    (tmp_path / "new").mkdir()
     (tmp_path / "mine.toml").write_text(layout.format("rg8"))
     monkeypatch.setattr(sweep, "measure", stopping)
     with pytest.raises(SystemExit):
