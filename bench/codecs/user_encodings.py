@@ -25,7 +25,7 @@ from ...reports.page.verdict import MADE_FOR
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
-from ..output.errors import MissingError, UsageError, check_comma, pick, tell
+from ..output.errors import MissingError, UsageError, check_comma, leave_out, pick, tell
 from . import tuned_names
 
 # vec2 mine_encode(vec3 n, vec3 view)
@@ -70,7 +70,7 @@ def encodings_named(names: str) -> list[Encoding]:
     if complaints and not rest:
         raise UsageError(complaints[0])
     for line in complaints:
-        tell(f"left out: {line}")
+        leave_out(line)
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
     picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
     # At last: an error is one line alone.
@@ -129,6 +129,10 @@ def examined(path: Path) -> Examined:
         MissingError: there is no GL device to look at it with.
     """
     _check_language(str(path))
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder; name a GLSL file")
+    if not path.exists():
+        raise UsageError(f"{path}: there is no such file")
     found = _look(path)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])

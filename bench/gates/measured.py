@@ -9,7 +9,7 @@ from typing import Any
 
 from ..metrics.meter import Worst
 from ..options.option import checked_options, fields_of
-from ..output.errors import UsageError
+from ..output.errors import UsageError, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps
 from ..tables.registry import TABLES
 from ..tables.table import Row, Table
@@ -47,7 +47,11 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
         MissingError: this machine lacks what they need.
     """
     given = {**checked_options(table.options, usual or {}), **checked_options(table.options, values)}
-    ask = asked(table, table.options(**single(table, given)))
+    with noting_what_is_left_out() as left_out:
+        ask = asked(table, table.options(**single(table, given)))
+    # What is named and not there would pass unseen; of "all" some never fit.
+    if left_out and not any(str(value) == "all" for value in given.values()):
+        raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
     steps = measured_steps(ask, Nothing())
     step_of = {id(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
     rows = table.work.finish([row for rows in steps for row in rows])

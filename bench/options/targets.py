@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from ...gbuffer.gl.device import Device
 from ...gbuffer.scenes.setting import Setting
-from ..output.errors import UsageError, tell
+from ..output.errors import UsageError, leave_out
 from .counts import check_seed, checked_sides, in_range
 
 # A pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
@@ -56,5 +56,5 @@ def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
     if not made:
         raise UsageError(reasons[0] if reasons else "nothing to measure")
     for reason in reasons:
-        tell(f"left out: {reason}")
+        leave_out(reason)
     return made

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TypeVar
 
@@ -21,6 +22,28 @@ def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
     for name, why in left_out:
         reasons.setdefault(str(why), []).append(name)
     return [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
+
+
+# Where somebody asks for them, the lines about what is left out.
+_noted: ContextVar[list[str] | None] = ContextVar("noted", default=None)
+
+
+def leave_out(line: str) -> None:
+    """Say what is not measured, and why."""
+    if (lines := _noted.get()) is not None:
+        lines.append(line)
+    tell(f"left out: {line}")
+
+
+@contextmanager
+def noting_what_is_left_out() -> Iterator[list[str]]:
+    """The lines about what is left out meanwhile."""
+    lines: list[str] = []
+    token = _noted.set(lines)
+    try:
+        yield lines
+    finally:
+        _noted.reset(token)
 
 
 class UsageError(Exception):

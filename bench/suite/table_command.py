@@ -11,6 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, tell
 from ..output.sources import sources
 from ..output.writing import check_writable, say
@@ -34,6 +35,7 @@ def table_command(
     """
     for path in filter(None, (output, report)):
         check_writable(path)
+        _check_not_read(path, options)
     with tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("") as folder:
         ask = asked(table, options, in_folder(table, outputs, Path(folder)) if report else outputs)
         table.work.check(outputs, ask.steps)
@@ -46,6 +48,18 @@ def table_command(
     if lacking := list(table.work.lacking(done)):
         raise MissingError("; ".join(lacking))
     return int(failed)
+
+
+def _check_not_read(path: Path, options: Any) -> None:
+    """Raises UsageError where a file that is to be written is one of those that are measured, or its twin."""
+    for name, field in fields_of(type(options)).items():
+        if not field.option.files:
+            continue
+        for word in str(getattr(options, name) or "").split(","):
+            read = Path(word.strip())
+            for one in (read, read.with_suffix(".py")) if read.suffix else ():
+                if one.exists() and path.exists() and path.samefile(one):
+                    raise UsageError(f"{path} is one of the files that are measured; name another file")
 
 
 def in_folder(table: Table, outputs: Any, folder: Path) -> Any:

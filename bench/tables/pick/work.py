@@ -17,7 +17,7 @@ from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, by_reason, pick_one, tell
+from ...output.errors import UsageError, by_reason, leave_out, pick_one, tell
 from ..table import Row, Sheet, Step, Tick, Work
 from . import measure
 from .answer import AIMS, HOLDS, answered, groups
@@ -57,7 +57,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
     for line in left_out if options.encoding.strip() != "all" else ():
-        tell(f"left out: {line}")
+        leave_out(line)
     return [
         [
             measure.Case(

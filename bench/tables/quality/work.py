@@ -19,7 +19,7 @@ from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, pick, tell
+from ...output.errors import UsageError, leave_out, pick
 from ...output.writing import check_folder, whole_file, without
 from ..charts import having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
@@ -28,6 +28,8 @@ from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
 from .table import TABLE, QualityOptions, QualityOutputs
 
+# A largest angle this much above the supremum is float32's doing.
+BY_ARITHMETIC = 1.05
 # What a short summary leaves out first.
 SUMMARY_DROPS = ("p99", "psnr_db_glsl", "mean")
 
@@ -50,7 +52,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     for line in left_out:
-        tell(f"left out: {line}")
+        leave_out(line)
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
     normal_sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     return measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
@@ -86,6 +88,9 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["invalid"]:
             yield f"{_named(row)}: {row['invalid']} decodes are NaN or infinite"
+        if row["angle_sup_deg"] is not None and row["angle_max_deg"] > BY_ARITHMETIC * row["angle_sup_deg"]:
+            said = f"{row['angle_max_deg']:.3g} degrees were met, {row['angle_sup_deg']:.3g} are the supremum of exact"
+            yield f"{_named(row)}: {said} arithmetic; float32 loses the rest, at {row['worst_normal']}"
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:

@@ -92,6 +92,19 @@ def test_a_slip_is_one_line_that_says_what_would_be_right(run, tmp_path, monkeyp
     assert set(tmp_path.rglob("*")) == before, "something was left behind"
 
 
+@pytest.mark.parametrize("option", ["-o", "--report"])
+@pytest.mark.parametrize("name", ["frame.npy", "mine.glsl", "mine.py"])
+def test_what_is_measured_is_not_written_over(run, tmp_path, option, name):
+    for each in ("mine.glsl", "mine.py"):
+        (tmp_path / each).write_text("// an encoder")
+    np.save(tmp_path / "frame.npy", np.eye(3, dtype=np.float32))
+    before = (tmp_path / name).read_bytes()
+    words = ("--normals", str(tmp_path / "frame.npy"), "--encoding", f"{tmp_path / 'mine.glsl'},xy")
+    status, out, err = run("quality", *words, option, str(tmp_path / name))
+    assert (status, out, err.count("\n")) == (2, "", 1) and "is one of the files that are measured" in err
+    assert (tmp_path / name).read_bytes() == before
+
+
 def test_there_are_forty_slips():
     assert len(SLIPS) >= 40
 

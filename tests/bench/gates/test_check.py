@@ -29,6 +29,22 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
 
 
+@pytest.mark.parametrize(
+    "encoding, said",
+    [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],
+)
+def test_a_gate_does_not_pass_without_a_row_that_it_names(run, tmp_path, encoding, said):
+    """One that does not fit or compile next to one that does: the others would pass for it."""
+    (tmp_path / "broken.glsl").write_text("vec2 broken_encode(vec3 n, vec3 view) { return n.xyz; }")
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{encoding.format(tmp_path)}"\nstorage = "rg8"\nnormals = "sphere"\ncount = 1000\n'
+    path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
+    status, out, err = run("check", str(path))
+    assert (status, out) == (2, "") and "a row that is asked for cannot be measured" in err and said in err
+    path.write_text(path.read_text().replace(encoding.format(tmp_path), "all"))
+    assert run("check", str(path))[0] == 0, "of all encodings some never fit"
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_an_image_may_be_a_gate(run, tmp_path):
