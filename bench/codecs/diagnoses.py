@@ -15,6 +15,8 @@ import numpy as np
 
 # Two directions this near are the same one; storages of 8 bits move them by half of it.
 SAME_DEG = 1.0
+# And this near nearly so: a scale that is a few hundredths off.
+NEARLY_DEG = 10.0
 # Shares of directions: nearly all, and so few that a singular point may lose them.
 MOST, FEW = 0.95, 0.002
 # Of [-1, 1]: how much a number must use, and how far it may reach beyond.
@@ -87,19 +89,35 @@ def diagnoses(trip: Trip, domain: str) -> list[str]:
     Args:
         domain: one of DOMAINS; empty where directions of none come back.
     """
-    held = trip.in_domain(domain)
+    # Where nothing comes back well, where it nearly does.
+    held = trip.in_domain(domain or guessed(trip, NEARLY_DEG))
     ranges = list(_ranges(trip, held))
     if domain:
-        return [*_seam(held), *_poles(held), *_lengths(held), *ranges]
+        return [*_other_half(trip, domain), *_seam(held), *_poles(held), *_lengths(held), *ranges]
     # What is clipped comes back elsewhere, whatever else is right.
-    turned = [] if any(CLIPPED in said for said in ranges) else list(_turned(trip)) or [_no_pair(trip)]
+    turned = [] if any(CLIPPED in said for said in ranges) else list(_turned(trip)) or [_no_pair(held)]
     return [*turned, *_lengths(held), *ranges]
 
 
-def guessed(trip: Trip) -> str:
-    """The domain: where the decoder undoes the encoder, seams and poles apart; empty where nowhere."""
-    is_same = trip.angles() < SAME_DEG
+def guessed(trip: Trip, within: float = SAME_DEG) -> str:
+    """The domain: where the decoder undoes the encoder within so many degrees, seams and poles apart; empty where
+    nowhere."""
+    is_same = trip.angles() < within
     return next((name for name, which in DOMAINS.items() if is_same[which(trip)].mean() > MOST), "")
+
+
+def _other_half(trip: Trip, domain: str) -> Iterator[str]:
+    """What is behind, where it comes back with axes swapped: an encoding of z >= 0 that knows no better mirrors z."""
+    if domain != "hemisphere":
+        return
+    behind = trip.of(trip.n[:, 2] < -0.02)
+    what = _axes_of(behind)
+    if what and what != _said((0, 1, 2), (1, 1, -1)):
+        yield f"directions with z < 0 come back with {what}: {behind.worst}"
+    # A fold that keeps signs and swaps the rest.
+    sizes = np.abs(behind.n)[:, (1, 0, 2)]
+    if (angles(sizes, np.abs(behind.decoded)) < SAME_DEG).mean() > MOST:
+        yield f"directions with z < 0 come back with |x| and |y| swapped: is .yx missing? {behind.worst}"
 
 
 def _turned(trip: Trip) -> Iterator[str]:

@@ -32,7 +32,7 @@ IN_VIEW_SPACE: Mapping[str, np.ndarray] = MappingProxyType(
     {
         "z points the other way": MIRRORED,
         "z points towards the viewer": np.eye(3),
-        "y points down": np.diag([1.0, -1.0, 1.0]),
+        "y points down, or rows run from the bottom up": np.diag([1.0, -1.0, 1.0]),
         "y points down and z into the screen": np.diag([1.0, -1.0, -1.0]),
         "red and blue are swapped": np.eye(3)[::-1],
     }
@@ -101,16 +101,16 @@ def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: 
     if share <= (AWAY if pixels.has_places else AWAY_OF_A_LIST):
         return
     said = f"{share:.0%} of the normals face away from the viewer"
-    if fov is not None and pixels.has_places:
-        other, field = pixels.least_away(to_view, None)
-        if other < LESS * share and other < AWAY:
-            yield f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field
-            return
     readings = _of_a_matrix(to_view) if is_world else IN_VIEW_SPACE
     for what, matrix in readings.items():
         other, _ = pixels.least_away(matrix, fov)
         if other < LESS * share and other < AWAY:
             yield f"{said}, {other:.0%} if {what}", matrix
+            return
+    if fov is not None and pixels.has_places:
+        other, field = pixels.least_away(to_view, None)
+        if other < LESS * share and other < AWAY:
+            yield f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field
             return
     yield said, None
 

@@ -86,6 +86,11 @@ WRONG = {
         octahedral(result="normalize(vec3(abs(n.x), n.yz))"),
         "directions with x < 0 come back with x reversed: (-1, 0, 0) becomes (1, 0, 0)",
     ),
+    "a fold without .yx": (
+        octahedral().replace("abs(p.yx)", "abs(p)"),
+        "directions with z < 0 come back with |x| and |y| swapped: is .yx missing?",
+    ),
+    "a scale on one side": (HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1), "are not a pair: 0.791 degrees"),
     "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
     "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
     "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
@@ -176,7 +181,8 @@ def test_a_table_says_it_too(run, tmp_path):
     "words, said",
     [
         (("--plot", "a.png"), "name its GLSL file"),
-        (("nothing.glsl",), "No such file"),
+        ((".",), ". is a folder; name a GLSL file"),
+        (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),
     ],
 )
