@@ -58,7 +58,7 @@ def pick(
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
-        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
@@ -106,7 +106,7 @@ def quality(
         worst_case: The true supremum and where it is, in float64; seconds a codec.
         codes: Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.
         channels: Captures: a layer, or the channels of x,y,z by name.
-        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
@@ -364,7 +364,7 @@ def tune(
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
-        unpack: Captures: [0,1] stands for [-1,1]. PNG: always.
+        unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.

@@ -87,7 +87,7 @@ class Reading:
     ] = None
     unpack: Annotated[
         bool | None,
-        Option("--unpack/--no-unpack", "Captures: [0,1] stands for [-1,1]. PNG: always.", in_run=True),
+        Option("--unpack/--no-unpack", "Captures: [0,1] stands for [-1,1]. Default: for integers.", in_run=True),
     ] = None
     curve: Annotated[
         str, Option("--curve", "Captures: linear, srgb (to be undone), srgb-removed (to be redone).", in_run=True)

@@ -110,7 +110,10 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
         UsageError: there is no such codec, or an array of another shape.
     """
     chosen = codec_of(codec)
-    values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes, jnp.float32)
+    values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
+    if jnp.issubdtype(values.dtype, jnp.integer):
+        raise UsageError(f"codes are of {values.dtype}; decode takes what encode gave, or its values in [-1, 1]")
+    values = values.astype(jnp.float32)
     size = chosen.encoding.components + chosen.encoding.sign_bits
     if values.ndim < 1 or values.shape[-1] != size:
         raise UsageError(f"codes have shape {values.shape}; {chosen.name} needs (..., {size})")

@@ -12,7 +12,8 @@ import pandas as pd
 
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.storage import Storage
-from ..normals.normal_sets import from_arrays
+from ..normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN
+from ..normals.normal_sets import NORMAL_SETS, from_arrays
 from ..options.option import checked_options, fields_of
 from ..options.words import Words
 from ..output.errors import UsageError
@@ -104,11 +105,29 @@ def _typed(key: str, value: Any) -> Any:
     return Words([one.name if isinstance(one, Encoding | Storage) else str(one) for one in several], own)
 
 
+def _check_unit(name: str, array: np.ndarray) -> None:
+    """Raises UsageError for numbers that are not unit normals, zeros for background apart."""
+    if not np.issubdtype(array.dtype, np.floating):
+        raise UsageError(f"normals: {name} is of {array.dtype}; give floats in [-1, 1]")
+    if not np.isfinite(array).all():
+        raise UsageError(
+            f"normals: {name} has numbers that are NaN or infinite; set those normals to 0 to leave them out"
+        )
+    lengths = np.linalg.norm(array.reshape(-1, 3).astype(np.float64), axis=1)
+    off = np.mean(abs(lengths[lengths > 0] - 1) > UNIT_WITHIN) if (lengths > 0).any() else 1.0
+    if off > OFF_UNIT_SHARE:
+        raise UsageError(f"normals: {off:.1%} of {name} are not unit vectors; divide by their lengths, or unpack them")
+
+
 def _value(key: str, name: str, value: Any) -> Any:
     """An array of normals under a name, as a set to measure on: shape (..., 3)."""
-    array = np.asarray(value, np.float32)
-    if key != "normals" or array.ndim < 2 or array.shape[-1] != 3:
+    array = np.asarray(value)
+    if key != "normals" or array.ndim < 2 or array.shape[-1] != 3 or not array.size:
         raise UsageError(f"{key}: {name} stands for an array of normals of shape (count, 3) or (height, width, 3)")
+    if name in NORMAL_SETS:
+        raise UsageError(f"normals: {name} is a set of normalbench's own; call yours otherwise")
+    _check_unit(name, array)
+    array = array.astype(np.float32)
     flat = array.reshape(-1, 3)
     shape: tuple[int, int] | None = (array.shape[0], array.shape[1]) if array.ndim == 3 else None
     view = np.tile(np.array([0, 0, -1], np.float32), (len(flat), 1))

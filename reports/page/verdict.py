@@ -248,7 +248,10 @@ def _backends(by_backend: Mapping[Any, Mapping[str, Row]]) -> tuple[str, bool]:
     if len(by_backend) < 2:
         (only,) = by_backend
         return f"Measured by {BACKENDS.get(only, only)} alone.", True
-    leaders = {b: standing(MEASURES[0], _figures(rows, LEADING)) for b, rows in by_backend.items()}
+    # Who leads is asked of codecs that all of them have.
+    shared = set.intersection(*(set(_figures(rows, LEADING)) for rows in by_backend.values()))
+    of_shared = {b: {n: f for n, f in _figures(rows, LEADING).items() if n in shared} for b, rows in by_backend.items()}
+    leaders = {b: standing(MEASURES[0], figures) for b, figures in of_shared.items()}
     firsts: dict[Any, tuple[str, ...]] = {b: s.first for b, s in leaders.items() if s}
     if len(set(firsts.values())) > 1:
         said = "; ".join(f"by {BACKENDS.get(b, b)} {listed(names)} leads" for b, names in firsts.items())

@@ -91,7 +91,7 @@ COLUMNS = (
     Column("samples", "Samples per pixel that the device gave, which may be more than asked for.", HOW),
     shared.SAMPLES_ASKED,
     Column("lights", "Point lights.", HOW),
-    Column("objects", "Objects in the scene.", HOW),
+    Column("objects", "Objects that the scene `objects` is made with; other scenes have their own.", HOW),
     Column("frames", "Moments that figures are averaged over.", HOW),
     Column(
         "bytes_per_pixel",

@@ -1,6 +1,7 @@
 """`import normalbench`: tables as functions, and codecs on arrays, held to what GLSL stores bit for bit."""
 
 import inspect
+import re
 from pathlib import Path
 
 import jax
@@ -103,6 +104,33 @@ def test_misuse_is_one_line(call, said):
     with pytest.raises(UsageError, match=said) as error:
         call()
     assert "\n" not in str(error.value)
+
+
+UNIT = np.eye(3, dtype=np.float32)
+
+
+@pytest.mark.parametrize(
+    "name, array, said",
+    [
+        ("own", 2 * UNIT, "100.0% of own are not unit vectors; divide by their lengths, or unpack them"),
+        ("own", UNIT * 0.5 + 0.5, "are not unit vectors"),
+        ("own", np.full((4, 3), 200, np.uint8), "own is of uint8; give floats in [-1, 1]"),
+        ("own", np.where(UNIT == 1, np.nan, UNIT), "own has numbers that are NaN or infinite"),
+        ("own", np.zeros((0, 3)), "an array of normals of shape (count, 3)"),
+        ("sphere", UNIT, "sphere is a set of normalbench's own"),
+    ],
+)
+def test_what_are_not_normals_is_refused_as_a_file_of_them_is(name, array, said):
+    with pytest.raises(UsageError, match=re.escape(said)) as error:
+        nb.quality(encoding="octahedral", storage="rg8", backend="jax", normals={name: array})
+    assert "\n" not in str(error.value)
+
+
+def test_integers_are_not_decoded():
+    codes = nb.encode("octahedral/rg8", UNIT)
+    with pytest.raises(UsageError, match="decode takes what encode gave, or its values"):
+        nb.decode("octahedral/rg8", codes.integers)
+    assert np.array_equal(nb.decode("octahedral/rg8", codes), nb.decode("octahedral/rg8", codes.values))
 
 
 def test_type_checkers_are_told_the_same():
