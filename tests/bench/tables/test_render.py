@@ -221,7 +221,19 @@ def test_pictures_show_what_was_rendered(run, tmp_path):
 def test_one_light_target_is_held_against_two(run):
     """One target rebuilds the highlights' colour: the row shows what that costs, and its reference does not do it."""
     status, out, _ = run(
-        *("render", *SMALL, "--lights", "64", "--scene", "room", "--layout", "fp32", "--pipeline", "prepass,hybrid"),
+        *(
+            "render",
+            "--size",
+            "96x72",
+            "--repeats",
+            "1",
+            "--scene",
+            "room",
+            "--layout",
+            "fp32",
+            "--pipeline",
+            "prepass,hybrid",
+        ),
         *("--light-targets", "1,2", "--format", "json"),
     )
     figures = {(row["pipeline"], row["light_targets"]): row for row in json.loads(out)}

@@ -143,7 +143,7 @@ def test_two_sweeps_do_not_share_an_output(run, tmp_path):
 @pytest.mark.slow
 def test_an_interrupted_process_leaves_its_journal(tmp_path):
     output = tmp_path / "rows.csv"
-    command = [sys.executable, "-m", "normalbench.bench", "sweep", *SMALL, "--objects", "2000", "--repeats", "50"]
+    command = [sys.executable, "-m", "normalbench.bench", "sweep", *SMALL[:-1], "50", "--objects", "2000"]
     command += ["--pipeline", "all", "-o", str(output)]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"})
     deadline = time.monotonic() + 60
