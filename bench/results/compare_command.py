@@ -6,12 +6,12 @@ from pathlib import Path
 
 from ..output.errors import tell
 from ..output.writing import check_writable, without, write
-from .comparison import compared, in_short
+from .comparison import GONE, compared, in_short
 from .runs import read_run
 
 FOR_PROGRAMS = ("severity", "keys")
 # What makes `--fail-on` fail.
-FAILS = {"never": (), "worse": ("worse",), "change": ("worse", "better", "")}
+FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GONE, "")}
 
 
 def compare_command(before: Path, after: Path, fail_on: str, format: str, output: Path | None) -> int:

@@ -18,6 +18,8 @@ CHANCE = 0.01
 EACH, FRAME = "ms_frame_each", "ms_frame"
 # How many lines people read of a comparison.
 LINES = 20
+# What is said of a row that the later run does not have.
+GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
 
 
@@ -53,7 +55,8 @@ def _between(
             yield from _changes(name, table, key[0], ours[key], theirs[key], same_machine)
         else:
             row = ours.get(key) or theirs[key]
-            yield _change(name, table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
+            change = _change(name, table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
+            yield change | ({"verdict": GONE} if key in ours else {})
 
 
 def _change(

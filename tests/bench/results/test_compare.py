@@ -50,6 +50,7 @@ def test_steps_that_one_run_lacks_are_named():
     a, b = {"pipeline": "a", "triangles": 1}, {"pipeline": "b", "triangles": 1}
     (change,) = compared(run_of(a, b), run_of(b))
     assert (change["row"], change["before"], change["after"], change["change"]) == ("a", True, False, "only before")
+    assert change["verdict"] == "gone" and compared(run_of(b), run_of(a, b))[0]["verdict"] == ""
 
 
 def step_of(*rows: dict) -> Done:
