@@ -17,6 +17,7 @@ from ...isa import isa, spirv
 from ...isa.disassembly import KINDS, issue_slots, jumps, kinds
 from ...isa.isa import Compiled, Failure, Job, Outcome
 from ...machine.cores import on_all_cores
+from ...output.errors import MissingError
 from .table import TABLE
 
 Row = dict[str, Any]
@@ -194,6 +195,16 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
         return None
     branches, loops = jumps(assembly)
     return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+
+
+def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:
+    """The rows of one family with instructions, by encoding and operation; none where there are no compilers."""
+    try:
+        found = isa_rows(cases(encodings, (), OPERATIONS), [stage], [family], [], nobody)
+        rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
+    except MissingError:
+        rows = []
+    return {(row["encoding"], row["operation"]): row for row in rows}
 
 
 def nobody(_: str) -> None:

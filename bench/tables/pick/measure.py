@@ -27,7 +27,6 @@ from ...metrics.images import squared_error
 from ...metrics.meter import psnr_db
 from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...output import cache as kept
-from ...output.errors import MissingError
 from ...output.sources import sources
 from ...worst_case.exact_figures import has_twin
 from ..cost import measure as cost
@@ -258,13 +257,7 @@ class Costs:
     """Instructions of encodings on one family; unknown where this machine has no compilers."""
 
     def __init__(self, encodings: Iterable[Encoding], family: str):
-        chosen = cost.cases(encodings, (), cost.OPERATIONS)
-        try:
-            found = cost.isa_rows(chosen, [STAGE], [family], [], cost.nobody)
-            rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
-        except MissingError:
-            rows = []
-        self._rows = {(row["encoding"], row["operation"]): row for row in rows}
+        self._rows = cost.counted(encodings, family, STAGE)
 
     def of(self, encoding: Encoding) -> Row:
         """The columns of instructions; None where they are not known."""

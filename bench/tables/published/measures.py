@@ -15,7 +15,6 @@ from ...codecs.names import codecs_named
 from ...metrics import published
 from ...normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ...output import cache as kept
-from ...output.errors import MissingError
 from ...output.sources import sources
 from ..cost import measure as cost
 from ..quality import measure as quality
@@ -136,10 +135,8 @@ class InACube:
 @cache
 def _instructions() -> dict[tuple[str, str], float]:
     names = {*(name for name, _ in published.SLOTS), *(name for name, _ in published.SLOTS_2009)}
-    chosen = cost.cases((ENCODINGS[name] for name in sorted(names)), (), cost.OPERATIONS)
-    found = cost.isa_rows(chosen, [STAGE], [FAMILY], [], cost.nobody)
-    rows = [row for row, _ in found if row["family"] == FAMILY and row["instructions"] is not None]
-    return {(row["encoding"], row["operation"]): float(row["instructions"]) for row in rows}
+    rows = cost.counted((ENCODINGS[name] for name in sorted(names)), FAMILY, STAGE)
+    return {key: float(row["instructions"]) for key, row in rows.items()}
 
 
 @dataclass(frozen=True)
@@ -162,10 +159,7 @@ class Instructions:
 
     def figure(self) -> float | None:
         """How many; None where there is no compiler."""
-        try:
-            return _instructions().get((self.encoding, self.operation))
-        except MissingError:
-            return None
+        return _instructions().get((self.encoding, self.operation))
 
 
 @dataclass(frozen=True)
