@@ -11,6 +11,7 @@ from neighbours import around
 
 from normalbench.encodings.storages.rounding import store_half, store_number, store_texel, store_unorm
 from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
+from normalbench.encodings.storages.words import words
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
 from normalbench.gbuffer.gl.device import read_pixels
 
@@ -195,3 +196,37 @@ def test_what_is_not_a_number_takes_the_lower_end(gl):
 def test_snorm_has_no_code_below_minus_one():
     """-128 would equal -127: the emulation never makes it, and -1 is exact."""
     assert emulated(np.float32([-1, -1.003, -5]), STORAGES["rg8_snorm"], "nearest").tolist() == [-1, -1, -1]
+
+
+@pytest.mark.parametrize("name", [name for name, s in STORAGES.items() if s.bits[0] <= 16])
+def test_every_number_has_bits_of_its_own(name):
+    """The bits of a channel's numbers are all different, and in the order of the numbers where the format is UNORM."""
+    storage = STORAGES[name]
+    for channel, bits in enumerate(storage.bits):
+        numbers = storage.numbers(channel)
+        found = words(numbers, storage, channel)
+        assert found.dtype == np.uint32 and found.max() < 2**bits
+        assert len(np.unique(found)) == len(numbers), f"{name}, channel {channel}"
+        if storage.kind == "unorm":
+            assert (np.diff(found.astype(np.int64)) > 0).all()
+
+
+@pytest.mark.parametrize(
+    "name, number, bits",
+    [
+        ("rgba8", -1.0, 0x00),
+        ("rgba8", 1.0, 0xFF),
+        ("rgb10a2", 1.0, 0x3FF),
+        ("rg8_snorm", -1.0, 0x81),
+        ("rg8_snorm", 1.0, 0x7F),
+        ("rgb8_12_12_snorm", -1.0, 0x000),
+        ("rg16f", 1.0, 0x3C00),
+        ("rg16f", -0.5, 0xB800),
+        ("rgba32f", 1.0, 0x3F800000),
+        ("r11g11b10f", 1.0, 0x3C0),
+        ("rgba8", np.nan, 0x80),
+    ],
+)
+def test_the_bits_of_a_number_are_the_formats(name, number, bits):
+    """OpenGL 4.6, sections 2.3.4 and 2.3.5; an 11-bit float has the exponent of a half and six bits of mantissa."""
+    assert int(words(np.array(number), STORAGES[name], 0)) == bits
