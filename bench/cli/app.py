@@ -174,12 +174,21 @@ def compare(
     return compare_command(before, after, fail_on, format_of(format, output), output)
 
 
+class PicturePlace(StrEnum):
+    inside = "inside"
+    beside = "beside"
+
+
 @app.command()
 def report(
     run: Annotated[Path, typer.Argument(help="A results folder.")],
     markdown: Annotated[
         bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
     ] = False,
+    pictures: Annotated[
+        PicturePlace,
+        typer.Option("--pictures", help="In the page, as many as keep it small; or all of them, in files beside it."),
+    ] = PicturePlace.inside,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Write the page to this file. Default: report.html in the folder."),
@@ -191,7 +200,7 @@ def report(
     """
     from ..suite.report import report_command
 
-    report_command(run, markdown, output)
+    report_command(run, markdown, pictures is PicturePlace.beside, output)
 
 
 def _say(message: str) -> None:

@@ -26,10 +26,11 @@ def require_flip() -> None:
         raise MissingError(f"--flip needs flip-evaluator ({error}); pip install flip-evaluator") from error
 
 
-def flip(image: np.ndarray, reference: np.ndarray) -> float:
-    """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images, 0 to 1, at its usual 67 pixels a degree."""
+def flip(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images at its usual 67 pixels a degree: 0 to 1 for each
+    pixel, (height, width)."""
     from flip_evaluator import evaluate
 
     # It passes over a pixel that is not a number; as black it differs.
     exact, measured = (np.nan_to_num(i).astype(np.float32) for i in (reference, image))
-    return float(evaluate(exact, measured, "LDR", applyMagma=False, computeMeanError=True)[1])
+    return evaluate(exact, measured, "LDR", applyMagma=False)[0][..., 0]

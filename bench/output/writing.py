@@ -163,6 +163,14 @@ def write(
             partial.write_text(tables.written(rows, format, by=by), encoding="utf-8")
 
 
+def files_of(folder: Path) -> dict[str, Path]:
+    """A folder's own files by name; none where there is no folder."""
+    try:
+        return {path.name: path for path in folder.iterdir() if path.is_file() and not path.is_symlink()}
+    except OSError:
+        return {}
+
+
 def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:
     """The rows less some of their columns."""
     return [{column: value for column, value in row.items() if column not in hidden} for row in rows]

@@ -15,15 +15,17 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES
 from ...reports.charts import drawings
 from ...reports.charts.pareto import Panel, Point, decibels
-from ...reports.page import embedded, markdown, page
-from ...reports.page.found import CodecKey, Found, Front, PictureSet, SphereMap, plain_text
+from ...reports.page import embedded, library, markdown, page
+from ...reports.page.codec_key import CodecKey
+from ...reports.page.found import Found, Front, SphereMap, plain_text
+from ...reports.page.pixels import Subject
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
-from ..metrics import published
+from ..output import cache
 from ..output.errors import tell
 from ..output.sources import sources
-from ..output.writing import check_folder, check_writable, say, whole_file
+from ..output.writing import check_folder, check_writable, files_of, say, whole_file
 from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
 from ..tables.cost.measure import OPERATIONS, listing
@@ -32,22 +34,21 @@ from ..tables.quality import sphere_maps
 from ..tables.registry import TABLES, table_of_run
 from ..tables.table import Role, Table
 
-PAGE, CHARTS, IMAGES, MAPS, LISTINGS = "report.html", "charts", "images", "sphere", "disassembly"
-KINDS = ("encoded", "decoded", "error", "power")
+PAGE, CHARTS, PICTURES, MAPS, LISTINGS = "report.html", "charts", "pictures", "sphere", "disassembly"
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
 # Rows that another version wrote, or somebody's hand.
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
-def report_command(folder: Path, as_markdown: bool, output: Path | None) -> None:
+def report_command(folder: Path, as_markdown: bool, pictures_beside: bool, output: Path | None) -> None:
     """Write a run's page and charts, or a text for a pull request; the run's own files stay as they are."""
     done = read_run(folder)
     if done.damage:
         tell(f"{done.damage}")
     if not as_markdown:
         charts = f"{output.stem}-{CHARTS}" if output else CHARTS
-        say(f"{write_report(folder, done, output or folder / PAGE, charts)}\n")
+        say(f"{write_report(folder, done, output or folder / PAGE, charts, pictures_beside)}\n")
         return
     if output:
         check_writable(output)
@@ -59,8 +60,10 @@ def report_command(folder: Path, as_markdown: bool, output: Path | None) -> None
         partial.write_text(text, encoding="utf-8")
 
 
-def write_report(folder: Path, done: Done, target: Path, charts: str | None = CHARTS) -> Path:
-    """The page, and beside it a folder of its charts unless `charts` is None.
+def write_report(
+    folder: Path, done: Done, target: Path, charts: str | None = CHARTS, pictures_beside: bool = False
+) -> Path:
+    """The page, and beside it a folder of its charts unless `charts` is None, and one of its pictures if asked for.
 
     Returns:
         the page's path.
@@ -69,37 +72,51 @@ def write_report(folder: Path, done: Done, target: Path, charts: str | None = CH
         UsageError: it cannot be written.
     """
     check_writable(target)
+    pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
     with tempfile.TemporaryDirectory(prefix="normalbench-") as other:
         beside = target.parent / charts if charts else Path(other)
-        check_folder(beside)
+        for one in (beside, target.parent / pictures):
+            check_folder(one)
         run = gathered(folder, done)
         # Pictures are packed while charts are drawn; either takes a core for seconds.
         with ThreadPoolExecutor(1) as pool:
-            packing = pool.submit(embedded.gallery, run)
-            svgs, failed = _drawn(run, beside)
+            packing = pool.submit(embedded.gallery, run.subjects, pictures)
+            specs, failed = _drawn(run, beside)
             gallery = packing.result()
+    if gallery.damaged:
+        failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
+    for name, text in gallery.files.items():
+        with whole_file(target.parent / pictures / name) as partial:
+            partial.write_text(text, encoding="utf-8")
     with whole_file(target) as partial:
-        partial.write_text(page.html(run.with_remarks(failed), svgs, gallery), encoding="utf-8")
+        made = page.html(run.with_remarks(failed), gallery, specs, _library() if specs else "")
+        partial.write_text(made, encoding="utf-8")
     return target
 
 
-def _drawn(run: Found, folder: Path) -> tuple[dict[str, str], list[str]]:
-    """Every chart's SVG by name, and a sentence for each that cannot be drawn."""
-    svgs, failed = {}, []
+def _library() -> str:
+    """What draws interactive charts. Bundling it takes seconds, so it is kept."""
+    return cache.kept(cache.key_of(library.name()), lambda: {"script": library.script()})["script"]
+
+
+def _drawn(run: Found, folder: Path) -> tuple[dict[str, Sequence[Row]], list[str]]:
+    """Writes every chart as files. Gives those of the page by name, and a sentence for each that cannot be drawn."""
+    specs, failed = {}, []
     for drawing in page.drawings(run):
         try:
-            svgs[drawing.name] = _written(drawing, folder)
+            _write_chart(drawing, folder)
+            if drawing.specs:
+                specs[drawing.name] = drawing.specs()
         except UNEXPECTED as error:
             failed.append(f"The chart {drawing.name!r} cannot be drawn from these rows: {type(error).__name__}.")
-    return svgs, failed
+    return specs, failed
 
 
-def _written(drawing: drawings.Drawing, folder: Path) -> str:
-    """A chart as files of either format; gives the SVG."""
+def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
+    """A chart as files of either format."""
     svg, png = (folder / f"{drawing.name}.{ending}" for ending in ("svg", "png"))
     with whole_file(svg) as vectors, whole_file(png) as pixels:
         drawings.write(drawing, (vectors, "svg"), (pixels, "png"))
-    return svg.read_text(encoding="utf-8")
 
 
 def gathered(folder: Path, done: Done) -> Found:
@@ -119,9 +136,7 @@ def gathered(folder: Path, done: Done) -> Found:
         tables=tables,
         steps=len(done.steps),
         domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
-        preferred=[CodecKey(name, published.STORAGE, "nearest") for name in published.PICTURED],
-        pictures=list(_pictures(folder / IMAGES, quality)),
-        originals=_originals(folder / IMAGES, quality),
+        subjects=list(_subjects(folder, tables, remarks)),
         maps=list(_maps(folder / MAPS, quality)),
         fronts=list(_fronts(tables, remarks)),
         listings=_listings(folder / LISTINGS, tables.get("cost", [])),
@@ -149,6 +164,7 @@ def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Sec
         conditions=tuple(column.name for column in table.of_role(Role.KEY, Role.HOW)),
         not_shown=tuple(column.name for column in table.of_role(Role.RAW)),
         says=lambda name: _definition(table, name),
+        better=lambda name: column.better if (column := table.column(name)) else "",
         drawings=_drawings(found, table, rows, remarks),
         asked=asked,
         leads=said.leads,
@@ -164,7 +180,11 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
     """A table in short; nothing where its rows are not what this version writes."""
     try:
         finished = table.work.finish([dict(row) for row in rows]) if rows else []
-        return [Sheet(one.title, one.rows, said=one.said) for one in table.work.summary(finished) if one.rows]
+        return [
+            Sheet(one.title, one.rows, said=one.said, keys=dict(one.keys))
+            for one in table.work.summary(finished)
+            if one.rows
+        ]
     except UNEXPECTED:
         remarks.append(f"The rows of {table.name} are not those of this version; they are shown as they are.")
         return []
@@ -198,31 +218,19 @@ def _asked(facts: Row) -> set[str]:
     return found | ({table.name for table in TABLES.values() if table.in_all} if "all" in words else set())
 
 
-def _files(folder: Path) -> Mapping[str, Path]:
-    """A folder's own files by name; none where there is no folder."""
-    try:
-        return {path.name: path for path in folder.iterdir() if path.is_file() and not path.is_symlink()}
-    except OSError:
-        return {}
-
-
-def _pictures(folder: Path, rows: Sequence[Row]) -> Iterator[PictureSet]:
-    """The pictures of each codec of the rows. A name is looked up, so that none leads out of the folder."""
-    there = _files(folder)
-    for normals, key in dict.fromkeys((str(row.get("normals")), CodecKey.of(row)) for row in rows):
-        stem = f"{normals}-{key.encoding}-{key.storage}" + ("" if key.rounding == "nearest" else f"-{key.rounding}")
-        files = {kind: there[name] for kind in KINDS if (name := f"{stem}-{kind}.png") in there}
-        if files:
-            yield PictureSet(key, normals, files)
-
-
-def _originals(folder: Path, rows: Sequence[Row]) -> dict[str, Path]:
-    there, sets = _files(folder), dict.fromkeys(str(row.get("normals")) for row in rows)
-    return {name: there[f"{name}-normals.png"] for name in sets if f"{name}-normals.png" in there}
+def _subjects(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Subject]:
+    """What the run has pictures of."""
+    for name, rows in tables.items():
+        if name in TABLES and "images" in TABLES[name].files:
+            try:
+                finished = TABLES[name].work.finish([dict(row) for row in rows])
+                yield from TABLES[name].work.subjects(folder / TABLES[name].files["images"], finished)
+            except UNEXPECTED as error:
+                remarks.append(f"The pictures of {name} cannot be found from these rows: {type(error).__name__}.")
 
 
 def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
-    there = _files(folder)
+    there = files_of(folder)
     bits = {CodecKey.of(row): row["bits"] for row in rows if is_count(row.get("bits"))}
     for key, count in bits.items():
         path = there.get(sphere_maps.file_name(*key))
@@ -264,7 +272,8 @@ def _points(
             lost.setdefault(str(reason), {})[codec.name] = None
             continue
         if math.isfinite(error):
-            yield Point(codec.encoding.name, total.cost, error, codec.bits, is_starred=total.branches)
+            label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
+            yield Point(codec.encoding.name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
 
 
 def _codec(row: Row) -> Codec | None:
@@ -276,7 +285,7 @@ def _last_family(folder: Path, rows: Sequence[Row]) -> tuple[str, Mapping[str, P
     """The last GPU family of the rows, and the files that hold its kernels, by name."""
     families = [str(row["family"]) for row in rows if row.get("family")]
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
-    return (families[-1], _files(known[families[-1]])) if families and families[-1] in known else ("", {})
+    return (families[-1], files_of(known[families[-1]])) if families and families[-1] in known else ("", {})
 
 
 def _order(folder: Path, rows: Sequence[Row]) -> list[str]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 Row = dict[str, Any]
@@ -117,6 +118,7 @@ class Sheet:
         drops: the columns that a narrow terminal leaves out, the first first.
         notes: lines below them.
         said: paragraphs above them, the first of which is the answer.
+        keys: what the title says of every row, by column.
     """
 
     title: str
@@ -124,6 +126,7 @@ class Sheet:
     drops: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     said: tuple[str, ...] = ()
+    keys: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -169,6 +172,7 @@ class Work:
         failures: a line for each row that makes the command fail.
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
         drawings: charts of the page, from its contents and the table's rows.
+        subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
         lacking: what this machine turned out to lack; makes the exit status 3.
         missing: why `run` leaves the table out on this machine; empty where it does not.
@@ -184,6 +188,7 @@ class Work:
     failures: Callable[[Sequence[Row]], Iterable[str]] = _nothing
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
     drawings: Callable[..., Iterator[Any]] = _nothing
+    subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     worst: Callable[[Step], Any] = _none
     lacking: Callable[[Measured], Iterable[str]] = _nothing
     missing: Callable[[], str] = str

@@ -118,12 +118,24 @@ def passes_of(row: Row) -> dict[str, float]:
     return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
 
 
-def _short(milliseconds: Any) -> str:
-    return f"{milliseconds:.0f}" if milliseconds >= 100 else f"{milliseconds:.3g}"
+# A spread beyond this share of the median tells nothing apart.
+NOISY = 0.1
+
+
+def frame_total(row: Row) -> float:
+    """The milliseconds of a frame's passes together."""
+    return sum(passes_of(row).values())
+
+
+def frame_label(row: Row) -> str:
+    """What stands at the end of a frame's bar: its length, and whether it is too noisy to compare."""
+    total, spread = frame_total(row), row.get(f"{FRAME}{SPREAD}")
+    is_noisy = is_number(spread) and spread > NOISY * row[FRAME]
+    return (f"{total:.0f}" if total >= 100 else f"{total:.3g}") + ", too noisy to compare" * is_noisy
 
 
 def passes_chart(rows: Sequence[Row]) -> Any:
-    """What a frame's milliseconds go into: a bar for each pipeline, a part for each pass.
+    """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
 
     Args:
         rows: of a sweep at one number of objects: pipeline, clock, ms_frame and its spread, ms_<pass>.
@@ -136,13 +148,11 @@ def passes_chart(rows: Sequence[Row]) -> Any:
         axis.barh(range(len(rows)), widths, left=start, color=COLOURS[at % len(COLOURS)], label=stage, height=0.7)
         start += widths
     for at, row in enumerate(rows):
-        spread = row.get(f"{FRAME}{SPREAD}")
-        text = _short(row[FRAME]) + (f" (spread {_short(spread)})" if is_number(spread) else "")
-        axis.annotate(text, (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
+        axis.annotate(frame_label(row), (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
     axis.set_yticks(range(len(rows)), [str(row["pipeline"]) for row in rows], size=8)
     axis.invert_yaxis()
-    axis.margins(x=0.16)
-    axis.set_xlabel(f"milliseconds a frame, {rows[0].get('clock')}")
+    axis.margins(x=0.28)
+    axis.set_xlabel(f"milliseconds, the medians of a frame's passes, {rows[0].get('clock')}")
     figure.legend(loc="outside upper center", ncols=5, fontsize=8, frameon=False)
     return figure
 

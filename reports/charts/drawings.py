@@ -1,30 +1,15 @@
-"""Charts as files, and as SVG that lies in a page and takes its colours."""
+"""Charts: as files, and as what a page draws."""
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape
 
-from .plots import COLOURS, save
-
-# What a chart's colours are called in page.css, which has them for either theme.
-THEME = {
-    "#ffffff": "paper",
-    "#000000": "ink",
-    "#777777": "muted",
-    "#aaaaaa": "faint",
-    "#bbbbbb": "faint",
-    "#b0b0b0": "faint",
-    "#cccccc": "faint",
-    **{colour.lower(): f"chart-{at}" for at, colour in enumerate(COLOURS) if colour != "#000000"},
-}
-
+from .plots import save
 
 # How many letters of a name a chart has room for.
 LONGEST = 48
@@ -39,12 +24,14 @@ class Drawing:
         title: what it is called.
         description: what it shows, for who cannot see it.
         draw: gives a figure for `plots.save`.
+        specs: gives the same as interactive charts (see `specs.py`); None where the page has a picture instead.
     """
 
     name: str
     title: str
     description: str
     draw: Callable[[], Any]
+    specs: Callable[[], Sequence[dict[str, Any]]] | None = None
 
 
 @contextmanager
@@ -73,35 +60,3 @@ def as_text(text: str) -> str:
 def for_drawing(rows: Sequence[dict[str, Any]], but: Sequence[str] = ()) -> list[dict[str, Any]]:
     """Rows whose text is as a chart can show it, but for columns that are no text to show."""
     return [{k: as_text(v) if isinstance(v, str) and k not in but else v for k, v in row.items()} for row in rows]
-
-
-def inline(svg: str, drawing: Drawing) -> str:
-    """A chart's SVG for a page: its colours the page's, its ids its own, its title and description said."""
-    body = svg[svg.index("<svg") :]
-    body = re.sub(r"<metadata>.*?</metadata>", "", body, count=1, flags=re.S)
-    body = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", body, count=1, flags=re.S)
-    body = _own_ids(re.sub(r"font-family: [^;\"]*;? ?", "", body), drawing.name)
-    body = re.sub(r"#[0-9a-f]{6}\b", _themed, body, flags=re.I)
-    view = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', body)
-    # Points are 4/3 of a pixel.
-    width, height = (float(size) * 4 / 3 for size in view.groups()) if view else (0, 0)
-    label = f"{drawing.name}-title {drawing.name}-desc"
-    head = (
-        f'<svg class="drawing" role="img" aria-labelledby="{label}" {view[0] if view else ""} '
-        f'style="--natural: {width:.0f}px; aspect-ratio: {width:.0f} / {height:.0f}" '
-        f'xmlns:xlink="http://www.w3.org/1999/xlink"><title id="{drawing.name}-title">{escape(drawing.title)}</title>'
-        f'<desc id="{drawing.name}-desc">{escape(drawing.description)}</desc>'
-    )
-    return re.sub(r"<svg[^>]*>", lambda _: head, body, count=1)
-
-
-def _themed(match: re.Match[str]) -> str:
-    colour = match[0].lower()
-    return f"var(--{THEME[colour]}, {colour})" if colour in THEME else match[0]
-
-
-def _own_ids(svg: str, name: str) -> str:
-    """Ids that something refers to, told apart from other charts' on the page; the others go."""
-    used = set(re.findall(r'(?:url\(#|href="#)([^")]+)', svg))
-    svg = re.sub(r' id="([^"]*)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", svg)
-    return re.sub(r'(url\(#|href="#)', lambda m: f"{m[1]}{name}-", svg)

@@ -27,6 +27,7 @@ class Point:
         bits: what it occupies.
         spread: how wide the interval is that the cost is known to lie in.
         is_starred: whether the cost counts both sides of a branch.
+        codec: the encoding with its storage.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Point:
     bits: int
     spread: float = 0.0
     is_starred: bool = False
+    codec: str = ""
 
 
 @dataclass(frozen=True)

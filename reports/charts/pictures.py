@@ -57,18 +57,14 @@ def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
     return _bytes((normals * 0.5 + 0.5) * covered[..., None])
 
 
-def render_pictures(image: np.ndarray, reference: np.ndarray) -> dict[str, np.ndarray]:
-    """A rendered image, its reference, and how far they are apart, uint8 of shape (height, width, 3).
-
-    Args:
-        image, reference: as displayed, float arrays of shape (height, width, 3), in [0, 1].
-    """
-    return {"final": picture(image), "reference": picture(reference), "difference": difference(image, reference)}
-
-
 def picture(image: np.ndarray) -> np.ndarray:
     """An image as displayed, floats in [0, 1], in bytes."""
     return _bytes(image)
+
+
+def grey(values: np.ndarray) -> np.ndarray:
+    """Numbers in [0, 1], (height, width), as grey pixels."""
+    return _bytes(values[..., None] * np.ones(3))
 
 
 def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:

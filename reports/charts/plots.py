@@ -112,7 +112,7 @@ def lights_figure(rows: Sequence[dict[str, Any]]) -> Any:
     """
     pyplot = drawn_off_screen()
 
-    found = [_equal_lines(rows), _random_lines(rows)]
+    found = [equal_lines(rows), random_lines(rows)]
     panels = [(title, lines) for title, lines in found if lines]
     figure, axes = pyplot.subplots(
         1, len(panels), figsize=(2.2 + 4.6 * len(panels), 4.6), squeeze=False, layout="constrained"
@@ -144,7 +144,7 @@ LEAST_ERROR = 1e-6
 Lines = dict[str, list[tuple[int, float, float]]]
 
 
-def _equal_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
+def equal_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
     """Of equal lights of the least sum: each buffer's worst channel."""
     equal = [row for row in rows if row["experiment"] == "equal"]
     total = min((row["sum"] for row in equal), default=0.0)
@@ -156,7 +156,7 @@ def _equal_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
     return f"equal lights that sum to {total:g}, worst channel", worst
 
 
-def _random_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
+def random_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
     """Of coloured lights: the largest error of the worst order."""
     lines: Lines = {}
     for row in rows:

@@ -1,54 +1,62 @@
-"""Pictures that lie in a page: every pixel as it is, in as few bytes as may be."""
+"""Pictures in a page: every pixel exactly as it is, packed without loss."""
 
 from __future__ import annotations
 
 import base64
+import itertools
+import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import BytesIO
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from .found import CodecKey, Found, PictureSet, Row
-from .verdict import is_count, is_number
+from .pixels import LEAST_LOG2, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
 
-# What all pictures of a page may take, in bytes of text.
-BUDGET = 10 * 2**20
+# What all pictures inside a page may take, in bytes of text.
+BUDGET = 1_750_000
+# Inside a page a picture is at most this wide or high: larger ones are shown as every second pixel, or every third.
+INSIDE = 400
 # WebP's own scale of 0 to 6; more takes ten times as long for a hundredth less.
 EFFORT = 4
-MAX_PIXELS = 2**24
 
-
-@dataclass(frozen=True)
-class Embedded:
-    """A picture in a page: what it is of, and its data URI."""
-
-    codec: str
-    kind: str
-    width: int
-    height: int
-    uri: str
+Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Gallery:
-    """A page's pictures, and the names of codecs whose pictures are left out for their size or cannot be read."""
+    """A page's pictures.
 
-    pictures: Sequence[Embedded]
-    left_out: Sequence[str]
-    damaged: Sequence[str]
+    Attributes:
+        subjects: what is shown, as page.js reads it.
+        left_out: names of codecs whose pictures are left out, so that the page stays small.
+        damaged: names of codecs whose files cannot be read.
+        files: scripts that lie beside the page, text by name.
+    """
+
+    subjects: Sequence[Record] = ()
+    left_out: Sequence[str] = ()
+    damaged: Sequence[str] = ()
+    files: dict[str, str] = field(default_factory=dict)
 
     @property
-    def groups(self) -> list[tuple[str, list[Embedded]]]:
-        """The pictures by what they are of."""
-        groups: dict[str, list[Embedded]] = {}
-        for picture in self.pictures:
-            groups.setdefault(picture.codec, []).append(picture)
-        return list(groups.items())
+    def data(self) -> Record:
+        """Everything that page.js needs to show them."""
+        angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE}
+        return {"subjects": self.subjects, "angle": angle, "colours": colour_map()}
+
+
+def colour_map(count: int = 33) -> list[str]:
+    """Viridis from dark to bright, as many colours, evenly spaced: even steps to the eye, also for those who do not
+    see all colours."""
+    import matplotlib
+    from matplotlib.colors import to_hex
+
+    return [to_hex(colour) for colour in matplotlib.colormaps["viridis"](np.linspace(0, 1, count))]
 
 
 def data_uri(pixels: Image.Image) -> str:
@@ -64,59 +72,114 @@ def small_uri(pixels: np.ndarray) -> str:
     return data_uri(Image.fromarray(pixels))
 
 
-def _read(codec: str, kind: str, path: Path) -> Embedded | None:
-    """A picture file; None where it is damaged or larger than a page can show."""
-    try:
-        with Image.open(path, formats=["PNG"]) as image:
-            if image.width * image.height > MAX_PIXELS:
-                return None
-            uri = data_uri(image if image.mode in ("RGB", "RGBA") else image.convert("RGB"))
-            return Embedded(codec, kind, image.width, image.height, uri)
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+def _bytes_uri(planes: Sequence[np.ndarray]) -> str:
+    """Up to three planes of bytes, (height, width), as the channels of a picture."""
+    channels = [planes[min(i, len(planes) - 1)] for i in range(3)]
+    return small_uri(np.stack(channels, axis=-1))
+
+
+def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
+    """Codes as pictures. Each component is shifted up to whole bytes; the bytes follow each other, the highest of every
+    component first, three to a picture."""
+    planes: list[np.ndarray] = []
+    sizes = [-(-count // 8) for count in bits]
+    for level in range(max(sizes)):
+        for i, (size, count) in enumerate(zip(sizes, bits, strict=True)):
+            if level < size:
+                aligned = codes[..., i].astype(np.uint64) << np.uint64(8 * size - count)
+                planes.append((aligned >> np.uint64(8 * (size - 1 - level)) & np.uint64(255)).astype(np.uint8))
+    return [_bytes_uri(planes[at : at + 3]) for at in range(0, len(planes), 3)]
+
+
+def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int) -> Record | None:
+    """A codec's pixels as page.js reads them; None where they are not as many as the original's."""
+    if isinstance(pixels, NormalPixels):
+        if pixels.decoded.shape != original.shape:
+            return None
+        angle, codes, decoded = (plane[::step, ::step] for plane in (pixels.angle, pixels.codes, pixels.decoded))
+        coded = {"codes": _code_uris(codes, pixels.bits), "bits": list(pixels.bits)}
+        return {"angle": _bytes_uri([angle]), "decoded": small_uri(np.ascontiguousarray(decoded)), **coded}
+    if pixels.final.shape != original.shape:
         return None
+    # Most pixels are as the original's: the difference takes a fraction of the bytes.
+    apart = pixels.final[::step, ::step] - original[::step, ::step]
+    flip = {} if pixels.flip is None else {"flip": _bytes_uri([pixels.flip[::step, ::step]])}
+    return {"apart": small_uri(np.ascontiguousarray(apart)), **flip}
 
 
-def in_order(found: Found) -> list[PictureSet]:
-    """Whose pictures come first: the two best of each number of bits and the preferred ones, then the others; fewest
-    bits first, the best of those first."""
-    rows = {CodecKey.of(row): row for row in found.tables.get("quality", ()) if _is_judged(row)}
-
-    def place(pictures: PictureSet) -> tuple[bool, int, bool, float]:
-        row = rows.get(pictures.key)
-        if row is None:
-            return True, 0, True, 0.0
-        better = sum(r["bits"] == row["bits"] and r["psnr_db"] > row["psnr_db"] for r in rows.values())
-        asked = pictures.key in found.preferred
-        return better > 1 and not asked, row["bits"], not asked, -row["psnr_db"]
-
-    return sorted(found.pictures, key=place)
+def _size(record: Record) -> int:
+    return len(json.dumps(record))
 
 
-def _is_judged(row: Row) -> bool:
-    return is_count(row.get("bits")) and is_number(row.get("psnr_db"))
+class _Packer:
+    """Takes the pictures of one subject."""
+
+    def __init__(self, subject: Subject, original: np.ndarray, is_beside: bool):
+        self.subject, self.original = subject, original
+        longer = max(original.shape[:2])
+        self.step = 1 if is_beside else -(-longer // INSIDE)
+        shown = np.ascontiguousarray(original[:: self.step, :: self.step])
+        self.record: Record = {
+            "title": subject.title,
+            "of": subject.of,
+            "height": shown.shape[0],
+            "width": shown.shape[1],
+            "step": self.step,
+            "original": small_uri(shown),
+        }
+        self.taken: dict[str, Record] = {}
+
+    def planes(self, one: Pictured) -> Record | None:
+        """A codec's pixels; None where they cannot be read."""
+        pixels = one.load()
+        return _planes(pixels, self.original, self.step) if pixels else None
+
+    def take(self, one: Pictured, what: Record) -> None:
+        """Show a codec."""
+        key = {"label": one.label, "encoding": one.key.encoding, "storage": one.key.storage}
+        self.taken[one.label] = key | what
+
+    @property
+    def shown(self) -> Record:
+        """The subject as page.js reads it."""
+        return self.record | {"codecs": [self.taken[c.label] for c in self.subject.codecs if c.label in self.taken]}
 
 
-def gallery(found: Found, budget: int = BUDGET) -> Gallery:
-    """The pictures of as many codecs as fit, all of a codec's or none."""
-    several = len({pictures.normals for pictures in found.pictures}) > 1
-    wanted: list[tuple[str, Mapping[str, Path]]] = []
-    for name, path in found.originals.items():
-        wanted.append((f"the normals of {name}", {"normals": path}))
-    for pictures in in_order(found):
-        wanted.append((pictures.key.label + (f" on {pictures.normals}" if several else ""), pictures.files))
-    taken, left_out, damaged, used = [], [], [], 0
+def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET) -> Gallery:
+    """The pictures of a page.
+
+    Args:
+        subjects: what there is.
+        beside: the folder, as the page names it, of scripts that hold the pictures, all of them in full size; empty
+            to put them into the page, as many codecs as fit, all of a codec's or none.
+        budget: what they may take inside.
+    """
+    originals = [(subject, subject.original()) for subject in subjects]
+    packers = [_Packer(subject, image, bool(beside)) for subject, image in originals if image is not None]
+    damaged = [subject.title for subject, image in originals if image is None]
+    left_out: list[str] = []
+    files: dict[str, str] = {}
+    budget -= sum(len(packer.record["original"]) for packer in packers)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for label, files in wanted:
-            if used >= budget:
-                left_out.append(label)
-                continue
-            made = list(pool.map(lambda item, label=label: _read(label, *item), files.items()))
-            good = [picture for picture in made if picture]
-            size = sum(len(picture.uri) for picture in good)
-            if used + size > budget:
-                left_out.append(label)
-                used = budget
+        wanted = list(_in_turn(packers))
+        for (packer, one), planes in zip(wanted, pool.map(lambda item: item[0].planes(item[1]), wanted), strict=True):
+            name = f"{one.label}, {packer.subject.title}"
+            if planes is None:
+                damaged.append(name)
+            elif beside:
+                file = f"{len(files)}.js"
+                files[file] = f"keepPicture({json.dumps(file)}, {json.dumps(planes)});\n"
+                packer.take(one, {"file": f"{beside}/{file}", "name": file})
+            elif _size(planes) > budget:
+                left_out.append(name)
             else:
-                taken, used = taken + good, used + size
-            damaged += [label] if len(good) < len(made) else []
-    return Gallery(taken, left_out, damaged)
+                budget -= _size(planes)
+                packer.take(one, planes)
+    return Gallery([packer.shown for packer in packers if packer.taken], left_out, damaged, files)
+
+
+def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
+    """The first codec of each subject by rank, then the second of each, and so on."""
+    ranked = [[(packer, one) for one in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers]
+    for turn in itertools.zip_longest(*ranked):
+        yield from filter(None, turn)

@@ -4,33 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..charts.pareto import Error, Panel
+from .codec_key import CodecKey
+from .pixels import Subject
 from .sections import Section
 
 Row = dict[str, Any]
-
-
-class CodecKey(NamedTuple):
-    """What tells codecs apart in rows."""
-
-    encoding: str
-    storage: str
-    rounding: str
-
-    @classmethod
-    def of(cls, row: Row) -> CodecKey:
-        """The codec of a row."""
-        return cls(*(str(row.get(name)) for name in cls._fields))
-
-    @property
-    def label(self) -> str:
-        """What a reader calls it."""
-        return " ".join([self.encoding, self.storage, *([self.rounding] if self.rounding != "nearest" else [])])
 
 
 @dataclass(frozen=True)
@@ -42,15 +25,6 @@ class SphereMap:
     mean_deg: np.ndarray
     max_deg: np.ndarray
     directions: int
-
-
-@dataclass(frozen=True)
-class PictureSet:
-    """The pictures of a codec on an image: files by kind."""
-
-    key: CodecKey
-    normals: str
-    files: Mapping[str, Path]
 
 
 @dataclass(frozen=True)
@@ -72,9 +46,7 @@ class Found:
         sections: the tables as the page shows them, in its order.
         steps: how many have their rows.
         domains: of each encoding, the normals that it is made for.
-        preferred: codecs whose pictures come first.
-        pictures: the pictures of codecs.
-        originals: by set, the normals as they are.
+        subjects: what codecs were tried on, and their pixels.
         maps: errors over the sphere.
         fronts: cost against error.
         listings: disassemblies, text by name.
@@ -88,9 +60,7 @@ class Found:
     sections: Sequence[Section] = ()
     steps: int = 0
     domains: Mapping[str, str] = field(default_factory=dict)
-    preferred: Sequence[CodecKey] = ()
-    pictures: Sequence[PictureSet] = ()
-    originals: Mapping[str, Path] = field(default_factory=dict)
+    subjects: Sequence[Subject] = ()
     maps: Sequence[SphereMap] = ()
     fronts: Sequence[Front] = ()
     listings: Mapping[str, str] = field(default_factory=dict)

@@ -4,30 +4,31 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+import json
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from .. import tables
 from ..charts import spheres
-from ..charts.drawings import Drawing, inline
-from ..charts.pictures import CAPTIONS
-from . import embedded
+from ..charts.drawings import Drawing
+from . import embedded, library
+from .codec_key import CodecKey
 from .found import Found, Row
-from .sections import Section, whole
+from .sections import Section, Sheet, whole
 from .verdict import Contest, contests, is_number
 
-HERE = Path(__file__).parent
+WEB = Path(__file__).parent / "web"
+SCRIPTS = ("tables.js", "pictures.js", "charts.js")
 # What a contest's cheapest codec is counted by.
 STAGE = "fragment"
 # Text of more letters than this may break into lines.
 WRAPPED = 24
-KINDS = {"normals": "the normals as they are"} | CAPTIONS
 
 
 # What the navigation calls a section's extras that have a heading of their own.
-EXTRAS = {"pictures": "Pictures", "angles": "Angles", "sphere": "Sphere"}
+EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
 # The columns of a contest.
 CONTEST = {
     "by": "The measure.",
@@ -41,7 +42,7 @@ CONTEST = {
 
 @dataclass(frozen=True)
 class Cell:
-    """A table's cell: what is read, what it is sorted by, and its class in page.css."""
+    """A table's cell: what is read, what it is sorted by where that is something else, and its classes in page.css."""
 
     text: str
     value: str
@@ -56,6 +57,15 @@ class Column:
     title: str
     definition: str
     numeric: bool
+    better: str = ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A table's row: its cells, and the codec that it is of, empty for none."""
+
+    cells: Sequence[Cell]
+    codec: str
 
 
 @dataclass(frozen=True)
@@ -64,25 +74,65 @@ class Table:
 
     title: str
     columns: Sequence[Column]
-    rows: Sequence[Sequence[Cell]]
+    rows: Sequence[Line]
     constants: str
     folded: bool = False
     said: Sequence[str] = ()
 
 
-def table(title: str, rows: Sequence[Row], says: Callable[[str], str], folded: bool = False) -> Table:
+def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
     """Rows as a table to show; columns that say the same in each row are said once."""
-    shown, constants = tables.without_constants(whole(rows))
-    columns = [Column(name, name.replace("_", " "), says(name), tables.is_numeric(shown, name)) for name in shown[0]]
-    cells = [[_cell(row[c.name], c.numeric) for c in columns] for row in shown]
-    return Table(title, columns, cells, constants.replace("_", " "), folded)
+    return _table(Sheet(title, rows), says, lambda _: "", ())
 
 
-def _cell(value: Any, numeric: bool) -> Cell:
+def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str], encodings: Container[str]) -> Table:
+    rows = whole(sheet.rows)
+    shown, constants = tables.without_constants(rows)
+    columns = [
+        Column(name, name.replace("_", " "), says(name), tables.is_numeric(shown, name), better(name))
+        for name in shown[0]
+    ]
+    # Among every row there are several back ends and conditions: the best of them all says nothing.
+    best = set() if sheet.folded else {at for c in columns if c.numeric and c.better for at in _best(shown, rows, c)}
+    lines = [
+        Line(
+            [_cell(row[c.name], c.numeric, (at, c.name) in best) for c in columns], _codec(sheet.keys | one, encodings)
+        )
+        for at, (row, one) in enumerate(zip(shown, rows, strict=True))
+    ]
+    return Table(sheet.title, columns, lines, constants.replace("_", " "), sheet.folded, sheet.said)
+
+
+def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
+    """The places of a column's best figures, of those of as many bits; none where all are the same."""
+    groups: dict[Any, list[int]] = {}
+    for at, row in enumerate(rows):
+        if is_number(row[column.name]):
+            groups.setdefault(row.get("bits"), []).append(at)
+    for places in groups.values():
+        texts = {tables.text_of(shown[at][column.name]) for at in places}
+        best = (max if column.better == "more" else min)(shown[at][column.name] for at in places)
+        if len(texts) > 1:
+            yield from (
+                (at, column.name) for at in places if tables.text_of(shown[at][column.name]) == tables.text_of(best)
+            )
+
+
+def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
     text = tables.text_of(value)
-    if numeric:
-        return Cell(text, repr(float(value)) if text else "", "n")
-    return Cell(text, text, "long" if len(text) > WRAPPED else "")
+    if not numeric:
+        return Cell(text, "", "long" if len(text) > WRAPPED else "")
+    exact = "" if not text else f"{value:.9g}" if isinstance(value, float) else str(int(value))
+    return Cell(text, exact if exact != text else "", "n best" if is_best else "n")
+
+
+def _codec(row: Row, encodings: Container[str]) -> str:
+    """The codec of a row, an encoding's name alone where the storage is not known; empty for none."""
+    encoding, storage = row.get("encoding"), row.get("storage")
+    if not isinstance(encoding, str) or encoding not in encodings:
+        return ""
+    rounding = str(row.get("rounding") or "nearest")
+    return CodecKey(encoding, str(storage), rounding).label if storage else encoding
 
 
 def instructions(rows: Sequence[Row]) -> tuple[dict[str, float], str]:
@@ -115,10 +165,10 @@ def remarks(found: Found) -> list[str]:
 
 @dataclass(frozen=True)
 class Chart:
-    """A drawing in the page."""
+    """A drawing in the page, as one interactive chart or several."""
 
     drawing: Drawing
-    svg: str
+    plots: int
 
 
 @dataclass(frozen=True)
@@ -136,9 +186,9 @@ class Part:
         return bool(self.tables)
 
 
-def navigation(found: Found) -> list[tuple[str, str]]:
+def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
     """Anchors and their names, in the order of the page; what leads is on top of it."""
-    made = []
+    made = [("pictures", "Pictures")] if has_pictures else []
     for section in found.sections:
         if section.leads:
             continue
@@ -156,7 +206,7 @@ def _template() -> Any:
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE),
+        loader=jinja2.FileSystemLoader(WEB),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -165,21 +215,36 @@ def _template() -> Any:
     return environment.get_template("page.html.j2")
 
 
-def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> str:
+def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
+    """Every codec that the page shows, by name."""
+    named = {one.label for subject in found.subjects for one in subject.codecs if one.key.encoding in found.domains}
+    drawn = (row for several in specs.values() for spec in several for row in spec["data"]["values"])
+    named |= {row["codec"] for row in drawn if "codec" in row}
+    rows = [row for section in found.sections for row in section.rows]
+    return sorted(named | {name for row in rows if " " in (name := _codec(row, found.domains))})
+
+
+def html(
+    found: Found,
+    gallery: embedded.Gallery,
+    specs: Mapping[str, Sequence[Row]],
+    library_script: str,
+) -> str:
     """The page.
 
     Args:
         found: the run.
-        svgs: the drawings' SVG files, by name; one that is missing is not shown.
         gallery: its pictures.
+        specs: its charts, by the names of their drawings; one that is missing is not shown.
+        library_script: what draws them.
     """
-    script, style = ((HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
-    parts = [_part(found, section, svgs) for section in found.sections]
+    scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
+    parts = [_part(found, section, specs) for section in found.sections]
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
     return _template().render(
         found=found,
         remarks=remarks(found),
-        nav=navigation(found),
+        nav=navigation(found, bool(gallery.subjects)),
         contests=[(contest, table(title, contest.rows, lambda name: CONTEST[name])) for contest, title in titled],
         family=instructions(found.tables.get("cost", ()))[1],
         parts=parts,
@@ -189,18 +254,29 @@ def html(found: Found, svgs: Mapping[str, str], gallery: embedded.Gallery) -> st
         cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
         strip=spheres.colour_strip(),
         gallery=gallery,
-        kinds=KINDS,
-        script=script,
-        style=style,
-        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
+        picture_data=_data_block(gallery.data) if gallery.subjects else "",
+        codecs=codecs(found, specs),
+        library=library.packed(library_script) if specs else "",
+        specs=library.packed(json.dumps(specs)) if specs else "",
+        scripts=scripts,
+        style=(WEB / "page.css").read_text(encoding="utf-8"),
+        script_sources=_sources([*scripts, library_script], is_beside=bool(gallery.files)),
     )
 
 
-def _charts(made: Sequence[Drawing], svgs: Mapping[str, str]) -> list[Chart]:
-    return [Chart(d, inline(svgs[d.name], d)) for d in made if d.name in svgs]
+def _data_block(data: Any) -> str:
+    """JSON inside a script element, which no text in it can end."""
+    return json.dumps(data).replace("<", "\\u003c")
 
 
-def _part(found: Found, section: Section, svgs: Mapping[str, str]) -> Part:
+def _sources(scripts: Sequence[str], is_beside: bool) -> str:
+    """What the page may execute: its own scripts, and those of pictures beside it."""
+    digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
+    return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
+
+
+def _part(found: Found, section: Section, specs: Mapping[str, Sequence[Row]]) -> Part:
     sheets = section.sheets(found.domains)
-    shown = [replace(table(s.title, s.rows, section.says, s.folded), said=s.said) for s in sheets]
-    return Part(section, _charts(section.drawings, svgs), shown, section.measured())
+    shown = [_table(sheet, section.says, section.better, found.domains) for sheet in sheets]
+    charts = [Chart(drawing, len(specs[drawing.name])) for drawing in section.drawings if drawing.name in specs]
+    return Part(section, charts, shown, section.measured())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..charts.drawings import Drawing
@@ -20,12 +20,14 @@ class Sheet:
         rows: all with the same columns.
         folded: whether it is shown only when asked for.
         said: paragraphs above it, the first of which is the answer.
+        keys: what the title says of every row, by column.
     """
 
     title: str
     rows: Sequence[Row]
     folded: bool = False
     said: tuple[str, ...] = ()
+    keys: Row = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Section:
         conditions: columns that say under what conditions rows were measured.
         not_shown: columns that only a program reads.
         says: what a column means.
+        better: which way a column is better, "more" or "less"; empty where it has none.
         drawings: its charts.
         asked: whether the run was asked for it.
         leads: whether it is the page's first screen.
@@ -59,6 +62,7 @@ class Section:
     conditions: tuple[str, ...]
     not_shown: tuple[str, ...]
     says: Callable[[str], str]
+    better: Callable[[str], str]
     drawings: Sequence[Drawing]
     asked: bool
     leads: bool = False

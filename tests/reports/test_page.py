@@ -4,12 +4,13 @@ import io
 import math
 import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import sync_playwright
-from test_report import a_run, quality_row
+from test_report import HOSTILE, a_run, pixels, quality_row, rendered_run
 
 ARGUMENTS = [
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
@@ -27,6 +28,10 @@ def browser(chromium):
         opened.close()
 
 
+# Once it shows two codecs.
+VIEWED = "[data-pixel=right]:not(:empty)"
+
+
 class Opened:
     """A page, and everything that it asked for or complained of."""
 
@@ -41,7 +46,12 @@ class Opened:
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
         self.page.goto(path.as_uri())
-        self.page.wait_for_function("document.querySelector('[data-values]')?.textContent")
+        self.page.wait_for_selector("#theme:not([hidden])")
+
+    def come_to(self, selector: str, until: str) -> None:
+        """Scroll there, and wait for what is drawn when it comes into view."""
+        self.page.locator(selector).first.scroll_into_view_if_needed()
+        self.page.wait_for_selector(until)
 
     def texts(self, selector: str) -> list[str]:
         return self.page.locator(selector).all_text_contents()
@@ -68,6 +78,11 @@ def seen(request, browser, report):
     """The page at each width in each theme; not to be changed."""
     page = Opened(browser, report, *request.param)
     page.page.evaluate("Promise.all(Array.from(document.images, (image) => image.decode()))")
+    page.come_to("#viewer", VIEWED)
+    for figure in page.page.locator("figure[data-chart]").all():
+        figure.scroll_into_view_if_needed()
+        figure.locator(".plot svg").first.wait_for()
+    page.page.evaluate("scrollTo(0, 0)")
     yield page
     page.context.close()
 
@@ -75,6 +90,7 @@ def seen(request, browser, report):
 def test_nothing_is_fetched_and_nothing_complains(seen, report):
     assert [url for url in seen.asked if not url.startswith("data:")] == [report.as_uri()]
     assert seen.said == []
+    assert seen.page.locator(".plot svg").count() == 2
 
 
 def test_the_page_itself_never_scrolls_sideways(seen):
@@ -94,7 +110,9 @@ def test_the_answer_is_what_is_seen_first(seen):
     assert np.ptp(seen.pixels(".lead")) > 150, "dark on light or light on dark"
 
 
+# Once what was closed is open.
 AXE = """async () => {
+  for (const details of document.querySelectorAll("details")) details.open = true;
   const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"];
   const { violations } = await axe.run(document, { runOnly: tags });
   return violations.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200), nodes[0].failureSummary]);
@@ -102,7 +120,7 @@ AXE = """async () => {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seen", [(DESKTOP, "light"), (PHONE, "dark")], ids=str, indirect=True)
+@pytest.mark.parametrize("seen", [(s, t) for s in ((1440, 900), (390, 844)) for t in THEMES], ids=str, indirect=True)
 def test_axe_finds_nothing_that_keeps_readers_out(seen):
     """WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings; details closed and open."""
     from axe_playwright_python.base import AXE_FILE_PATH
@@ -163,15 +181,18 @@ def column(opened: Opened, index: int) -> list[str]:
 def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
     names = [text.strip() for text in headers.all_text_contents()]
-    at = names.index("psnr db jax")
+    at = names.index("psnr db")
     before = column(opened, 0)
     headers.nth(at).locator("button").focus()
-    for direction, reverse in (("ascending", False), ("descending", True)):
+    for direction, reverse in (("descending", True), ("ascending", False)):
         opened.page.keyboard.press("Enter")
         figures = [float(text) for text in column(opened, at)]
         assert figures == sorted(figures, reverse=reverse) and figures[0] != figures[-1]
         assert headers.nth(at).get_attribute("aria-sort") == direction
-    assert column(opened, 0)[0] == "xyz" and sorted(column(opened, 0)) == sorted(before)
+    assert column(opened, 0)[-1] == "xyz" and sorted(column(opened, 0)) == sorted(before)
+    angles = headers.nth(names.index("mean"))
+    angles.locator("button").click()
+    assert angles.get_attribute("aria-sort") == "ascending", "the best on top: of angles the smallest"
     headers.nth(0).locator("button").click()
     assert column(opened, 0) == sorted(before) and headers.nth(at).get_attribute("aria-sort") == "none"
 
@@ -197,7 +218,7 @@ def test_infinite_figures_sort_as_the_largest(browser, tmp_path, run):
     headers = table.locator("thead th")
     at = [text.strip() for text in headers.all_text_contents()].index("psnr db jax")
     headers.nth(at).locator("button").click()
-    assert [row.locator("th, td").nth(at).text_content() for row in table.locator("tbody tr").all()][-1] == "inf"
+    assert table.locator("tbody tr").first.locator("th, td").nth(at).text_content() == "inf"
     page.close()
 
 
@@ -213,71 +234,239 @@ def test_a_filter_leaves_rows_that_hold_every_word_and_counts_them(opened):
     assert status.text_content() == "9 of 9 rows"
 
 
-def picked(opened: Opened, side: str, codec: str, kind: str) -> None:
-    opened.page.locator(f'[data-pick="{side}-codec"]').select_option(codec)
-    opened.page.locator(f'[data-pick="{side}-kind"]').select_option(kind)
-    opened.page.wait_for_function(
-        "([side, codec]) => document.querySelector(`[data-canvas=${side}]`).getAttribute('aria-label').includes(codec)",
-        arg=[side, f"{codec}: "],
-    )
+def test_the_best_of_each_column_is_marked_among_as_many_bits(opened):
+    rows = opened.page.locator(f"{TABLE} >> tbody tr")
+    names = [text.strip() for text in opened.texts(f"{TABLE} >> thead th")]
+    best = {row.locator("th").text_content(): row.locator(".best").count() for row in rows.all()}
+    assert {name for name, count in best.items() if count} >= {"octahedral_precise"}
+    assert best["xyz"] == 0, "nothing else has 24 bits"
+    at = names.index("psnr db")
+    assert "best" in rows.first.locator("th, td").nth(at).get_attribute("class")
+    assert rows.first.locator("th").text_content() == "octahedral_precise"
 
 
-@pytest.mark.slow
-def test_the_divider_moves_by_keyboard_and_shows_one_picture_on_either_side(opened):
-    picked(opened, "left", "the normals of playground", "normals")
-    picked(opened, "right", "spherical rgba8", "error")
-    before = opened.pixels("[data-stage]")
-    opened.page.locator("#divider").focus()
-    for _ in range(30):
-        opened.page.keyboard.press("ArrowRight")
-    assert opened.page.locator("#divider").input_value() == "80"
-    assert opened.texts("[data-divided]") == ["80 %"]
-    after = opened.pixels("[data-stage]")
-    changed = (np.abs(after - before).max(axis=2) > 60).mean(axis=0)
-    width = len(changed)
-    assert changed[: int(0.48 * width)].mean() < 0.01 > changed[int(0.83 * width) :].mean()
-    assert changed[int(0.52 * width) : int(0.78 * width)].mean() > 0.5, "what was the one is the other now"
-    opened.page.keyboard.press("Home")
-    assert opened.page.locator("#divider").input_value() == "0"
-
-
-@pytest.mark.slow
-def test_a_zoom_shows_the_pictures_own_pixels_as_squares(opened, results):
-    picked(opened, "left", "octahedral rgba8", "error")
-    picked(opened, "right", "spheremap rgba8", "error")
-    opened.page.locator("#zoom-by").select_option("16")
-    opened.page.locator("#zoom-x").fill("200")
-    opened.page.locator("#zoom-y").fill("150")
-    shown = {}
-    for side, name in (("left", "octahedral"), ("right", "spheremap")):
-        with Image.open(results[0] / f"images/playground-{name}-rgba8-error.png") as image:
-            kept = np.asarray(image)
-        # 320 x 240 pixels of the zoom are 20 x 15 of the picture's.
-        data = opened.page.locator(f"[data-zoom={side}]").evaluate(
-            "canvas => Array.from(canvas.getContext('2d').getImageData(0, 0, 320, 240).data)"
-        )
-        zoomed = np.array(data, np.uint8).reshape(240, 320, 4)[..., :3]
-        cells = zoomed.reshape(15, 16, 20, 16, 3)
-        flat = np.ptp(cells, axis=(1, 3)).max(axis=2) == 0
-        assert flat.sum() == 15 * 20 - 1, "every pixel is one square, but for the one that is marked"
-        assert (cells[:, 8, :, 8][flat] == kept[143:158, 190:210][flat]).all()
-        shown[side] = " ".join(map(str, kept[150, 200]))
-    (values,) = opened.texts("[data-values]")
-    assert values == f"At 200, 150: left {shown['left']}; right {shown['right']}"
-
-
-@pytest.mark.slow
-def test_pointing_at_a_place_zooms_there_and_a_thumbnail_is_a_button(opened):
-    stage = opened.page.locator("[data-stage]")
-    stage.scroll_into_view_if_needed()
-    box = stage.bounding_box()
-    opened.page.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.75)
-    x, y = (int(opened.page.locator(f"#zoom-{axis}").input_value()) for axis in "xy")
-    assert abs(x - 160) <= 1 and abs(y - 360) <= 1
-    opened.page.locator('.thumbs button[data-codec="xy rgba8"][data-kind="decoded"]').focus()
+def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened):
+    opened.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    sheet = opened.page.locator(TABLE)
+    sheet.locator("[data-filter]").fill("octahedral 16")
+    button = sheet.locator("[data-copy=markdown]")
+    button.focus()
     opened.page.keyboard.press("Enter")
-    assert opened.page.locator('[data-pick="right-codec"]').input_value() == "xy rgba8"
-    assert opened.page.locator('[data-pick="right-kind"]').input_value() == "decoded"
+    opened.page.wait_for_function("document.querySelector('#quality [data-copy=markdown]').textContent === 'Copied'")
+    lines = opened.page.evaluate("navigator.clipboard.readText()").splitlines()
+    assert (
+        len(lines) == 4
+        and lines[0].startswith("| encoding ↕".replace(" ↕", ""))
+        and lines[1].startswith("| --- | ---: ")
+    )
+    assert lines[2].startswith("| octahedral\\_precise | 16 |")
+    with opened.page.expect_download() as download:
+        sheet.locator("[data-copy=csv]").click()
+    text = Path(download.value.path()).read_text()
+    assert text.startswith("encoding,bits,") and text.count("\n") == 3
+    precise = text.splitlines()[1].split(",")
+    assert len(precise[3]) > 6, "all digits"
+
+
+def viewed(opened: Opened, **chosen: str) -> None:
+    """The viewer with options chosen by their labels or values."""
+    opened.come_to("#viewer", VIEWED)
+    for name, value in chosen.items():
+        opened.page.locator(f"#{name}").select_option(value)
+    opened.page.wait_for_timeout(300)
+
+
+def drawn(opened: Opened, side: str) -> np.ndarray:
+    """The pixels of a side of the viewer."""
+    uri = opened.page.locator(f"[data-canvas={side}]").evaluate("canvas => canvas.toDataURL()")
+    return pixels(uri).astype(int)
+
+
+def kept(results, name: str) -> dict[str, np.ndarray]:
+    with np.load(results[0] / f"images/playground-{name}.npz") as arrays:
+        found = {key: arrays[key][::2, ::2] for key in ("angle", "codes")}
+    with Image.open(results[0] / f"images/playground-{name}-decoded.png") as image:
+        return found | {"decoded": np.asarray(image)[::2, ::2].astype(int)}
+
+
+@pytest.mark.slow
+def test_each_view_is_drawn_from_the_pixels_of_the_run(opened, results):
+    viewed(opened, left="octahedral rgba8", right="exact", view="decoded")
+    octahedral = kept(results, "octahedral-rgba8")
+    assert (drawn(opened, "left") == octahedral["decoded"]).all()
+    with Image.open(results[0] / "images/playground-normals.png") as exact:
+        assert (drawn(opened, "right") == np.asarray(exact)[::2, ::2]).all()
+    covered, degrees = octahedral["angle"] > 0, 2.0 ** (-20 + (octahedral["angle"] - 1.0) / 8)
+    viewed(opened, view="power")
+    power = np.where(covered, 255 * (1 - np.maximum(np.cos(np.radians(degrees)), 0) ** 1024), 0)
+    assert abs(drawn(opened, "left")[..., 0] - power).max() <= 1
+    viewed(opened, view="error")
+    error = np.where(covered, np.minimum(255, 255 * 30 * 2 * np.sin(np.radians(degrees) / 2)), 0)
+    assert abs(drawn(opened, "left")[..., 1] - error).max() <= 1
+    viewed(opened, view="code")
+    codes = np.where(covered[..., None], octahedral["codes"], 0)
+    assert (drawn(opened, "left")[..., :2] == codes).all()
+
+
+@pytest.mark.slow
+def test_the_gain_and_the_colours_of_an_angle_are_chosen(opened, results):
+    viewed(opened, left="octahedral rgba8", right="xy rgba8", view="angle", colours="grey")
+    degrees = 2.0 ** (-20 + (kept(results, "octahedral-rgba8")["angle"] - 1.0) / 8)
+    gain = opened.page.locator("#scale")
+    gain.focus()
+    for _ in range(17):
+        opened.page.keyboard.press("ArrowLeft")
+    seen = {}
+    for _ in range(9):
+        opened.page.keyboard.press("ArrowRight")
+        opened.page.wait_for_timeout(200)
+        (text,) = opened.texts("[data-scale]")
+        seen[text] = drawn(opened, "left")[..., 0]
+    assert {"0.1°", "0.5°", "1°"} <= set(seen)
+    for full in (0.5, 1.0):
+        grey = np.minimum(255, 255 * degrees / full)
+        assert abs(seen[f"{full:g}°"] - grey)[kept(results, "octahedral-rgba8")["angle"] > 1].max() <= 1
+    viewed(opened, colours="viridis")
+    colours = drawn(opened, "left").reshape(-1, 3)
+    assert (colours.max(axis=0) - colours.min(axis=0)).min() > 60, "no grey"
+    assert opened.texts("[data-most]") == ["1° and more"]
+
+
+@pytest.mark.slow
+def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
+    viewed(opened, left="exact", right="spherical rgba8", view="error")
+    stage = opened.page.locator(".stage")
+    box = stage.bounding_box()
+    before = opened.pixels(".stage")
+    middle = box["y"] + box["height"] / 2
+    opened.page.mouse.move(box["x"] + box["width"] * 0.3, middle)
+    opened.page.mouse.down()
+    opened.page.mouse.move(box["x"] + box["width"] * 0.8, middle, steps=5)
+    opened.page.mouse.up()
+    opened.page.mouse.move(1, 1)
+    assert opened.texts("[data-divided]") == ["80 %"]
+    after = opened.pixels(".stage")
+    changed = (np.abs(after - before).max(axis=2) > 40).mean(axis=0)
+    width = len(changed)
+    assert changed[: int(0.48 * width)].mean() < 0.02 and changed[int(0.52 * width) : int(0.78 * width)].mean() > 0.2
+    opened.page.locator("#divider").focus()
+    opened.page.keyboard.press("Home")
+    assert opened.texts("[data-divided]") == ["0 %"]
+
+
+@pytest.mark.slow
+def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened, results):
+    viewed(opened, left="octahedral rgba8", right="spheremap rgba8", view="decoded")
+    assert opened.page.locator(".lens").is_hidden()
+    box = opened.page.locator(".stage").bounding_box()
+    opened.page.mouse.move(box["x"] + box["width"] * (100.5 / 320), box["y"] + box["height"] * (60.5 / 240))
+    assert opened.page.locator(".lens").is_visible()
+    arrays = kept(results, "octahedral-rgba8")
+    data = opened.page.locator("[data-lens=left]").evaluate(
+        "canvas => Array.from(canvas.getContext('2d').getImageData(0, 0, 132, 132).data)"
+    )
+    cells = np.array(data, np.uint8).reshape(11, 12, 11, 12, 4)[:, 6, :, 6, :3]
+    assert (cells == arrays["decoded"][55:66, 95:106]).all(), "11 x 11 pixels of 12 x 12"
+    (said,) = opened.texts("[data-pixel=left]")
+    code = " ".join(f"{number:08b}" for number in arrays["codes"][60, 100])
+    degrees = 2.0 ** (-20 + (arrays["angle"][60, 100] - 1.0) / 8)
+    assert said.startswith(f"code {code}, decoded (") and said.endswith(f"off by {float(f'{degrees:.2g}'):g}°")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 200, 120, exact normal (")
+    opened.page.locator(".stage").focus()
+    opened.page.keyboard.press("ArrowRight")
+    opened.page.keyboard.press("Shift+ArrowDown")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 202, 140,")
+    opened.page.locator("#lens-x").fill("5")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 10, 140,")
+
+
+CHOSEN = """() => ({
+  rows: Array.from(document.querySelectorAll("tr.picked"), (row) => row.dataset.codec),
+  charts: charts.views.map((view) => view.signal("picked")),
+  right: document.querySelector("#right").selectedOptions[0]?.textContent,
+  choice: document.querySelector("#choice").value,
+})"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("by", ["a row", "the keyboard", "the list", "a chart", "a picture"])
+def test_a_codec_chosen_anywhere_is_highlighted_everywhere(opened, by):
+    viewed(opened)
+    opened.come_to("figure[data-chart]", "figure[data-chart] .plot svg")
+    opened.page.wait_for_timeout(500)
+    if by == "the list":
+        opened.page.locator("#choice").select_option("spheremap rgba8")
+    elif by == "a picture":
+        opened.page.locator(".thumbs button", has_text="spheremap rgba8").click()
+    elif by == "a chart":
+        opened.page.locator("figure[data-chart] .plot path[aria-label*='spheremap rgba8']").last.dispatch_event("click")
+    else:
+        button = opened.page.locator(f"{TABLE} >> tr[data-codec='spheremap rgba8'] .pick")
+        button.focus()
+        button.click() if by == "a row" else opened.page.keyboard.press("Enter")
+    opened.page.wait_for_timeout(500)
+    found = opened.page.evaluate(CHOSEN)
+    assert set(found["rows"]) == {"spheremap rgba8"} and len(found["rows"]) >= 3
+    assert found["charts"] and set(found["charts"]) == {"spheremap rgba8"}
+    assert found["right"] == found["choice"] == "spheremap rgba8"
+    opened.page.locator("#choice").select_option("")
+    assert opened.page.evaluate(CHOSEN)["rows"] == []
+
+
+@pytest.mark.slow
+def test_a_chart_is_filtered_by_bits_and_saved_as_png(opened):
+    opened.come_to("figure[data-chart]", "figure[data-chart] .plot svg")
+    lines = opened.page.locator("figure[data-chart] >> nth=0 >> .plot svg path[aria-roledescription]")
+    before = lines.count()
+    opened.page.get_by_label("Bits shown").first.select_option("24")
+    opened.page.wait_for_timeout(300)
+    assert 0 < lines.count() < before
+    with opened.page.expect_download() as download:
+        opened.page.locator("[data-png]").first.click()
+    with Image.open(download.value.path()) as image:
+        assert image.format == "PNG" and image.width > 600 and np.asarray(image.convert("L")).std() > 5
+    assert opened.said == []
+
+
+def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tmp_path):
+    folder = rendered_run(tmp_path / "run")
+    assert run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "page.html"))[0] == 0
+    page = Opened(browser, tmp_path / "page.html")
+    viewed(page, left="xy rgba8", right="exact", view="final")
+    with Image.open(folder / "images/gloss-power47-hybrid-fp32-xy-rgba8-rgba32fx2-final.png") as final:
+        assert (drawn(page, "left") == np.asarray(final)).all()
+    with Image.open(folder / "images/gloss-power47-hybrid-reference.png") as reference:
+        assert (drawn(page, "right") == np.asarray(reference)).all()
+    viewed(page, view="apart", colours="grey")
+    assert len(np.unique(drawn(page, "left"))) == 1 and drawn(page, "left").max() > 100, "3 of 255 everywhere"
+    (said,) = page.texts("[data-pixel=left]")
+    assert said.endswith("off by 3 of 255") and page.said == []
+    page.context.close()
+
+
+@pytest.mark.slow
+def test_what_a_hostile_run_holds_is_text_in_the_browser_too(browser, run, tmp_path):
+    rows = [quality_row(HOSTILE), quality_row("octahedral", storage=HOSTILE)]
+    image = {"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}
+    assert run("report", str(a_run(tmp_path / "run", {"quality": rows, "render": [image]})))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    for figure in page.page.locator("figure[data-chart]").all():
+        figure.scroll_into_view_if_needed()
+        figure.locator(".plot svg").first.wait_for()
+    mark = page.page.locator(".plot svg path[aria-label]").last
+    mark.hover(force=True)
+    page.page.wait_for_timeout(300)
+    assert page.said == [] and page.page.locator("img[src=x]").count() == 0
+    page.context.close()
+
+
+def test_the_first_screen_is_painted_soon(browser, report):
+    """Of the small run's page; the library and the pictures wait until they come into view."""
+    page = Opened(browser, report)
+    painted = page.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    assert painted < 1500
+    assert page.page.evaluate("typeof vegaEmbed") == "undefined"
+    page.context.close()
 
 
 @pytest.mark.slow
@@ -323,11 +512,11 @@ def test_the_sphere_shows_the_mean_or_the_largest(opened):
 
 def test_pictures_and_charts_are_painted(seen):
     """Not black, not clipped: pictures vary, charts have ink on paper, discs are round and in colour."""
-    for selector in ("[data-stage]", ".thumbs img >> nth=0", ".globes img >> nth=2", ".scale img >> nth=0"):
+    for selector in (".stage", ".thumbs canvas >> nth=0", ".globes img >> nth=2", ".scale img >> nth=0"):
+        seen.page.locator(selector).first.scroll_into_view_if_needed()
+        seen.page.wait_for_timeout(200)
         assert seen.pixels(selector).std() > 8, selector
-    charts = seen.page.locator("svg.drawing")
-    assert charts.count() == 2
-    chart = seen.pixels("#angles svg.drawing >> nth=0")
+    chart = seen.pixels("#angles .plot >> nth=0")
     assert (np.abs(chart - np.median(chart, axis=(0, 1))).max(axis=2) > 60).mean() > 0.01
 
 

@@ -48,5 +48,5 @@ def test_what_may_be_spared_first_goes_first():
 def test_figures_of_a_page_sort_by_all_their_digits():
     """To four digits both are shown alike."""
     made = page.table("t", [{"name": name, "db": db} for name, db in (("a", 50.00001), ("b", 50.00002))], lambda _: "")
-    one, other = (row[1] for row in made.rows)
+    one, other = (line.cells[1] for line in made.rows)
     assert one.text == other.text and float(one.value) < float(other.value), (one, other)

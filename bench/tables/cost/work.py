@@ -15,7 +15,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES, Storage, storage_of
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
-from ....reports.charts import pareto
+from ....reports.charts import pareto, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.user_encodings import encodings_named
 from ...isa import isa, spirv
@@ -254,7 +254,8 @@ def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )
         said += "another is no dearer, no worse and takes no more bits. The figures are in the tables."
-        yield Drawing(f"cost-{at}", title, said, partial(pareto.pareto_figure, front.panels, front.error))
+        both = (partial(draw, front.panels, front.error) for draw in (pareto.pareto_figure, specs.pareto_specs))
+        yield Drawing(f"cost-{at}", title, said, *both)
 
 
 def _missing() -> str:

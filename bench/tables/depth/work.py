@@ -22,7 +22,7 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import rendering
 from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.setting import Setting
-from ....reports.charts import pictures, plots
+from ....reports.charts import pictures, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
 from ...options.counts import check_seed, checked_numbers, in_range
@@ -167,7 +167,8 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     if usable:
         said = "The largest distance between true and rebuilt position over the distance from the eye, both on "
         said += "logarithmic scales, a line for each depth code in its storage. The figures are in the table."
-        yield Drawing("depth", "Position error over distance", said, partial(plots.depth_figure, usable))
+        both = (partial(draw, usable) for draw in (plots.depth_figure, specs.depth_specs))
+        yield Drawing("depth", "Position error over distance", said, *both)
 
 
 def _beside(rows: Sequence[Row]) -> list[Row]:

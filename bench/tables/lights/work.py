@@ -15,7 +15,7 @@ from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....reports.charts import pictures, plots
+from ....reports.charts import pictures, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import found_device, require_jax
 from ...options.counts import checked_numbers
@@ -239,7 +239,8 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     if equal or random:
         said = "What is lost of the sum over the number of lights, by the model, a line for each light buffer; dotted: "
         said += "the most it can be. The figures are in the rows of the experiments equal and random."
-        yield Drawing("lights", "Error over the number of lights", said, partial(plots.lights_figure, equal + random))
+        both = (partial(draw, equal + random) for draw in (plots.lights_figure, specs.lights_specs))
+        yield Drawing("lights", "Error over the number of lights", said, *both)
 
 
 WORK = Work(

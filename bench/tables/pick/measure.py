@@ -211,14 +211,23 @@ class Pictures:
             return {}
 
     def _measured(self, case: Case) -> Row:
+        shown = self.shown(case).items()
+        return {f"{IMAGE}{power:g}": psnr_db(squared_error(image, right)[0]) for power, (image, right) in shown}
+
+    def shown(self, case: Case) -> dict[float, tuple[np.ndarray, np.ndarray]]:
+        """At each power the displayed image, and that of exact normals: (height, width, 3), 0 to 1.
+
+        Raises:
+            LayoutError, or one of render.UNMEASURABLE: there is no room for the code.
+        """
         images = self._drawn(case, LAYOUTS["fp32"].with_codec(case.codec))
         question = (case.maker, case.setting, case.powers)
         if question not in self._references:
             self._references[question] = self._drawn(case, LAYOUTS["fp32"])
-        found: Row = {}
+        found: dict[float, tuple[np.ndarray, np.ndarray]] = {}
         for power, image, right in zip(case.powers, images, self._references[question], strict=True):
             display = _display(case.maker, right)
-            found[f"{IMAGE}{power:g}"] = psnr_db(squared_error(display.image(image), display.image(right))[0])
+            found[power] = display.image(image), display.image(right)
         return found
 
     def _drawn(self, case: Case, layout: Layout) -> list[np.ndarray]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Count, Encodings, Names, Normals, Option, Reading, Scenes, Seed, StorageNames
+from ...options.option import Count, Encodings, Images, Names, Normals, Option, Reading, Scenes, Seed, StorageNames
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -46,6 +46,13 @@ class PickOptions(Reading):
     ] = None
     count: Count = COUNT
     seed: Seed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PickOutputs:
+    """What `pick` writes beside its rows."""
+
+    images: Images = None
 
 
 COLUMNS = (
@@ -103,9 +110,11 @@ TABLE = Table(
     "status is 1 where no code meets them.",
     example="normalbench pick --storage rg8 --most-instructions 40 --scene gloss --power 256",
     options=PickOptions,
+    outputs=PickOutputs,
     columns=COLUMNS,
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
+    files={"images": "images"},
     section=Section(
         title="Which code should I take?",
         short="Answer",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import Any
 
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
@@ -18,11 +17,12 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick_one, tell
-from ..table import Row, Sheet, Step, Tick, Work
-from . import measure
+from ...output.writing import check_folder
+from ..table import Measured, Row, Sheet, Step, Tick, Work
+from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, groups
 from .sentences import sentences
-from .table import TABLE, PickOptions
+from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
 # What people see of the front.
@@ -100,13 +100,15 @@ def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     return fit, said
 
 
-def _steps(options: PickOptions, _: Any) -> list[Step]:
+def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
     """A step for each question: what is measured of a code depends on the others."""
     require_jax()
     asked = questions(options)
     device, why = found_device()
     if not device:
         tell(f"no images: {why}")
+    if outputs.images:
+        check_folder(outputs.images)
     return [Step(_key(chosen), Part(chosen, device), _name(chosen), len(chosen)) for chosen in asked]
 
 
@@ -132,7 +134,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     for (storage, normals, _), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{storage}, on {normals}: the codes that no other one beats in every figure"
-        yield Sheet(title if front else "", front, TABLE.drops(front), said=tuple(sentences(group)))
+        said, keys = tuple(sentences(group)), {"storage": storage}
+        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, keys=keys)
 
 
 def _short(row: Row) -> Row:
@@ -145,6 +148,14 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
             yield sentences(group)[0]
 
 
+def _write(done: Measured, _: Tick) -> None:
+    if not done.outputs.images or not done.steps or not (device := done.steps[0].case.device):
+        return
+    drawing = measure.Pictures(device)
+    for step in done.steps:
+        pictures.write(done.outputs.images, step.case.cases, done.rows, drawing)
+
+
 WORK = Work(
     steps=_steps,
     measure=_measure,
@@ -152,4 +163,6 @@ WORK = Work(
     shown=lambda done: _sheets(done.rows),
     summary=_sheets,
     failures=_failures,
+    write=_write,
+    subjects=pictures.subjects,
 )

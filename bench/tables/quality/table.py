@@ -219,6 +219,6 @@ TABLE = Table(
         method="Each normal is encoded, stored as the render target stores it, decoded, and compared with itself. JAX "
         "emulates the storage bit for bit; GLSL encodes in a fragment shader into the real target and decodes from it. "
         "Sums are in 64 bits; an angle is atan2 of cross and dot product. Decodes are not renormalised for the PSNR.",
-        extras=("pictures", "angles", "sphere"),
+        extras=("angles", "sphere"),
     ),
 )

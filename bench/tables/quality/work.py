@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ....encodings.codecs.codec import Codec
-from ....reports.charts import charts, pictures
+from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
+from ....reports.tables import text_of
 from ...codecs.names import check_twin, codecs_named, fitting
 from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, leave_out, pick
-from ...output.writing import check_folder, whole_file, without
+from ...output.writing import check_folder, without
 from ..charts import having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from . import measure
+from . import measure, pictures
 from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
 from .table import TABLE, QualityOptions, QualityOutputs
@@ -32,6 +27,9 @@ from .table import TABLE, QualityOptions, QualityOutputs
 BY_ARITHMETIC = 1.05
 # What a short summary leaves out first.
 SUMMARY_DROPS = ("p99", "psnr_db_glsl", "mean")
+# The figures that a summary shows of every back end.
+BY_BACKEND = ("psnr_article_db", "psnr_db")
+AGREED = "dB, the same by JAX and GLSL"
 
 
 def cases(options: QualityOptions) -> list[measure.Case]:
@@ -115,22 +113,27 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     for row in rows:
         groups.setdefault((row["normals"], row["storage"]), []).append(row)
     for (normals, storage), part in groups.items():
-        title = f"{normals}, {storage}: dB by back end; angles in degrees, by {part[0]['backend']}"
-        yield Sheet(title, beside(part), SUMMARY_DROPS)
+        lines = beside(part)
+        said = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
+        title = f"{normals}, {storage}: {said}; angles in degrees, by {part[0]['backend']}"
+        yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage})
 
 
 def beside(rows: Iterable[Row]) -> list[Row]:
-    """One line for each encoding: its back ends beside each other, and the article's figure where it has one."""
+    """One line for each encoding: the article's figure where it has one, and a column for each back end, or one column
+    where all agree in every digit shown."""
     lines: dict[str, Row] = {}
     for row in rows:
         name = row["encoding"] + ("" if row["rounding"] == "nearest" else f" {row['rounding']}")
         line = lines.setdefault(name, {"encoding": name, "bits": row["bits"]})
         if row["normals"] == published.NORMALS and row["storage"] == published.STORAGE:
             line["article_db"] = published.PSNR_DB.get(row["encoding"])
-        line |= {f"{column}_{row['backend']}": row[column] for column in ("psnr_article_db", "psnr_db")}
+        line |= {f"{column}_{row['backend']}": row[column] for column in BY_BACKEND}
         if row["angle_mean_deg"] is not None and "mean" not in line:
             chosen = ("angle_mean_deg", "angle_p99_deg", "angle_max_deg", "effective_bits")
             line |= {column.removeprefix("angle_").removesuffix("_deg"): row[column] for column in chosen}
+    for column in BY_BACKEND:
+        _merge(column, list(lines.values()))
     first = ("encoding", "bits", "article_db")
     found = dict.fromkeys(column for line in lines.values() for column in line)
     order = [c for c in first if c in found] + sorted((c for c in found if c.startswith("psnr")), key=_psnr_order)
@@ -138,75 +141,26 @@ def beside(rows: Iterable[Row]) -> list[Row]:
     return [{column: line.get(column) for column in order} for line in lines.values()]
 
 
+def _merge(column: str, lines: Sequence[Row]) -> None:
+    """One column of all back ends where there are several and they agree in every digit shown."""
+    names = list(dict.fromkeys(name for line in lines for name in line if name.startswith(f"{column}_")))
+    known = all(line.get(name) is not None for line in lines for name in names)
+    if len(names) > 1 and known and all(len({text_of(line[name]) for name in names}) == 1 for line in lines):
+        for line in lines:
+            same = [line.pop(name) for name in names]
+            line[column] = same[0]
+
+
 def _psnr_order(column: str) -> tuple[bool, bool]:
     """The article's measure before the plain one, JAX before GLSL."""
     return "article" not in column, "glsl" in column
 
 
-def _round_trip(case: measure.Case) -> measure.RoundTrip | None:
-    """By the case's back end, or by JAX; None where neither can."""
-    for backend in dict.fromkeys((case.backend, "jax")):
-        with suppress(*measure.UNMEASURABLE):
-            return measure.image_round_trip(replace(case, backend=backend))
-    return None
-
-
-Pictures = dict[tuple[str, Codec], dict[str, np.ndarray]]
-
-
 def _write(done: Measured, _: Tick) -> None:
     if done.outputs.images:
-        chosen = [step.case for step in done.steps]
-        drawn = write_pictures(chosen, done.outputs.images)
-        _write_originals(chosen, done.outputs.images)
-        _write_sheet(drawn, done.outputs.images)
+        pictures.write([step.case for step in done.steps], done.outputs.images)
     if done.outputs.maps:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
-
-
-def write_pictures(chosen: Iterable[measure.Case], folder: Path) -> Pictures:
-    """Four PNG files for each codec on each image set, drawn by GLSL where that was asked for and can be had.
-
-    Returns:
-        the pictures, by normal set and codec.
-    """
-    wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
-    drawn: Pictures = {}
-    for (normals, codec), case in wanted.items():
-        if not case.normal_set.shape:
-            continue
-        trip = _round_trip(case)
-        if not trip:
-            continue
-        four = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
-        for kind, pixels in four.items():
-            _write_png(folder / f"{normals}-{codec.name.replace('/', '-')}-{kind}.png", pixels)
-        drawn[(normals, codec)] = four
-    return drawn
-
-
-def _write_png(path: Path, pixels: np.ndarray) -> None:
-    with whole_file(path) as partial:
-        pictures.write_png(partial, pixels)
-
-
-def _write_originals(chosen: Sequence[measure.Case], folder: Path) -> None:
-    """The normals as they are, of each set that is an image."""
-    for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
-        n, covered = measure.image_of(case.normal_set)
-        _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))
-
-
-def _write_sheet(drawn: Pictures, folder: Path) -> None:
-    """One picture of the article's methods, where they were measured as the article did."""
-    sheet = {
-        codec.encoding.name: four
-        for (normals, codec), four in drawn.items()
-        if (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
-        and codec.encoding.name in published.PICTURED
-    }
-    if len(sheet) == len(published.PICTURED):
-        _write_png(folder / f"{published.NORMALS}-{published.STORAGE}.png", pictures.contact_sheet(sheet))
 
 
 def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
@@ -215,9 +169,13 @@ def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     for at, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
         part = one_backend([row for row in usable if str(row.get("normals")) == normals])
         title = f"Angles on {normals}, by {part[0].get('backend')}"
-        said = "The share of normals over their angle in degrees, on a logarithmic scale, each codec as high as the "
-        said += "others; the best mean on top. The figures are in the tables of what normals lose."
-        yield Drawing(f"angles-{at}", title, said, partial(charts.histogram_chart, part))
+        said = (
+            "The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the tables "
+        )
+        said += "of what normals lose."
+        yield Drawing(
+            f"angles-{at}", title, said, partial(charts.histogram_chart, part), partial(specs.histogram_specs, part)
+        )
 
 
 def _worst(step: Step) -> Any:
@@ -235,5 +193,6 @@ WORK = Work(
     failures=_failures,
     drawings=histograms,
     write=_write,
+    subjects=pictures.subjects,
     worst=_worst,
 )

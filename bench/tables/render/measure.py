@@ -103,6 +103,7 @@ class Drawn:
     normals: np.ndarray | None
     kinds: np.ndarray | None
     display: Display = CLIPPED_ALONE
+    flip: np.ndarray | None = None
 
     @cached_property
     def shown(self) -> np.ndarray:
@@ -180,7 +181,16 @@ class Bench:
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         frames = [replace(frame, display=reference[0].display) for frame in frames]
-        return row | times | _seen(reference, covered) | self._compared(case, frames, reference, covered), frames[0]
+        row |= times | _seen(reference, covered) | self._compared(case, frames, reference, covered)
+        maps = self._flip(frames, reference)
+        if maps:
+            row["flip"] = float(np.mean([np.mean(one) for one in maps]))
+        return row, replace(frames[0], flip=maps[0] if maps else None)
+
+    def _flip(self, frames: list[Drawn], reference: list[Drawn]) -> list[np.ndarray]:
+        """FLIP of each frame, pixel by pixel; nothing where it is not wanted."""
+        pairs = zip(frames, reference, strict=True)
+        return [flip(one.shown, other.shown) for one, other in pairs] if self._with_flip else []
 
     def worst(self, case: Case) -> Worst | None:
         """The normal of a case's first frame that its G-buffer gives back farthest off; None where there is none."""
@@ -196,8 +206,6 @@ class Bench:
         row: Row = {"mse": mse, "psnr_db": psnr_db(mse), "exact": mse == 0}
         row["invalid"] = sum(broken for _, broken in errors)
         row["psnr_covered_db"] = _psnr_of_covered(pairs, covered)
-        if self._with_flip:
-            row["flip"] = float(np.mean([flip(one.shown, other.shown) for one, other in pairs]))
         # Where the G-buffer has a size of its own, its pixels are not the reference's.
         if case.pipeline.has_gbuffer and case.plan.scale == 1 and frames[0].normals is not None:
             has_kind = "kind" in case.plan.layout.components

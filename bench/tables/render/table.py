@@ -156,6 +156,7 @@ TABLE = Table(
     columns=COLUMNS,
     usual=({"encoding": ",".join(COMMON), "repeats": 0},),
     single={"encoding": "octahedral"},
+    files={"images": "images"},
     section=Section(
         title="What the image says",
         short="Image",

@@ -17,7 +17,7 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
-from ....reports.charts import charts, pictures
+from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_device, require_jax
@@ -28,10 +28,11 @@ from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...output.errors import UsageError, by_reason, pick, pick_one
-from ...output.writing import check_folder, whole_file, without
+from ...output.writing import check_folder, without
 from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from .measure import Bench, Case, Drawn, described, in_order, ranked, shown_scene
+from . import pictures
+from .measure import Bench, Case, described, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
@@ -172,7 +173,7 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         shot = step.case
         row, drawn = shot.bench.measure(shot.case)
         if shot.images and drawn:
-            _write_pictures(shot.images, shot.case, drawn, shot.bench.reference(shot.case)[0])
+            pictures.write(shot.images, row, drawn, shot.bench.reference(shot.case)[0])
         tick(step.name)
         yield [row]
 
@@ -225,19 +226,6 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(f"the image: {where}, dB as displayed", shown)
 
 
-def _write_pictures(folder: Path, case: Case, drawn: Drawn, reference: Drawn) -> None:
-    """The first frame, its reference and 16 times their difference."""
-    plan = case.plan
-    words = [case.maker.name, *([] if case.power is None else [f"power{case.power:g}"]), case.pipeline.name]
-    if case.pipeline.has_gbuffer:
-        words += [plan.layout.name, plan.layout.codec.name.replace("/", "-")]
-        words += [f"{plan.light_buffer.name}x{plan.light_targets}"]
-    words += [] if plan.shadows else ["unshadowed"]
-    for kind, pixels in pictures.render_pictures(drawn.shown, reference.shown).items():
-        with whole_file(folder / f"{'-'.join([*words, kind])}.png") as partial:
-            pictures.write_png(partial, pixels)
-
-
 def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     usable = having(rows, "psnr_db", "normal_psnr_db")
     for at, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
@@ -245,7 +233,7 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
         said = "PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The figures "
         said += "are in the table below."
         title = f"The image of {scene} and the normals it was lit by"
-        yield Drawing(f"image-{at}", title, said, partial(charts.image_chart, part))
+        yield Drawing(f"image-{at}", title, said, partial(charts.image_chart, part), partial(specs.image_specs, part))
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
@@ -264,5 +252,6 @@ WORK = Work(
     summary=_summary,
     warnings=_warnings,
     drawings=_drawings,
+    subjects=pictures.subjects,
     worst=_worst,
 )

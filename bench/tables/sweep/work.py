@@ -9,7 +9,7 @@ from typing import Any
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
-from ....reports.charts import charts, plots
+from ....reports.charts import charts, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
 from ...options.counts import MAX_REPEATS, checked_numbers, in_range
@@ -102,7 +102,8 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
         part = [row for row in usable if row.get("objects") == objects]
         said = "A bar for each pipeline, divided by pass: milliseconds a frame, medians. The figures are in the table."
         title = f"What the milliseconds of a frame of {objects} objects go into"
-        yield Drawing(f"passes-{at}", title, said, partial(charts.passes_chart, part))
+        both = (partial(draw, part) for draw in (charts.passes_chart, specs.passes_specs))
+        yield Drawing(f"passes-{at}", title, said, *both)
 
 
 WORK = Work(steps=_steps, measure=_measure, shown=_shown, summary=_summary, write=_write, drawings=_drawings)

@@ -206,10 +206,14 @@ def test_what_does_not_suit_is_left_out_and_named(run):
 def test_pictures_show_what_was_rendered(run, tmp_path):
     """Final, reference and difference; the difference of a coarse codec is not black, the final is no black picture."""
     status, *_ = run(*QUICK, "--pipeline", "hybrid", "--images", str(tmp_path))
-    assert status == 0 and len(list(tmp_path.iterdir())) == 6
+    assert status == 0 and len(list(tmp_path.iterdir())) == 5, "the reference is there once"
     pixels = {
-        kind: np.asarray(Image.open(tmp_path / f"room-hybrid-fp32-xy-rgba8-rgba32fx2-{kind}.png")).astype(int)
-        for kind in ("final", "reference", "difference")
+        kind: np.asarray(Image.open(tmp_path / f"room-hybrid-{name}.png")).astype(int)
+        for kind, name in (
+            ("reference", "reference"),
+            ("final", "fp32-xy-rgba8-rgba32fx2-final"),
+            ("difference", "fp32-xy-rgba8-rgba32fx2-difference"),
+        )
     }
     assert all(image.shape == (72, 96, 3) for image in pixels.values())
     assert 60 < pixels["final"].mean() < 200 and (pixels["final"].max(axis=2) > 8).mean() > 0.99
@@ -309,7 +313,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
     broken[1, 2, 0] = np.nan
     assert image_metrics.squared_error(broken, image) == (1 / 16, 1)
     pytest.importorskip("flip_evaluator")
-    assert image_metrics.flip(broken, image) > 0
+    assert image_metrics.flip(broken, image).mean() > 0
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,67 @@
+"""Pictures of the codes that an answer names: written into a folder, and found there again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ....reports.charts import pictures
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
+from ...output.writing import files_of, whole_file
+from ..table import Row
+from .answer import AGAINST, BEST, CHEAPER, IMAGE, PICTURE, RUNNER_UP
+from .measure import Case, Pictures
+
+PLACES = (BEST, RUNNER_UP, AGAINST, CHEAPER, PICTURE)
+
+
+def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
+    """The image at each power of every code that has a place, and of the exact normals."""
+    placed = {(row["storage"], row["encoding"], row["scene"]) for row in rows if row["place"]}
+    for case in chosen:
+        if (case.codec.storage.name, case.codec.encoding.name, case.maker.name) not in placed:
+            continue
+        for power, (image, exact) in drawing.shown(case).items():
+            scene = _scene(case.maker.name, power)
+            _write(folder / f"{scene}-reference.png", exact)
+            _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
+
+
+def _scene(name: str, power: float) -> str:
+    return f"pick-{name}-power{power:g}"
+
+
+def _write(path: Path, image: np.ndarray) -> None:
+    with whole_file(path) as partial:
+        pictures.write_png(partial, pictures.picture(image))
+
+
+def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
+    """What lies in a folder of the answers: at each power, the highest first, the codes by their places."""
+    there = files_of(folder)
+    storages = list(dict.fromkeys(row.get("storage") for row in rows))
+    found = [row for row in rows if row.get("place")]
+    placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place(row)))
+    powers = {float(name.removeprefix(IMAGE)) for row in placed for name in row if name.startswith(IMAGE)}
+    for scene in dict.fromkeys(str(row.get("scene")) for row in placed):
+        for power in sorted(powers, reverse=True):
+            stem = _scene(scene, power)
+            exact = there.get(f"{stem}-reference.png")
+            codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
+            paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
+            known = [Pictured(key, key.label, partial(_read, path)) for key, path in paths.items() if path]
+            if exact and known:
+                yield Subject(f"the answer on {scene} at power {power:g}", "image", partial(read_png, exact), known)
+
+
+def _place(row: Row) -> int:
+    return min(PLACES.index(word) for word in str(row["place"]).split(", ") if word in PLACES)
+
+
+def _read(path: Path) -> ImagePixels | None:
+    image = read_png(path)
+    return None if image is None else ImagePixels(image, None)

@@ -1,0 +1,160 @@
+"""Pictures of what codecs make of a set that is an image: drawn into a folder, and found there again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.words import words
+from ....reports.charts import pictures
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.pixels import NormalPixels, Pictured, Subject, angle_bytes, read_png
+from ....reports.page.verdict import LEADING, is_count, is_number
+from ...metrics import published
+from ...output.arrays import DamagedError, read_npz
+from ...output.writing import files_of, whole_file
+from ..table import Row
+from . import measure
+
+KINDS = ("encoded", "decoded", "error", "power")
+PIXELS = ("angle", "codes", "bits")
+Drawn = dict[tuple[str, Codec], dict[str, np.ndarray]]
+
+
+def stem(normals: str, key: CodecKey) -> str:
+    """What the files of a codec on a set are called, without what they show."""
+    return "-".join([normals, key.encoding, key.storage, *([] if key.rounding == "nearest" else [key.rounding])])
+
+
+def write(chosen: Sequence[measure.Case], folder: Path) -> None:
+    """The pictures of each codec, the set's own, and one sheet of the article's methods."""
+    drawn = _write_codecs(chosen, folder)
+    _write_originals(chosen, folder)
+    _write_sheet(drawn, folder)
+
+
+def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
+    """Four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can be
+    had."""
+    wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
+    drawn: Drawn = {}
+    for (normals, codec), case in wanted.items():
+        if not case.normal_set.shape:
+            continue
+        trip = _round_trip(case)
+        if not trip:
+            continue
+        name = stem(normals, CodecKey(codec.encoding.name, codec.storage.name, codec.rounding))
+        four = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
+        for kind, pixels in four.items():
+            _write_png(folder / f"{name}-{kind}.png", pixels)
+        _write_pixels(folder / f"{name}.npz", codec, trip)
+        drawn[(normals, codec)] = four
+    return drawn
+
+
+def _round_trip(case: measure.Case) -> measure.RoundTrip | None:
+    """By the case's back end, or by JAX; None where neither can."""
+    for backend in dict.fromkeys((case.backend, "jax")):
+        with suppress(*measure.UNMEASURABLE):
+            return measure.image_round_trip(replace(case, backend=backend))
+    return None
+
+
+def _write_png(path: Path, pixels: np.ndarray) -> None:
+    with whole_file(path) as partial:
+        pictures.write_png(partial, pixels)
+
+
+def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
+    """The angle and the stored bits of every pixel."""
+    angle = angle_bytes(_angles(trip), trip.covered)
+    codes, bits = _codes(codec, trip.encoded)
+    with whole_file(path) as partial, partial.open("wb") as file:
+        np.savez_compressed(file, angle=angle, codes=codes, bits=np.array(bits, np.uint8))
+
+
+def _angles(trip: measure.RoundTrip) -> np.ndarray:
+    """Degrees between normals and decodes, (height, width)."""
+    n, decoded = trip.normals.astype(np.float64), trip.decoded.astype(np.float64)
+    with np.errstate(invalid="ignore"):
+        across = np.linalg.norm(np.cross(n, decoded - n), axis=-1)
+        return np.degrees(np.arctan2(across, np.sum(n * decoded, axis=-1)))
+
+
+def _codes(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
+    """The stored bits of every component, uint32 of shape (height, width, components), and how many each has. A sign
+    bit is 1 for +1."""
+    stored = codec.encoding.components
+    planes = [words(encoded[..., i], codec.storage, i) for i in range(stored)]
+    planes += [(encoded[..., stored + i] > 0).astype(np.uint32) for i in range(codec.encoding.sign_bits)]
+    return np.stack(planes, axis=-1), [*codec.storage.bits[:stored], *[1] * codec.encoding.sign_bits]
+
+
+def _write_originals(chosen: Sequence[measure.Case], folder: Path) -> None:
+    """The normals as they are, of each set that is an image."""
+    for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
+        n, covered = measure.image_of(case.normal_set)
+        _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))
+
+
+def _write_sheet(drawn: Drawn, folder: Path) -> None:
+    """One picture of the article's methods, where they were measured as the article did."""
+    sheet = {
+        codec.encoding.name: four
+        for (normals, codec), four in drawn.items()
+        if (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
+        and codec.encoding.name in published.PICTURED
+    }
+    if len(sheet) == len(published.PICTURED):
+        _write_png(folder / f"{published.NORMALS}-{published.STORAGE}.png", pictures.contact_sheet(sheet))
+
+
+def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
+    """What lies in a folder of the codecs of rows. A name is looked up, so that none leads out of the folder."""
+    there = files_of(folder)
+    for normals in dict.fromkeys(str(row.get("normals")) for row in rows):
+        original = there.get(f"{normals}-normals.png")
+        part = [row for row in rows if str(row.get("normals")) == normals]
+        ranked = in_order(part).items()
+        found = [p for key, rank in ranked if (p := _pictured(there, stem(normals, key), key, rank))]
+        if original and found:
+            yield Subject(f"the normals of {normals}", "normals", partial(read_png, original), found)
+
+
+def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:
+    arrays, decoded = there.get(f"{name}.npz"), there.get(f"{name}-decoded.png")
+    return Pictured(key, key.label, partial(_read, arrays, decoded), rank) if arrays and decoded else None
+
+
+def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
+    """The codecs of rows of one set, the best of the fewest bits first, with their ranks: the best of each number of
+    bits, the second best, the article's, the others."""
+    figures = {CodecKey.of(row): row for row in rows if is_count(row.get("bits")) and is_number(row.get(LEADING))}
+    ranks: dict[CodecKey, int] = {}
+    for key, row in sorted(figures.items(), key=lambda item: (item[1]["bits"], -item[1][LEADING])):
+        better = sum(figures[other]["bits"] == row["bits"] for other in ranks)
+        ranks[key] = better if better < 2 else 2 if key in ARTICLES else 3
+    return ranks
+
+
+ARTICLES = {CodecKey(name, published.STORAGE, "nearest") for name in published.PICTURED}
+
+
+def _read(arrays: Path, decoded: Path) -> NormalPixels | None:
+    """The files of a codec; None where they are damaged or do not fit together."""
+    try:
+        angle, codes, bits = read_npz(arrays, PIXELS)
+    except (OSError, DamagedError):
+        return None
+    pixels = read_png(decoded)
+    is_right = angle.dtype == np.uint8 and codes.dtype == np.uint32 and bits.dtype == np.uint8
+    shapes = pixels is not None and pixels.shape[:2] == angle.shape == codes.shape[:2] and codes.shape[2:] == bits.shape
+    known = is_right and shapes and len(bits) and max(bits) <= 32
+    return NormalPixels(angle, codes, tuple(map(int, bits)), pixels) if known and pixels is not None else None

@@ -1,0 +1,105 @@
+"""Pictures of rendered images: written into a folder, and found there again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ....reports.charts import pictures
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
+from ....reports.page.verdict import LEADING, is_number
+from ...output.writing import files_of, whole_file
+from ..table import Row
+from .measure import Drawn, shown_scene
+
+# What a row's file names say of its scene, and of what is in its G-buffer.
+SCENE = ("scene", "power", "pipeline", "shadow")
+CONTENT = ("layout", "encoding", "storage", "rounding", "light_buffer", "light_targets")
+REFERENCE = "reference"
+
+
+def scene_stem(row: Row) -> str:
+    """What the files of a row's reference are called, without what they show."""
+    power = [] if row["power"] is None else [f"power{row['power']:g}"]
+    return "-".join([row["scene"], *power, row["pipeline"], *([] if row["shadow"] else ["unshadowed"])])
+
+
+def stem(row: Row) -> str:
+    """What the files of a row are called, without what they show."""
+    words = [row["scene"], *([] if row["power"] is None else [f"power{row['power']:g}"]), row["pipeline"]]
+    if row["layout"] is not None:
+        words += [row["layout"], row["encoding"], row["storage"]]
+        words += [] if row["rounding"] == "nearest" else [row["rounding"]]
+        words += [f"{row['light_buffer']}x{row['light_targets']}"]
+    return "-".join([*words, *([] if row["shadow"] else ["unshadowed"])])
+
+
+def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
+    """The first frame, how far it is off, and its reference once for all."""
+    made = {f"{stem(row)}-{kind}": pixels for kind, pixels in _made(drawn, reference).items()}
+    exact = f"{scene_stem(row)}-{REFERENCE}"
+    if not (folder / f"{exact}.png").exists():
+        made[exact] = pictures.picture(reference.shown)
+    for name, pixels in made.items():
+        with whole_file(folder / f"{name}.png") as partial:
+            pictures.write_png(partial, pixels)
+
+
+def _made(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
+    final, apart = pictures.picture(drawn.shown), pictures.difference(drawn.shown, reference.shown)
+    flip = {} if drawn.flip is None else {"flip": pictures.grey(drawn.flip)}
+    return {"final": final, "difference": apart, **flip}
+
+
+def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
+    """What lies in a folder of rows. A name is looked up, so that none leads out of the folder."""
+    there = files_of(folder)
+    groups: dict[str, list[Row]] = {}
+    for row in rows:
+        if all(name in row for name in (*SCENE, *CONTENT)):
+            groups.setdefault(scene_stem(row), []).append(row)
+    for name, part in groups.items():
+        original = there.get(f"{name}-{REFERENCE}.png")
+        found = [one for row, rank in in_order(part) if (one := _pictured(there, row, part, rank))]
+        if original and found:
+            yield Subject(_title(part[0], rows), "image", partial(read_png, original), found)
+
+
+def _title(row: Row, rows: Sequence[Row]) -> str:
+    pipeline = f" by {row['pipeline']}" if len({one.get("pipeline") for one in rows}) > 1 else ""
+    return f"the image of {shown_scene(row)}{pipeline}" + ("" if row["shadow"] else " without shadows")
+
+
+def _pictured(there: Mapping[str, Path], row: Row, part: Sequence[Row], rank: int) -> Pictured | None:
+    final = there.get(f"{stem(row)}-final.png")
+    flip = there.get(f"{stem(row)}-flip.png")
+    return Pictured(CodecKey.of(row), _label(row, part), partial(_read, final, flip), rank) if final else None
+
+
+def _label(row: Row, part: Sequence[Row]) -> str:
+    """The codec, and what else tells the row apart."""
+    if row["layout"] is None:
+        return str(row["pipeline"])
+    others = [name for name in ("layout", "light_buffer", "light_targets") if len({one[name] for one in part}) > 1]
+    return " ".join([CodecKey.of(row).label, *(str(row[name]) for name in others)])
+
+
+def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
+    """Rows of one scene, the best of the fewest bits first, each with its place among those of as many bits."""
+
+    def bits_and_figure(row: Row) -> tuple[int, float]:
+        return row.get("normal_bits") or 0, -row[LEADING] if is_number(row.get(LEADING)) else 0.0
+
+    ordered = sorted(rows, key=bits_and_figure)
+    bits = [row.get("normal_bits") for row in ordered]
+    return [(row, bits[:at].count(bits[at])) for at, row in enumerate(ordered)]
+
+
+def _read(final: Path, flip: Path | None) -> ImagePixels | None:
+    """The files of a row; None where they are damaged."""
+    image, apart = read_png(final), read_png(flip) if flip else None
+    return None if image is None else ImagePixels(image, None if apart is None else apart[..., 0])

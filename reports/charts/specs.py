@@ -1,0 +1,272 @@
+"""Interactive charts as Vega-Lite specifications; `charts.py`, `pareto.py` and `plots.py` draw the same as files.
+
+A row of data that has a codec names it in `codec`, as tables and pictures do. Every specification has a parameter
+`picked`, the codec that the page highlights, empty for none. Colours are page.css's, so that they follow its theme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from .charts import LEAST_DEG, Row, bins, codec_label, frame_label, frame_total, passes_of, steps
+from .pareto import Error, Panel, Point, pareto_front
+from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
+
+PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
+SHAPES = ["circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "triangle-left", "triangle-right"]
+# Wider than the line that is seen, to be hit by a pointer.
+HIDDEN = {"strokeWidth": 9, "opacity": 0.001}
+PICKED = {"name": "picked", "value": ""}
+# An encoding's name alone stands for each of its codecs.
+IS_PICKED = "(datum.codec == picked || indexof(picked, ' ') < 0 && indexof(datum.codec, picked + ' ') == 0)"
+IS_LIT = f"picked == '' || {IS_PICKED}"
+INK, MUTED, LINE, PAPER = (f"var(--{name})" for name in ("ink", "muted", "line", "paper"))
+CONFIG = {
+    "background": None,
+    "font": "system-ui, sans-serif",
+    "view": {"stroke": None},
+    "axis": {"labelColor": INK, "titleColor": MUTED, "gridColor": LINE, "domainColor": MUTED, "tickColor": MUTED}
+    | {"titleFontWeight": "normal", "labelLimit": 260, "labelFontSize": 12, "titleFontSize": 12},
+    "legend": {"labelColor": INK, "titleColor": MUTED, "titleFontWeight": "normal", "orient": "top"}
+    | {"labelFontSize": 12, "titleFontSize": 12, "symbolOpacity": 1, "symbolStrokeWidth": 2},
+}
+Spec = dict[str, Any]
+
+
+def _spec(rows: Sequence[Row], description: str, **parts: Any) -> Spec:
+    common = {"description": description, "width": "container", "config": CONFIG}
+    params = [PICKED, *parts.pop("params", ())]
+    return common | {"data": {"values": list(rows)}, "params": params} | parts
+
+
+def _if_lit(lit: float, other: float) -> Spec:
+    """A value for what is highlighted, and one for the rest; where nothing is, everything is."""
+    return {"condition": {"test": IS_LIT, "value": lit}, "value": other}
+
+
+def _by_bits(rows: Sequence[Row]) -> Spec:
+    """Colour by the number of bits."""
+    all_bits = sorted({row["bits"] for row in rows})
+    scale = {"domain": all_bits, "range": [PALETTE[at % len(PALETTE)] for at in range(len(all_bits))]}
+    return {"field": "bits", "type": "nominal", "scale": scale, "title": "bits"}
+
+
+def _shape_by_bits(rows: Sequence[Row]) -> Spec:
+    """A shape as well, for those who do not see all colours."""
+    scale = {"domain": sorted({row["bits"] for row in rows}), "range": SHAPES}
+    return {"field": "bits", "type": "nominal", "scale": scale, "title": "bits"}
+
+
+def _line(**mark: Any) -> Spec:
+    return {"mark": {"type": "line", "clip": True, **mark}}
+
+
+def _tooltip(**fields: str) -> list[Spec]:
+    return [{"field": name, "title": title} for name, title in fields.items()]
+
+
+def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
+    """How often which angle: a line for each codec.
+
+    Args:
+        rows: as `charts.histogram_chart` takes them.
+    """
+    points = [point for row in rows for point in _outline(row)]
+    choices = ["all", *map(str, sorted({row["bits"] for row in rows}))]
+    bits = {"name": "bits", "value": "all", "bind": {"input": "select", "options": choices, "name": "Bits shown "}}
+    x = {
+        "field": "x",
+        "type": "quantitative",
+        "scale": {"type": "log", "domain": [LEAST_DEG, 180], "nice": False},
+        "title": "angle, degrees",
+    }
+    y = {"field": "y", "type": "quantitative", "title": "% of normals in an octave of angles"}
+    encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "codec"}, "color": _by_bits(points)}
+    tooltip = _tooltip(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
+    layers = [
+        _line(interpolate="step-after") | {"encoding": {"opacity": _if_lit(1, 0.12), "strokeWidth": _if_lit(1.6, 1)}},
+        _line(interpolate="step-after", **HIDDEN) | {"encoding": {"tooltip": tooltip}},
+    ]
+    transform = [{"filter": "bits == 'all' || toString(datum.bits) == bits"}]
+    said = "The share of normals over their angle in degrees, a line for each codec."
+    parts = {"params": [bits], "transform": transform, "encoding": encoding, "layer": layers, "height": 340}
+    return [_spec(points, said, **parts)]
+
+
+def _outline(row: Row) -> list[Row]:
+    """A codec's histogram as the points of a line of steps."""
+    edges, heights = steps(bins(row["angle_counts"]))
+    total = sum(count for *_, count in bins(row["angle_counts"]))
+    figures = {"mean": _rounded(row["angle_mean_deg"]), "largest": _rounded(row.get("angle_max_deg"))}
+    about = {"codec": codec_label(row), "bits": row["bits"], **figures}
+    return [
+        {"x": _rounded(edge), "y": _rounded(100 * height / total), **about}
+        for edge, height in zip(edges, [*heights, 0.0], strict=True)
+    ]
+
+
+def _rounded(value: Any) -> Any:
+    return float(f"{value:.4g}") if isinstance(value, int | float) else None
+
+
+def image_specs(rows: Sequence[Row]) -> list[Spec]:
+    """The final image beside the normals it was lit by, a line for each codec, the best image on top.
+
+    Args:
+        rows: as `charts.image_chart` takes them.
+    """
+    found = [
+        {"codec": codec_label(row), "image": _rounded(row["psnr_db"]), "normals": _rounded(row["normal_psnr_db"])}
+        for row in sorted(rows, key=lambda row: -row["psnr_db"])
+    ]
+    y = {"field": "codec", "type": "nominal", "sort": list(dict.fromkeys(row["codec"] for row in found)), "title": None}
+    x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False}}
+    tooltip = _tooltip(codec="codec", image="the image, dB", normals="the normals, dB")
+    lit = {"opacity": _if_lit(1, 0.2)}
+
+    def dots(name: str, shape: str, colour: str) -> Spec:
+        mark = {"type": "point", "filled": True, "size": 80, "shape": shape}
+        at = x | {"field": name}
+        scale = {"domain": ["the image", "the normals"], "range": [PALETTE[0], PALETTE[1]]}
+        return {"mark": mark, "encoding": {"x": at, "color": {"datum": colour, "scale": scale, "title": None}, **lit}}
+
+    rule: Spec = {"mark": {"type": "rule", "color": "var(--faint)"}}
+    rule["encoding"] = {"x": x | {"field": "image"}, "x2": {"field": "normals"}, **lit}
+    layers = [rule, dots("normals", "square", "the normals"), dots("image", "circle", "the image")]
+    encoding = {"y": y, "tooltip": tooltip}
+    said = "PSNR of the image and of the normals in the G-buffer, a line for each codec."
+    return [_spec(found, said, encoding=encoding, layer=layers, height=22 * len(y["sort"]))]
+
+
+def pareto_specs(panels: Sequence[Panel], error: Error) -> list[Spec]:
+    """Cost against error, a chart for each panel: what no other codec beats is named and joined by steps."""
+    return [_pareto(panel, error) for panel in panels]
+
+
+def _pareto(panel: Panel, error: Error) -> Spec:
+    front = pareto_front(panel.points, error)
+    rows = [_point(point, point in front) for point in [*front, *(p for p in panel.points if p not in front)]]
+    log = {} if error.more_is_better else {"type": "log"}
+    x = {"field": "cost", "type": "quantitative", "title": panel.unit}
+    y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, **log}}
+    tooltip = _tooltip(codec="codec", bits="bits", cost=panel.unit, error=error.label)
+    lit = _if_lit(1, 0.15)
+    best = [{"filter": "datum.best"}]
+    line = {"type": "line", "interpolate": "step-after", "strokeWidth": 1, "opacity": 0.5}
+    named = [{"filter": "datum.best && picked == '' || picked != '' && " + IS_PICKED}]
+    colour = {"condition": {"test": "datum.best", **_by_bits(rows)}, "value": "var(--faint)"}
+    text = {"type": "text", "align": "left", "dx": 6, "dy": -5, "fontSize": 11, "color": INK}
+    layers = [
+        {"transform": best, "mark": line, "encoding": {"color": _by_bits(rows)}},
+        {
+            "mark": {"type": "point", "filled": True, "size": 55},
+            "encoding": {"color": colour, "shape": _shape_by_bits(rows), "opacity": lit, "tooltip": tooltip},
+        },
+        {"transform": named, "mark": text, "encoding": {"text": {"field": "name"}}},
+    ]
+    title = {"text": panel.title, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
+    parts = {"encoding": {"x": x, "y": y}, "layer": layers, "height": 380, "title": title}
+    return _spec(rows, f"{panel.title}: each codec's {error.label} over {panel.unit}.", **parts)
+
+
+def _point(point: Point, is_best: bool) -> Row:
+    name = point.name + "*" * point.is_starred
+    about = {"codec": point.codec, "name": name, "cost": point.cost, "error": _rounded(point.error)}
+    return about | {"bits": point.bits, "best": is_best}
+
+
+def passes_specs(rows: Sequence[Row]) -> list[Spec]:
+    """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
+
+    Args:
+        rows: as `charts.passes_chart` takes them.
+    """
+    found = [
+        {"pipeline": row["pipeline"], "pass": name, "ms": _rounded(milliseconds), "at": at}
+        for row in rows
+        for at, (name, milliseconds) in enumerate(passes_of(row).items())
+    ]
+    totals = [{"pipeline": row["pipeline"], "said": frame_label(row), "ms": frame_total(row)} for row in rows]
+    y = {"field": "pipeline", "type": "nominal", "sort": None, "title": None}
+    # With room for what stands at the end of the longest bar.
+    scale = {"domainMax": 1.3 * max(total["ms"] for total in totals), "nice": False}
+    x = {"field": "ms", "type": "quantitative", "scale": scale}
+    title = f"milliseconds, the medians of a frame's passes, {rows[0].get('clock')}"
+    colour = {"field": "pass", "type": "nominal", "scale": {"range": PALETTE}, "sort": None, "title": None}
+    bars = {
+        "mark": "bar",
+        "encoding": {"x": x | {"stack": True, "title": title}, "y": y, "color": colour, "order": {"field": "at"}},
+    }
+    bars["encoding"]["tooltip"] = [*_tooltip(pipeline="pipeline", ms="ms"), {"field": "pass"}]
+    text = {"type": "text", "align": "left", "dx": 4, "color": INK}
+    labels = {"data": {"values": totals}, "mark": text, "encoding": {"x": x, "y": y, "text": {"field": "said"}}}
+    said = "Milliseconds of a frame by pass, a bar for each pipeline."
+    return [_spec(found, said, layer=[bars, labels], height=34 * len(rows))]
+
+
+def depth_specs(rows: Sequence[Row]) -> list[Spec]:
+    """The worst position error over the distance, a line for each depth code in its storage, a chart for each range.
+
+    Args:
+        rows: as `plots.depth_figure` takes them.
+    """
+    ranges = dict.fromkeys((row["near"], row["far"]) for row in rows)
+    return [_depth([row for row in rows if (row["near"], row["far"]) == one], *one) for one in ranges]
+
+
+def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
+    columns = ("depth", "storage", "rebuilt")
+    found = [
+        {name: row[name] for name in columns} | {"x": row["distance"], "y": _rounded(row["error_max"])}
+        for row in sorted(rows, key=lambda row: row["distance"])
+        if row["error_max"] > 0
+    ]
+    scale = {"type": "log", "domain": [near, far], "nice": False}
+    x = {"field": "x", "type": "quantitative", "scale": scale, "title": "distance", "axis": {"format": "~g"}}
+    y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "title": "worst position error, same unit"}
+    detail = [{"field": name} for name in columns]
+    encoding = {"x": x, "y": y | {"axis": {"format": "~e"}}, "color": _named("depth"), "strokeDash": _named("storage")}
+    encoding |= {"detail": detail, "tooltip": [*detail, *_tooltip(x="distance", y="error")]}
+    said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
+    title = {"text": f"near {near:g}, far {far:g}", "color": MUTED, "fontWeight": "normal", "anchor": "start"}
+    return _spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
+
+
+def _named(column: str) -> Spec:
+    """One of several names, by its colour or its dashes."""
+    scale = {"range": PALETTE} if column != "storage" else {}
+    return {"field": column, "type": "nominal", "sort": None, "legend": {"columns": 4}, "scale": scale}
+
+
+def lights_specs(rows: Sequence[Row]) -> list[Spec]:
+    """What is lost over the number of lights, a line for each light buffer: of equal lights, and of coloured ones.
+
+    Args:
+        rows: as `plots.lights_figure` takes them.
+    """
+    return [_lights(title, lines) for title, lines in (equal_lines(rows), random_lines(rows)) if lines]
+
+
+def _lights(title: str, lines: Lines) -> Spec:
+    found = [
+        {"light_buffer": name, "x": count, "y": max(_rounded(error), LEAST_ERROR), "bound": _rounded(bound) or None}
+        for name, line in lines.items()
+        for count, error, bound in sorted(line)
+    ]
+    x = {"field": "x", "type": "quantitative", "scale": {"type": "log", "base": 2}, "title": "lights"}
+    y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "axis": {"format": "~e"}}
+    y["title"] = "error in light, by the model"
+    encoding = {"x": x, "color": _named("light_buffer")}
+    tooltip = _tooltip(light_buffer="light buffer", x="lights", y="error", bound="the most it can be")
+    layers = [
+        {"mark": {"type": "line", "strokeWidth": 1.8, "point": True}, "encoding": {"y": y, "tooltip": tooltip}},
+        {
+            "transform": [{"filter": "isValid(datum.bound)"}],
+            "mark": {"type": "line", "strokeDash": [2, 3], "opacity": 0.6},
+            "encoding": {"y": y | {"field": "bound"}},
+        },
+    ]
+    head = {"text": title, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
+    said = f"Error over the number of lights: {title}. Dotted: the most it can be. Errors below 1e-6 are drawn at 1e-6."
+    return _spec(found, said, encoding=encoding, layer=layers, height=380, title=head)

@@ -1,0 +1,97 @@
+"""Pixels that a page can show: what is kept of them in a run's files, and how angles become bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from .codec_key import CodecKey
+
+MAX_PIXELS = 2**24
+# An angle is kept as a byte: 1 is 2^LEAST_LOG2 degrees, each further step an eighth of an octave; 0 is the background.
+LEAST_LOG2, STEPS_PER_OCTAVE = -20, 8
+
+
+def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
+    """Angles as bytes, uint8 of the same shape: within 4.5 % of the angle; NaN is as far as can be.
+
+    Args:
+        degrees: any shape.
+        covered: bool of the same shape; elsewhere is background.
+    """
+    known = np.maximum(np.nan_to_num(degrees, nan=180.0), 2.0**LEAST_LOG2)
+    steps = np.rint((np.log2(known) - LEAST_LOG2) * STEPS_PER_OCTAVE) + 1
+    return np.where(covered, np.clip(steps, 1, 255), 0).astype(np.uint8)
+
+
+@dataclass(frozen=True)
+class NormalPixels:
+    """What a codec makes of an image of normals.
+
+    Attributes:
+        angle: `angle_bytes` of shape (height, width).
+        codes: the stored bits, uint32 of shape (height, width, components).
+        bits: of each component.
+        decoded: [-1, 1] as [0, 255], black on the background, uint8 of shape (height, width, 3).
+    """
+
+    angle: np.ndarray
+    codes: np.ndarray
+    bits: tuple[int, ...]
+    decoded: np.ndarray
+
+
+@dataclass(frozen=True)
+class ImagePixels:
+    """A rendered image as displayed, uint8 of shape (height, width, 3), and FLIP from 0 to 255, (height, width)."""
+
+    final: np.ndarray
+    flip: np.ndarray | None
+
+
+@dataclass(frozen=True)
+class Pictured:
+    """The pixels of a codec.
+
+    Attributes:
+        key: which codec.
+        label: what a reader calls it.
+        load: gives its pixels; None where its files are damaged.
+        rank: those of a lower rank are shown where there is no room for all.
+    """
+
+    key: CodecKey
+    label: str
+    load: Callable[[], NormalPixels | ImagePixels | None]
+    rank: int = 0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What several codecs were tried on.
+
+    Attributes:
+        title: what a reader calls it.
+        of: "normals" or "image".
+        original: the exact normals, or the image in 32-bit floats: uint8 of shape (height, width, 3); None where its
+            file is damaged.
+        codecs: whose pixels there are, the best of the fewest bits first.
+    """
+
+    title: str
+    of: str
+    original: Callable[[], np.ndarray | None]
+    codecs: Sequence[Pictured]
+
+
+def read_png(path: Path) -> np.ndarray | None:
+    """The pixels of a file, uint8 of shape (height, width, 3); None where it is damaged or larger than a page shows."""
+    try:
+        with Image.open(path, formats=["PNG"]) as image:
+            return None if image.width * image.height > MAX_PIXELS else np.asarray(image.convert("RGB"))
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None

@@ -1,0 +1,69 @@
+"use strict";
+
+// Charts by Vega-Lite: packed, unpacked when the first one comes into view. What they say is read without `eval`.
+async function unpacked(id) {
+  const bytes = Uint8Array.from(atob(document.querySelector(id).textContent), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+}
+
+const charts = { views: [] };
+
+function library() {
+  charts.library ||= unpacked("#chart-library").then((text) => {
+    document.head.append(element("script", {}, text));
+  });
+  return charts.library;
+}
+
+function specs() {
+  charts.specs ||= unpacked("#chart-specs").then(JSON.parse);
+  return charts.specs;
+}
+
+// Canvas, of which PNG files are made, knows no variables of CSS.
+function withColours(spec) {
+  const style = getComputedStyle(document.documentElement), probe = document.body.appendChild(document.createElement("i"));
+  const text = JSON.stringify(spec).replace(/var\((--[\w-]+)\)/g, (_, name) => {
+    probe.style.color = style.getPropertyValue(name);
+    return getComputedStyle(probe).color;
+  });
+  const paper = (probe.style.color = style.getPropertyValue("--paper"), getComputedStyle(probe).color);
+  probe.remove();
+  return { ...JSON.parse(text), background: paper };
+}
+
+const OPTIONS = { ast: true, actions: false, renderer: "svg", tooltip: { theme: "page" } };
+
+async function draw(figure) {
+  const [all] = await Promise.all([specs(), library()]);
+  const plots = Array.from(figure.querySelectorAll(".plot"));
+  for (const [at, spec] of all[figure.dataset.chart].entries()) {
+    const { view } = await vegaEmbed(plots[at], spec, OPTIONS);
+    charts.views.push(view);
+    if (picked.name) view.signal("picked", picked.name).runAsync();
+    view.addEventListener("click", (_, item) => item?.datum?.codec && picked.pick(item.datum.codec));
+    const title = element("span", { class: "visually-hidden" }, `: ${spec.title?.text || spec.description}`);
+    const button = element("button", { type: "button", "data-png": "" }, "Save as PNG", title);
+    button.addEventListener("click", () => png(spec, plots[at].clientWidth, figure.dataset.chart));
+    figure.querySelector(".tools").append(button);
+  }
+}
+
+async function png(spec, width, name) {
+  const made = await vegaEmbed(document.createElement("div"), { ...withColours(spec), width }, { ...OPTIONS, renderer: "canvas" });
+  save(`${name}.png`, await made.view.toImageURL("png", 2));
+  made.finalize();
+}
+
+picked.listeners.push((name) => {
+  for (const view of charts.views) view.signal("picked", name).runAsync();
+});
+
+const coming = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    if (!isIntersecting) continue;
+    coming.unobserve(target);
+    draw(target);
+  }
+}, { rootMargin: "400px" });
+for (const figure of document.querySelectorAll("figure[data-chart]")) coming.observe(figure);

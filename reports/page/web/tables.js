@@ -1,0 +1,218 @@
+"use strict";
+
+// The codec that is highlighted everywhere: tables, charts and pictures. Its name is "encoding storage", and a rounding
+// that is not the nearest.
+const picked = {
+  name: "",
+  listeners: [],
+  pick(name) {
+    this.name = name === this.name ? "" : name;
+    for (const listener of this.listeners) listener(this.name);
+  },
+};
+
+function element(tag, attributes, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+// Tables: sorted by a button in each header, filtered by words that all must occur.
+function cellsOf(row) {
+  return Array.from(row.children);
+}
+
+function valueOf(cell) {
+  return cell.dataset.v ?? cell.textContent;
+}
+
+function compared(a, b, numeric, direction) {
+  // What is empty stays last, whichever way.
+  if (!a || !b) return !a - !b;
+  const order = numeric ? number(a) - number(b) : a.localeCompare(b, "en", { numeric: true });
+  return direction * (order || 0);
+}
+
+function number(text) {
+  return Number(text.replace("inf", "Infinity"));
+}
+
+// The first click puts the best on top.
+function sortBy(header) {
+  const table = header.closest("table"), body = table.tBodies[0];
+  const index = cellsOf(header.parentNode).indexOf(header), numeric = header.classList.contains("n");
+  const first = header.dataset.better === "more" ? "descending" : "ascending";
+  const second = first === "ascending" ? "descending" : "ascending";
+  const order = header.getAttribute("aria-sort") === first ? second : first;
+  for (const other of cellsOf(header.parentNode)) other.setAttribute("aria-sort", "none");
+  header.setAttribute("aria-sort", order);
+  const value = (row) => valueOf(row.children[index]);
+  const rows = Array.from(body.rows);
+  rows.sort((a, b) => compared(value(a), value(b), numeric, order === "ascending" ? 1 : -1));
+  body.append(...rows);
+}
+
+function filter(sheet) {
+  const words = sheet.querySelector("[data-filter]").value.toLowerCase().split(/\s+/).filter(Boolean);
+  const rows = Array.from(sheet.querySelector("tbody").rows);
+  for (const row of rows) {
+    const text = cellsOf(row).map((cell) => cell.textContent.toLowerCase()).join(" ");
+    row.hidden = !words.every((word) => text.includes(word));
+  }
+  const left = rows.filter((row) => !row.hidden).length;
+  sheet.querySelector("[data-count]").textContent = `${left} of ${rows.length} rows`;
+}
+
+// What is shown of a table: titles and rows, as filtered and sorted.
+function shownOf(table, read) {
+  const titles = cellsOf(table.tHead.rows[0]).map((cell) => cell.textContent.trim());
+  const rows = Array.from(table.tBodies[0].rows).filter((row) => !row.hidden);
+  return [titles, ...rows.map((row) => cellsOf(row).map(read))];
+}
+
+function asMarkdown(table) {
+  const [titles, ...rows] = shownOf(table, (cell) => cell.textContent.trim());
+  const line = (texts) => `| ${texts.map((text) => text.replace(/([|\\`*_<>[\]])/g, "\\$1")).join(" | ")} |`;
+  const rule = cellsOf(table.tHead.rows[0]).map((cell) => (cell.classList.contains("n") ? "---:" : "---"));
+  return [line(titles), `| ${rule.join(" | ")} |`, ...rows.map(line)].join("\n") + "\n";
+}
+
+function asCsv(table) {
+  // A spreadsheet shows text behind an apostrophe, and computes nothing.
+  const safe = (text) => (/^[=+\-@\t\r]/.test(text) && !/^-?[\d.]+(e[+-]?\d+)?$/i.test(text) ? `'${text}` : text);
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const line = (texts) => texts.map((text) => quoted(safe(text))).join(",");
+  return shownOf(table, (cell) => valueOf(cell).trim()).map(line).join("\n") + "\n";
+}
+
+async function copy(text, button) {
+  const before = button.textContent;
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = "Copied";
+  } catch (error) {
+    button.textContent = `Not copied: ${error.message}`;
+  }
+  setTimeout(() => (button.textContent = before), 1500);
+}
+
+function save(name, href) {
+  const link = element("a", { href, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+}
+
+function saveText(name, text) {
+  const href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  save(name, href);
+  setTimeout(() => URL.revokeObjectURL(href), 1000);
+}
+
+function addTools(sheet) {
+  const table = sheet.querySelector("table"), name = table.caption.textContent.trim();
+  const file = `${name.replace(/[^\w.-]+/g, "-").slice(0, 60)}.csv`, of = element("span", { class: "visually-hidden" }, `: ${name}`);
+  const markdown = element("button", { type: "button", "data-copy": "markdown" }, "Copy as Markdown", of);
+  const csv = element("button", { type: "button", "data-copy": "csv" }, "Save as CSV", of.cloneNode(true));
+  markdown.addEventListener("click", () => copy(asMarkdown(table), markdown));
+  csv.addEventListener("click", () => saveText(file, asCsv(table)));
+  let tools = sheet.querySelector(".tools");
+  if (!tools) sheet.prepend((tools = element("p", { class: "tools" })));
+  tools.append(markdown, csv);
+}
+
+// Rows of a codec are chosen by their first cell.
+function addPick(row) {
+  const cell = row.cells[0];
+  const button = element("button", { type: "button", class: "pick", "aria-pressed": "false" }, ...cell.childNodes);
+  button.addEventListener("click", () => picked.pick(row.dataset.codec));
+  cell.append(button);
+}
+
+// Names of codecs, or of encodings, which stand for each of their codecs.
+function agrees(one, other) {
+  const covers = (encoding, codec) => !encoding.includes(" ") && codec.startsWith(`${encoding} `);
+  return one === other || covers(one, other) || covers(other, one);
+}
+
+for (const sheet of document.querySelectorAll("[data-sheet]")) {
+  for (const header of sheet.querySelectorAll("thead th")) {
+    header.querySelector("button").addEventListener("click", () => sortBy(header));
+  }
+  const field = sheet.querySelector("[data-filter]");
+  if (field) field.addEventListener("input", () => filter(sheet));
+  addTools(sheet);
+}
+const codecRows = Array.from(document.querySelectorAll("tr[data-codec]"));
+codecRows.forEach(addPick);
+picked.listeners.push((name) => {
+  for (const row of codecRows) {
+    const is = Boolean(name) && agrees(row.dataset.codec, name);
+    row.classList.toggle("picked", is);
+    row.cells[0].firstChild.setAttribute("aria-pressed", String(is));
+  }
+});
+
+// The list of codecs in the navigation does the same.
+const choice = document.querySelector("#choice");
+if (choice) {
+  choice.parentNode.hidden = false;
+  choice.addEventListener("change", () => picked.pick(choice.value));
+  picked.listeners.push((name) => {
+    if (name && !Array.from(choice.options).some((option) => option.value === name)) choice.add(new Option(name, name));
+    choice.value = name;
+  });
+}
+
+// A link to each heading.
+for (const heading of document.querySelectorAll("section[id] > h2")) {
+  const link = element("a", { class: "anchor", href: `#${heading.parentNode.id}` }, "#");
+  link.setAttribute("aria-label", `Link to ${heading.textContent}`);
+  heading.append(" ", link);
+}
+
+// Light, dark, or as the system has it.
+const THEMES = { "": "as the system", light: "light", dark: "dark" };
+
+function setTheme(name) {
+  if (name) document.documentElement.dataset.theme = name;
+  else delete document.documentElement.dataset.theme;
+  document.querySelector("#theme span").textContent = THEMES[name];
+}
+
+function remembered(name) {
+  // A file's page may not be let to remember anything.
+  try {
+    if (name === undefined) return localStorage.getItem("normalbench-theme") || "";
+    localStorage.setItem("normalbench-theme", name);
+  } catch (error) {
+    if (!(error instanceof DOMException)) throw error;
+  }
+  return "";
+}
+
+const themeButton = document.querySelector("#theme");
+themeButton.hidden = false;
+themeButton.addEventListener("click", () => {
+  const names = Object.keys(THEMES), now = document.documentElement.dataset.theme || "";
+  const next = names[(names.indexOf(now) + 1) % names.length];
+  setTheme(next);
+  remembered(next);
+});
+const kept = remembered();
+setTheme(kept in THEMES ? kept : "");
+
+// The sphere: the mean or the largest angle of each cell.
+const which = document.querySelector("#which");
+if (which) {
+  const show = (value) => {
+    for (const image of document.querySelectorAll("[data-which]")) image.hidden = image.dataset.which !== value;
+  };
+  which.hidden = false;
+  which.addEventListener("change", (event) => show(event.target.value));
+  show("mean");
+}
