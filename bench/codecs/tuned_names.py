@@ -73,7 +73,7 @@ def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
     except DamagedError as error:
         raise UsageError(f"{path}: not a NumPy file of numbers, as `normalbench tune --table` writes it") from error
     except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror or error}") from error
+        raise UsageError(f"{path}: {error}") from error
     if table.shape != published.shape or table.dtype != published.dtype:
         wanted = f"{published.dtype} of shape {published.shape}"
         raise UsageError(f"{path}: a table of {encoding.name} is {wanted}, as `normalbench tune --table` writes it")

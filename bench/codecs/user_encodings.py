@@ -129,10 +129,6 @@ def examined(path: Path) -> Examined:
         MissingError: there is no GL device to look at it with.
     """
     _check_language(str(path))
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder; name a GLSL file")
-    if not path.exists():
-        raise UsageError(f"{path}: there is no such file")
     found = _look(path)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
@@ -167,7 +163,7 @@ def read_encoding(path: Path, fault: str = "") -> Encoding:
         UsageError: it cannot be read, or does not define its two functions.
     """
     try:
-        text = read_shader(path.resolve())
+        text = read_shader(path)
     except ShaderError as error:
         raise UsageError(str(error)) from error
     code = re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S)
@@ -290,7 +286,7 @@ def _look(path: Path) -> Looks:
 
 def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:
     """Whether a shader of which this was found has a twin, and is of use."""
-    return path.with_suffix(".py").exists() and not {"error", "broken"} & set(found)
+    return not {"error", "broken"} & set(found) and path.with_suffix(".py").exists()
 
 
 def _answers(said: str) -> Iterator[dict[str, Any]]:

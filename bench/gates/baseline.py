@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...encodings.codecs.files import file_text
+from ...encodings.codecs.files import file_json
 from ...reports.tables import to_json
 from ..options.option import fields_of
 from ..output.errors import UsageError
@@ -44,10 +44,10 @@ def _is_kept(table: Table, name: str) -> bool:
 def read_baseline(path: Path) -> dict[str, Entry]:
     """The entries of a file, by their keys. Raises UsageError where it is not a baseline."""
     try:
-        entries = json.loads(file_text(path))
+        entries = file_json(path)
         if not isinstance(entries, list):
             raise ValueError("it holds something else")
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{path} is not a baseline: {error}") from error
     from ..results.schema import check_entry
 

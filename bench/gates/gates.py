@@ -43,7 +43,7 @@ def read_gates(path: Path) -> list[Gate]:
     try:
         data = file_toml(path)
     except (OSError, ValueError) as error:
-        raise UsageError(f"{path}: cannot be read as gates: {error}") from error
+        raise UsageError(f"{path}: {error}") from error
     found = data.get("gate")
     if set(data) != {"gate"} or not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
         raise UsageError(f"{path}: gates are [[gate]] tables, and nothing else is there")

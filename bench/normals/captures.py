@@ -288,12 +288,15 @@ def _rotation(text: str) -> tuple[np.ndarray, list[str]]:
 
 def _numbers_of(text: str, said: str) -> np.ndarray:
     """A matrix of 3 or 4 rows."""
-    try:
-        if re.search(r"[^-+0-9.eE,;\s]", text):
+    if re.search(r"[^-+0-9.eE,;\s]", text):
+        try:
             text = file_text(Path(text))[:4096]
+        except (OSError, ValueError) as error:
+            raise UsageError(f"{said}: neither numbers nor a text file of numbers: {error}") from error
+    try:
         numbers = [float(word) for word in re.split(r"[\s,;\[\]()]+", text) if word]
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{said}: neither numbers nor a text file of numbers ({error})") from error
+    except ValueError as error:
+        raise UsageError(f"{said}: neither numbers nor a text file of numbers") from error
     if len(numbers) not in (9, 16):
         raise UsageError(f"{said}: {len(numbers)} numbers; 9 or 16, row by row")
     side = math.isqrt(len(numbers))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import math
 import zipfile
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...encodings.codecs.files import file_bytes
+from ...encodings.codecs.files import FileError, file_bytes
 
 # Of an archive's arrays together; the largest that this program writes is a few megabytes.
 MOST_BYTES = 64 << 20
@@ -34,9 +35,12 @@ def array_of(data: bytes) -> np.ndarray:
 
 
 def _bytes(path: Path, most: int) -> bytes:
-    if path.stat().st_size > most:
-        raise DamagedError(f"it is larger than {most} bytes")
-    return file_bytes(path, most)
+    try:
+        return file_bytes(path, most)
+    except FileError as error:
+        if error.errno == errno.EFBIG:
+            raise DamagedError(f"it is larger than {most} bytes") from error
+        raise
 
 
 def read_npy(path: Path, most: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...encodings.codecs.files import file_text
+from ...encodings.codecs.files import file_json
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal, read_lines
 from ..output.sources import sources
@@ -119,8 +119,8 @@ def _facts(folder: Path) -> Row:
     from .schema import check_facts
 
     try:
-        facts = json.loads(file_text(folder / RUN))
-    except (OSError, ValueError, RecursionError) as error:
+        facts = file_json(folder / RUN)
+    except (OSError, ValueError) as error:
         raise UsageError(f"{folder} is not a results folder: {RUN} cannot be read ({error})") from error
     check_facts(facts, str(folder / RUN))
     return facts

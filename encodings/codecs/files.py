@@ -3,14 +3,31 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
+import re
 import stat
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 # No text that people write is larger.
 MOST_TEXT = 16 << 20
+MISSING, FOLDER, NOT_PLAIN = "there is no such file", "it is a folder; name a file", "it is not a plain file"
+# Why the system does not give a file.
+REASONS: Mapping[int, str] = MappingProxyType(
+    {
+        errno.ENOENT: MISSING,
+        errno.ENOTDIR: MISSING,
+        errno.EISDIR: FOLDER,
+        errno.EACCES: "you have no permission to read it",
+        errno.ELOOP: "it is a link that leads back to itself",
+        errno.ENAMETOOLONG: "its name is too long",
+    }
+)
+TOO_DEEP = "it is nested too deep"
 
 
 class FileError(OSError):
@@ -30,7 +47,9 @@ def file_bytes(path: Path, most: int) -> bytes:
     try:
         return _bytes(path, most)
     except OSError as error:
-        raise FileError(error.errno, error.strerror) from error
+        raise FileError(error.errno, REASONS.get(error.errno or 0, error.strerror)) from error
+    except ValueError as error:
+        raise ValueError("no file can have this name") from error
 
 
 def _bytes(path: Path, most: int) -> bytes:
@@ -38,11 +57,16 @@ def _bytes(path: Path, most: int) -> bytes:
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
-            raise OSError(errno.EINVAL, "it is not a plain file")
+            raise OSError(errno.EINVAL, NOT_PLAIN)
         data = file.read(min(found.st_size, most) + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MiB")
     return data
+
+
+def not_a_file(path: Path) -> str:
+    """Why a path does not name a plain file; nothing is opened."""
+    return FOLDER if path.is_dir() else NOT_PLAIN if path.exists() else MISSING
 
 
 def file_text(path: Path) -> str:
@@ -52,7 +76,10 @@ def file_text(path: Path) -> str:
         FileError: see file_bytes.
         ValueError: it is no such text.
     """
-    text = file_bytes(path, MOST_TEXT).decode("utf-8-sig")
+    try:
+        text = file_bytes(path, MOST_TEXT).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError("it is not text in UTF-8") from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -66,12 +93,46 @@ def file_toml(path: Path) -> dict[str, Any]:
     text = file_text(path)
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        raise
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(_not_toml(str(error))) from error
     except ValueError as error:
         raise ValueError("a number has too many digits") from error
     except RecursionError as error:
-        raise ValueError("it is nested too deep") from error
+        raise ValueError(TOO_DEEP) from error
+
+
+# What tomllib says of a key or a table that stands twice.
+TWICE = ("overwrite", "twice", "immutable", "redefine")
+
+
+def _not_toml(said: str) -> str:
+    """What is wrong with TOML, from what the library says: `Cannot overwrite a value (at line 3, column 22)`."""
+    place = re.search(r"line (\d+), column (\d+)", said)
+    where = f"line {place[1]}, column {place[2]}" if place else "its end"
+    what = "a key or a table is given twice" if any(word in said for word in TWICE) else "this is not TOML"
+    return f"{where}: {what}"
+
+
+def file_json(path: Path) -> Any:
+    """What a JSON file holds.
+
+    Raises:
+        FileError: see file_bytes.
+        ValueError: it is not JSON, or is nested too deep.
+    """
+    text = file_text(path)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(not_json(error)) from error
+
+
+def not_json(error: ValueError | RecursionError) -> str:
+    """What is wrong with JSON, from what the library raised."""
+    if isinstance(error, RecursionError):
+        return TOO_DEEP
+    is_placed = isinstance(error, json.JSONDecodeError)
+    return f"line {error.lineno}, column {error.colno}: this is not JSON" if is_placed else "it is not JSON"
 
 
 def called(name: str) -> str:

@@ -101,7 +101,7 @@ def read_shader(path: Path) -> str:
     try:
         return file_text(path)
     except (OSError, ValueError) as error:
-        raise ShaderError(f"{path}: cannot be read as a shader: {error}") from error
+        raise ShaderError(f"{path}: {error}") from error
 
 
 def glsl_value(value) -> str:

@@ -276,8 +276,7 @@ def read_layout(path: Path) -> Layout:
     try:
         data = file_toml(path)
     except (OSError, ValueError) as error:
-        # ValueError is bad text, bad TOML, and a number of thousands of digits.
-        raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
+        raise LayoutError(f"{path}: {error}") from error
     try:
         return _from_data(path, data)
     except LayoutError as error:

@@ -83,7 +83,7 @@ ADDRESSES = {
     "a file address": ("file:///etc/hostname", "nothing is fetched"),
     "a drive": ("C:/a.bin", "nothing is fetched"),
     "a pipe": ("pipe", "not a plain file"),
-    "the folder": (".", "not a plain file"),
+    "the folder": (".", "it is a folder; name a file"),
     "missing": ("missing.bin", "no such file"),
     "bad base64": ("data:;base64,%%%", "data: address is damaged"),
     "no base64": ("data:,hello", "data: address is damaged"),

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ....encodings.codecs.files import not_json
 from .source import MAX_VERTICES, SceneFileError, checked_address, file_bytes, resource
 
 GLB_MAGIC, GLB_JSON, GLB_BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -45,7 +46,7 @@ class Gltf:
         try:
             self.json = json.loads(text.decode("utf-8-sig"), parse_constant=_no_constant)
         except (ValueError, RecursionError) as error:
-            raise self.error("its JSON", f"cannot be read ({error})") from error
+            raise self.error("its JSON", f"cannot be read ({not_json(error)})") from error
         if not isinstance(self.json, dict):
             raise self.error("its JSON", "is not an object")
         self._buffers: dict[int, bytes] = {}

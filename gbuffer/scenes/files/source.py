@@ -10,6 +10,8 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from ....encodings.codecs import files
+
 # Read before anything in them is believed.
 MAX_BYTES = 2**30
 # Text takes many times its size while it is taken apart.
@@ -30,16 +32,15 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
     """
     try:
         if not path.is_file():
-            raise SceneFileError(f"{path}: {'not a plain file' if path.exists() else 'there is no such file'}")
+            raise SceneFileError(f"{path}: {files.not_a_file(path)}")
         size = path.stat().st_size
         if size > most:
             raise SceneFileError(f"{path}: {size} bytes; the most is {most}: export fewer objects, or in binary")
-        return path.read_bytes()
+        return files.file_bytes(path, most)
+    except SceneFileError:
+        raise
     except (OSError, ValueError) as error:
-        if isinstance(error, SceneFileError):
-            raise
-        # ValueError is a name with a zero byte in it.
-        raise SceneFileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        raise SceneFileError(f"{path}: {error}") from error
 
 
 def checked_address(path: Path, address: object, place: str) -> Path | None:

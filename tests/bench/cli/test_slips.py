@@ -49,7 +49,9 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "Slang": ((*ROW, "--encoding", "mine.slang"), "slangc -target glsl translates it"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "WGSL is not read"),
     "HLSL to doctor": (("doctor", "mine.hlsl"), "HLSL is not read"),
-    "a shader that is not there": ((*ROW, "--encoding", "missing.glsl"), "missing.glsl"),
+    "a shader that is not there": ((*ROW, "--encoding", "missing.glsl"), "missing.glsl: there is no such file"),
+    "a shader that is not text": ((*ROW, "--encoding", "bytes.glsl"), "bytes.glsl: it is not text in UTF-8"),
+    "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),
     "a capture of another kind": (("quality", "--normals", "frame.jpg"), "a file that ends in .exr"),
     "a scene that is not": (("render", "--scene", "glos"), "did you mean gloss?"),
@@ -71,24 +73,56 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "columns of no table": (("columns", "qualities"), "did you mean quality?"),
     "a list of nothing": (("list", "encoder"), "unknown list 'encoder'"),
     "a run that is not": (("report", "missing"), "missing"),
-    "gates that are not": (("check", "missing.toml"), "missing.toml"),
+    "gates that are not": (("check", "missing.toml"), "missing.toml: there is no such file"),
+    "gates that are not text": (("check", "bytes.toml"), "bytes.toml: it is not text in UTF-8"),
+    "a key twice": (("check", "twice.toml"), "twice.toml: line 3, column 18: a key or a table is given twice"),
+    "TOML that is cut off": (("check", "cut.toml"), "cut.toml: its end: this is not TOML"),
+    "a layout that is not there": (("render", "--layout", "missing.toml"), "missing.toml: there is no such file"),
+    "a layout that is not TOML": (("render", "--layout", "twice.toml"), "a key or a table is given twice"),
+    "a table of scales that is not there": (
+        ("quality", "--encoding", "best_fit:table=missing.npy"),
+        "missing.npy: there is no such file",
+    ),
+    "a matrix that is not there": (
+        ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "no.txt"),
+        "--view-matrix no.txt: neither numbers nor a text file of numbers: there is no such file",
+    ),
+    "a matrix that is not text": (
+        ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "bytes.txt"),
+        "--view-matrix bytes.txt: neither numbers nor a text file of numbers: it is not text in UTF-8",
+    ),
     "a plot of another kind": (("cost", "--isa", "--plot", "x.gif"), "x.gif"),
 }
+
+
+HLSL = "float2 mine_encode(float3 n, float3 v);"
+FILES = {
+    **dict.fromkeys(("mine.hlsl", "mine.slang", "mine.wgsl"), HLSL),
+    **dict.fromkeys(("bytes.glsl", "bytes.toml", "bytes.txt"), b"\xff\xfe\x00abc"),
+    "twice.toml": '[[gate]]\nencoding = "xy"\nencoding = "cube"\n',
+    "cut.toml": "gate = [",
+}
+
+
+def write_files() -> None:
+    """FILES, two folders and a list of normals, in the working folder."""
+    for name in ("there", "folder.glsl"):
+        Path(name).mkdir()
+    for name, text in FILES.items():
+        Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    np.save("f.npy", np.eye(3, dtype=np.float32))
 
 
 @pytest.mark.parametrize("what", SLIPS)
 def test_a_slip_is_one_line_that_says_what_would_be_right(run, tmp_path, monkeypatch, what):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "there").mkdir()
-    for name in ("mine.hlsl", "mine.slang", "mine.wgsl"):
-        (tmp_path / name).write_text("float2 mine_encode(float3 n, float3 v);")
-    np.save(tmp_path / "f.npy", np.eye(3, dtype=np.float32))
+    write_files()
     before = set(tmp_path.rglob("*"))
     words, said = SLIPS[what]
     status, out, err = run(*words)
     assert (status, out) == (2, ""), (status, out[:100], err)
     assert err.startswith("normalbench: ") and err.count("\n") == 1 and said in err, err
-    assert not any(word in err for word in ("[Errno", "Traceback", "Error:")), err
+    assert not any(word in err for word in ("[Errno", "Traceback", "Error:", "codec")), err
     assert set(tmp_path.rglob("*")) == before, "something was left behind"
 
 

@@ -181,7 +181,7 @@ def test_a_table_says_it_too(run, tmp_path):
     "words, said",
     [
         (("--plot", "a.png"), "name its GLSL file"),
-        ((".",), ". is a folder; name a GLSL file"),
+        ((".",), ".: it is a folder; name a file"),
         (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),
     ],

@@ -130,7 +130,7 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("gate = 1", "gates are [[gate]] tables"),
         ("gate = []", "0 gates; from 1"),
         ("[[gate]]\n[other]", "gates are [[gate]] tables"),
-        ("[[gate]", "cannot be read as gates"),
+        ("[[gate]", "this is not TOML"),
         ('[[gate]]\nencoding = "xy"', "no limit given"),
         ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a limit; say"),
         ("[[gate]]\ncount = " + "9" * 5000, "a number has too many digits"),
@@ -160,7 +160,7 @@ def test_bad_gates_are_one_line_with_their_place(run, tmp_path, text, said):
 
 
 def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
-    assert "cannot be read as gates" in run("check", str(tmp_path / "none.toml"))[2]
+    assert "none.toml: there is no such file" in run("check", str(tmp_path / "none.toml"))[2]
     (tmp_path / "gates.toml").write_text(PASSES)
     status, _, err = run("check", str(tmp_path / "gates.toml"), "--run", str(tmp_path))
     assert status == 2 and "is not a results folder" in err and err.count("\n") == 1

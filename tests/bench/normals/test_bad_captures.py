@@ -103,7 +103,7 @@ def test_what_is_no_plain_file_is_one_line(tmp_path, run):
     (tmp_path / "folder.png").mkdir()
     for name, said in (
         ("pipe.npy", "not a plain file"),
-        ("folder.png", "not a plain file"),
+        ("folder.png", "it is a folder; name a file"),
         ("none.npy", "no such file"),
     ):
         assert said in refusal(run, tmp_path / name)

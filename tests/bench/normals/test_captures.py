@@ -243,7 +243,7 @@ def test_world_space_is_turned_to_view_space(tmp_path):
         ("world", "1,0,0,0,2,0,0,0,1", "not a rotation"),
         ("world", "0,0,0,0,0,0,0,0,0", "not a rotation"),
         ("world", "nan,0,0,0,1,0,0,0,1", "neither numbers nor a text file"),
-        ("world", "missing.txt", "neither numbers nor a text file"),
+        ("world", "missing.txt", "neither numbers nor a text file of numbers: there is no such file"),
     ],
 )
 def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix, said):

@@ -338,7 +338,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--seed", "-1"], "--seed -1"),
         (["--pipeline", "raytraced"], "unknown pipeline 'raytraced'; known: all, forward"),
         (["--layout", "mine"], "unknown layout 'mine'; known: all, fp32"),
-        (["--layout", "missing.toml"], "cannot be read as a layout"),
+        (["--layout", "missing.toml"], "missing.toml: there is no such file"),
         (["--layout", "clash.toml"], "normal.x lies in two places"),
         (["--layout", "hybrid", "--encoding", "xy_sign"], "keeps no depth"),
         (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs albedo.b"),

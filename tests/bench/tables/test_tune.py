@@ -354,7 +354,7 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("best_fit:table=", "each once, such as best_fit:table=FILE.npy"),
         ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: none"),
         ("all:scale=1", "unknown encoding 'all'"),
-        ("best_fit:table=missing.npy", "cannot read missing.npy: No such file"),
+        ("best_fit:table=missing.npy", "missing.npy: there is no such file"),
         ("best_fit:table=text.npy", "not a NumPy file"),
         ("best_fit:table=small.npy", "is float32 of shape (1024, 1024, 1)"),
         ("best_fit:table=zero.npy", "scales above 0 and up to 1"),
