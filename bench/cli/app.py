@@ -10,7 +10,6 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Mapping
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
@@ -29,7 +28,7 @@ from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from .commands import add_tables, command_with
 from .formats import FormatOption, format_of
-from .typed import added_up
+from .typed import added_up, check_begins_with_command
 
 app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -246,7 +245,7 @@ def main() -> int:
             _without_output(sys.argv)
         # Alone, the command shows its help; that is no error.
         command: Any = typer.main.get_command(app)
-        status = command(_words(sys.argv[1:], command.commands) or ["--help"], standalone_mode=False) or 0
+        status = command(_words(sys.argv[1:], command) or ["--help"], standalone_mode=False) or 0
         if status == INTERRUPTED:
             _say("interrupted")
         return status
@@ -257,9 +256,7 @@ def main() -> int:
         _say(str(error))
         return UsageError.exit_code
     except TyperException as error:
-        commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
-        hint = f" Commands: {commands}." if "command" in error.format_message() else ""
-        _say(error.format_message() + hint)
+        _say(error.format_message() + _hint(error.format_message()))
         return UsageError.exit_code
     except (KeyboardInterrupt, Abort):
         _say("interrupted")
@@ -270,10 +267,20 @@ def main() -> int:
         return UsageError.exit_code
 
 
-def _words(words: list[str], commands: Mapping[str, Any]) -> list[str]:
+def _hint(said: str) -> str:
+    """What would be right, after what the parser says."""
+    commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
+    if "extra argument" in said:
+        return "; separate names by commas"
+    return f" Commands: {commands}." if "command" in said else ""
+
+
+def _words(words: list[str], group: Any) -> list[str]:
     """What was typed, with each option once. Raises UsageError."""
-    is_known = bool(words) and words[0] in commands
-    return [words[0], *added_up(words[1:], commands[words[0]].params)] if is_known else words
+    own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
+    check_begins_with_command(words, group.commands, own)
+    is_known = bool(words) and words[0] in group.commands
+    return [words[0], *added_up(words[1:], group.commands[words[0]].params)] if is_known else words
 
 
 def _without_output(words: list[str]) -> None:

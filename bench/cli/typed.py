@@ -1,11 +1,26 @@
-"""What people type, before it is parsed: options that are repeated."""
+"""What people type, before it is parsed: options that are repeated, and words in a wrong place."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, get_args
 
 from ..output.errors import UsageError
+
+
+def check_begins_with_command(words: Sequence[str], commands: Collection[str], own: Collection[str]) -> None:
+    """Raises UsageError where a command's options stand before the command.
+
+    Args:
+        own: the options of the program itself.
+    """
+    if not words or not words[0].startswith("-") or words[0].partition("=")[0] in own:
+        return
+    command = next((word for word in words if word in commands), None)
+    if command is None:
+        raise UsageError(f"{words[0]}: begin with a command: {', '.join(commands)}")
+    others = [word for word in words if word != command]
+    raise UsageError(f"the command comes first: normalbench {' '.join([command, *others])}")
 
 
 def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
@@ -16,17 +31,21 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
         options: the command's, as typer has them.
 
     Raises:
-        UsageError: another option is given twice, with different values.
+        UsageError: another option is given twice, with different values, or a word belongs to no option.
     """
     by_flag = {flag: option for option in options for flag in (*option.opts, *option.secondary_opts)}
+    has_arguments = any(option.param_type_name == "argument" for option in options)
     made: list[str] = []
     # Of each option its flag as typed first, and where its value stands among `made`.
     seen: dict[str, tuple[str, int]] = {}
     rest = iter(words)
     for word in rest:
-        if word == "--":
-            return [*made, word, *rest]
         flag, option = _option_of(word, by_flag)
+        if option is None and word.startswith("--"):
+            # What follows an option that is not known is for the parser to refuse.
+            return [*made, word, *rest]
+        if option is None and not (has_arguments or word.startswith("-")):
+            raise _stray(word, made, by_flag)
         if option is None:
             made.append(word)
         elif option.is_flag:
@@ -38,6 +57,14 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
             else:
                 _add(made, (flag, value), seen, option)
     return made
+
+
+def _stray(word: str, made: Sequence[str], by_flag: dict[str, Any]) -> UsageError:
+    """What is wrong with a word that follows no option."""
+    flag = made[-2] if len(made) > 1 else ""
+    if flag in by_flag and _is_text(by_flag[flag]):
+        return UsageError(f"separate names by commas: {flag} {made[-1]},{word}")
+    return UsageError(f"{word} stands after no option; say for example {next(iter(by_flag))} {word}")
 
 
 def _option_of(word: str, by_flag: dict[str, Any]) -> tuple[str, Any]:

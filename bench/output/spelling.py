@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from types import MappingProxyType
@@ -50,8 +51,8 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
 def meant(word: str, known: Iterable[str]) -> str:
     """What somebody may have meant by an unknown word, as the end of a sentence; empty for no idea."""
     known = list(known)
-    parts = word.split()
-    if len(parts) > 1 and all(part in known for part in parts):
+    parts = [part for part in re.split(r"[\s;|+]+", word) if part]
+    if len(parts) > 1 and all(part in known or "." in part for part in parts):
         return f"separate names by commas: {','.join(parts)}"
     by_plain = {plain(name): name for name in known}
     near = get_close_matches(plain(word), by_plain, n=1, cutoff=0.75)

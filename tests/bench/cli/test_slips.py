@@ -28,6 +28,21 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         (*ROW, "--encoding", "xy octahedral"),
         "separate names by commas: xy,octahedral",
     ),
+    "a semicolon for a comma": ((*ROW, "--encoding", "octahedral;xy"), "separate names by commas: octahedral,xy"),
+    "names after each other": (
+        (*ROW, "--encoding", "octahedral", "spheremap"),
+        "separate names by commas: --encoding octahedral,spheremap",
+    ),
+    "names after each other of a list": (("columns", "quality", "render"), "separate names by commas"),
+    "a name without its option": (
+        ("quality", "octahedral"),
+        "octahedral stands after no option; say for example --enc",
+    ),
+    "options before the command": (
+        ("--encoding", "xy", "quality", "--count", "9"),
+        "the command comes first: normalbench quality --encoding xy --count 9",
+    ),
+    "options without a command": (("--encoding", "xy"), "--encoding: begin with a command: list, doctor, pick,"),
     "no name at all": ((*ROW, "--encoding", ""), "no encoding named"),
     "a number twice": ((*ONE, "--count", "2000"), "--count is given twice, 1000 and 2000; give it once"),
     "a file twice": ((*ONE, "-o", "a.csv", "-o", "b.csv"), "-o is given twice, a.csv and b.csv"),
