@@ -27,11 +27,12 @@ from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.codecs.loops import loop_limit, loops_ended
 from ...gbuffer.gl.device import Device, NoDeviceError, device
-from ...gbuffer.gl.shader import ShaderError
+from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..machine import children
 from ..output.errors import UsageError
 from .diagnoses import Trip, diagnoses, guessed
 from .names import check_twin
+from .signatures import of_hlsl
 from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
 
 RANDOM = 4096
@@ -77,7 +78,8 @@ def _of_compiler(path: Path, said: str) -> str:
     """A compiler's message with the user's file at its begin."""
     line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
     named = line if path.name in line else f"{path}: {line}"
-    return named if len(named) <= LONGEST else f"{named[:LONGEST]} ..."
+    hint = of_hlsl(read_shader(path))
+    return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
 
 
 def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> dict[str, Any]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import re
 import signal
 import subprocess
 import sys
@@ -25,19 +24,16 @@ from ...reports.page.verdict import MADE_FOR
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
-from ..output.errors import MissingError, UsageError, check_comma, leave_out, pick, tell
+from ..output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
+from ..output.spelling import spelled
 from . import tuned_names
+from .signatures import FROM_HLSL, encode_of
 
-# vec2 mine_encode(vec3 n, vec3 view)
-ENCODE = re.compile(r"\bvec([23])\s+(\w+)_encode\s*\(\s*vec3\s+\w+\s*,\s*vec3\s+\w+\s*\)")
-MAIN = re.compile(r"\bvoid\s+main\s*\(")
 ENDING = ".glsl"
 # Endings of other languages: what they are called, and how a shader becomes GLSL.
 LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        ".hlsl": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
-        ".hlsli": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
-        ".fx": ("HLSL", "rename float2 to vec2, lerp to mix, and so on, and save it as .glsl"),
+        **dict.fromkeys((".hlsl", ".hlsli", ".fx"), ("HLSL", f"{FROM_HLSL}, and save it as .glsl")),
         ".slang": ("Slang", "slangc -target glsl translates it"),
         ".wgsl": ("WGSL", "naga FILE.wgsl FILE.frag translates it, or write it as GLSL"),
         ".metal": ("Metal", "write it as GLSL"),
@@ -45,7 +41,6 @@ LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
-# Farther off than that on average it is hardly the decoder of this encoder.
 
 
 class NoTwinError(Exception):
@@ -64,7 +59,7 @@ def encodings_named(names: str) -> list[Encoding]:
     check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
     for word in words:
-        _check_language(word)
+        _check_word(word)
     files, complaints, notes = _read_all([word for word in words if word.endswith(ENDING)])
     rest = [word for word in words if word in files or not word.endswith(ENDING)]
     if complaints and not rest:
@@ -79,8 +74,11 @@ def encodings_named(names: str) -> list[Encoding]:
     return picked
 
 
-def _check_language(word: str) -> None:
-    """Raises UsageError for a shader of another language."""
+def _check_word(word: str) -> None:
+    """Raises UsageError for a shader of another language, and for one without its ending."""
+    file = f"{word}{ENDING}"
+    if names_a_file(file) and spelled("encoding", word, ENCODINGS) is None:
+        raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
     if (ending := Path(word).suffix.lower()) in LANGUAGES:
         language, how = LANGUAGES[ending]
         raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
@@ -128,7 +126,11 @@ def examined(path: Path) -> Examined:
         UsageError: it is not an encoding, or does not compile.
         MissingError: there is no GL device to look at it with.
     """
-    _check_language(str(path))
+    _check_word(str(path))
+    known = spelled("encoding", str(path), ENCODINGS)
+    if known and not path.exists():
+        command = f"normalbench quality --encoding {known}"
+        raise UsageError(f"{path} is in the catalogue; doctor examines a GLSL file. `{command}` measures it")
     found = _look(path)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
@@ -166,21 +168,14 @@ def read_encoding(path: Path, fault: str = "") -> Encoding:
         text = read_shader(path)
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    code = re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S)
-    if "/*" in code:
-        raise UsageError(f"{path}: a comment that begins with /* is not closed")
-    if MAIN.search(code):
-        raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
-    match = ENCODE.search(code)
-    if not match:
-        raise UsageError(f"{path}: no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)")
+    name, components = encode_of(path, text)
     encode, decode = _lacking(fault) if fault else _twin(path.with_suffix(".py"))
     return Encoding(
-        name=match[2],
+        name=name,
         title=called(str(path)),
         encode=encode,
         decode=decode,
-        components=int(match[1]),
+        components=components,
         domain="sphere",
         citation=called(str(path)),
         # Not resolved: the twin lies next to the path that was given.

@@ -134,9 +134,15 @@ def pick_or_read(
 
 def check_comma(names: str) -> None:
     """Raises UsageError where a file is named whose name has a comma."""
+    if "," in names and names_a_file(names):
+        raise UsageError(f"{names}: a comma in a file's name separates two names; rename the file")
+
+
+def names_a_file(word: str) -> bool:
+    """Whether there is a file of this name; of a name that no file can have there is none."""
     with suppress(OSError, ValueError):
-        if "," in names and Path(names).is_file():
-            raise UsageError(f"{names}: a comma in a file's name separates two names; rename the file")
+        return Path(word).is_file()
+    return False
 
 
 def quoted(names: Iterable[str]) -> str:

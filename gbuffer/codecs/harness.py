@@ -24,7 +24,7 @@ def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
     text = re.sub(r"\s+", " ", read_shader(glsl))
     for signature in signatures:
         head, given = signature.split("(")
-        if not re.search(rf"\b{head} ?\( ?{given.split()[0]}\b", text):
+        if not re.search(rf"\b{head} ?\( ?(?:(?:const|in) )*{given.split()[0]}\b", text):
             raise ShaderError(f"{glsl}: no function {signature}")
 
 

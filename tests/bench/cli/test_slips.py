@@ -64,6 +64,31 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "Slang": ((*ROW, "--encoding", "mine.slang"), "slangc -target glsl translates it"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "WGSL is not read"),
     "HLSL to doctor": (("doctor", "mine.hlsl"), "HLSL is not read"),
+    "a file without its ending": (
+        (*ROW, "--encoding", "hlsl"),
+        "unknown encoding 'hlsl'; did you mean the file hlsl.glsl?",
+    ),
+    "a file without its ending, of doctor": (("doctor", "hlsl"), "did you mean the file hlsl.glsl?"),
+    "doctor for the catalogue": (
+        ("doctor", "octahedral"),
+        "octahedral is in the catalogue; doctor examines a GLSL file. `normalbench quality --encoding octahedral`",
+    ),
+    "HLSL in a GLSL file": (
+        ("doctor", "hlsl.glsl"),
+        "float2 h_encode(float3 n, float3 v) must be vec2 (or vec3) h_encode(vec3 n, vec3 view); float2 is HLSL",
+    ),
+    "a code of four": (
+        ("doctor", "four.glsl"),
+        "vec4 f_encode(vec3 n, vec3 v) must be vec2 (or vec3) f_encode(vec3 n, vec3 view); a code has two or three",
+    ),
+    "no view": (
+        ("doctor", "short.glsl"),
+        "vec2 s_encode(vec3 n) must be vec2 s_encode(vec3 n, vec3 view); the parameter view is missing",
+    ),
+    "no view in decode": (
+        ("doctor", "decode.glsl"),
+        "vec3 d_decode(vec2 e) must be vec3 d_decode(vec2 e, vec3 view); the parameter view is missing",
+    ),
     "a shader that is not there": ((*ROW, "--encoding", "missing.glsl"), "missing.glsl: there is no such file"),
     "a shader that is not text": ((*ROW, "--encoding", "bytes.glsl"), "bytes.glsl: it is not text in UTF-8"),
     "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
@@ -114,6 +139,10 @@ HLSL = "float2 mine_encode(float3 n, float3 v);"
 FILES = {
     **dict.fromkeys(("mine.hlsl", "mine.slang", "mine.wgsl"), HLSL),
     **dict.fromkeys(("bytes.glsl", "bytes.toml", "bytes.txt"), b"\xff\xfe\x00abc"),
+    "hlsl.glsl": "float2 h_encode(float3 n, float3 v) { return n.xy; }",
+    "four.glsl": "vec4 f_encode(vec3 n, vec3 v) { return vec4(n, 1.0); }",
+    "short.glsl": "vec2 s_encode(vec3 n) { return n.xy; }",
+    "decode.glsl": "vec2 d_encode(vec3 n, vec3 view) { return n.xy; } vec3 d_decode(vec2 e) { return vec3(e, 0.0); }",
     "twice.toml": '[[gate]]\nencoding = "xy"\nencoding = "cube"\n',
     "cut.toml": "gate = [",
 }

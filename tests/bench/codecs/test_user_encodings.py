@@ -69,6 +69,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
         (MINE.replace("mine_decode", "my_decode"), "no function vec3 mine_decode(vec2 e, vec3 view)"),
         (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
         (MINE.replace("mine_", "octahedral_"), "there is an encoding named octahedral already"),
+        (MINE + "float2 half_of(float2 e) { return e * 0.5; }", "(float2 is HLSL: rename float2 to vec2"),
         ("", "no function vec2"),
     ],
 )
@@ -95,6 +96,18 @@ def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
     assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
     assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
     assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
+
+
+@pytest.mark.parametrize(
+    "parameters", ["in vec3 n, in vec3 view", "const in vec3 n,\n    vec3 view", "vec3 n , vec3 v"]
+)
+def test_parameters_are_written_as_glsl_allows(tmp_path, parameters):
+    path = tmp_path / "mine.glsl"
+    path.write_text(
+        f"vec2 mine_encode({parameters}) {{ return n.xy; }}\n"
+        "vec3 mine_decode(in vec2 e, const vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }"
+    )
+    assert first_look(path) == {"domain": "hemisphere", "wrong": []}
 
 
 def test_a_missing_file_is_one_line(run, tmp_path):

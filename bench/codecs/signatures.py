@@ -1,0 +1,89 @@
+"""The two functions of a user's GLSL file: vec2 mine_encode(vec3 n, vec3 view) and vec3 mine_decode(vec2 e, vec3 view).
+
+What is written in another way is named with what it should be, before a compiler sees it.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from ..output.errors import UsageError
+
+# Type, name and parameters, of a definition or of a declaration; not of a call or a macro.
+FUNCTION = r"\b(?!return\b|else\b|define\b)(\w+)\s+({name})\s*\(([^(){{}};]*)\)"
+ENCODE, MAIN = re.compile(FUNCTION.format(name=r"\w+_encode")), re.compile(r"\bvoid\s+main\s*\(")
+CODES = ("vec2", "vec3")
+HLSL = re.compile(r"\b(?:float|half|int|uint)[234](?:x[234])?\b")
+FROM_HLSL = "rename float2 to vec2, lerp to mix, and so on"
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+class Encode(NamedTuple):
+    """The encode that a file defines: the encoding's name, and how many numbers its code has."""
+
+    name: str
+    components: int
+
+
+def encode_of(path: Path, text: str) -> Encode:
+    """The encode of a file's text.
+
+    Raises:
+        UsageError: the text does not define the two functions as they must be.
+    """
+    code = COMMENT.sub(" ", text)
+    if "/*" in code:
+        raise UsageError(f"{path}: a comment that begins with /* is not closed")
+    if MAIN.search(code):
+        raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
+    found = [match.groups() for match in ENCODE.finditer(code)]
+    right = next((one for one in found if _is_encode(one)), None)
+    if not right:
+        raise UsageError(f"{path}: {_no_encode(found)}")
+    name = right[1].removesuffix("_encode")
+    _check_decode(path, code, name, right[0])
+    return Encode(name, int(right[0][-1]))
+
+
+def _is_encode(function: tuple[str, ...]) -> bool:
+    return function[0] in CODES and _types(function[2]) == ["vec3", "vec3"]
+
+
+def _types(parameters: str) -> list[str]:
+    """The types of parameters: `in vec3 n, vec3 view` has vec3 twice."""
+    words = [parameter.split() for parameter in parameters.split(",")]
+    return [" ".join(word for word in parameter[:-1] if word not in ("in", "const")) for parameter in words]
+
+
+def _no_encode(found: list[tuple[str, ...]]) -> str:
+    """Why none of some functions is an encode."""
+    if not found:
+        return "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"
+    kind, name, _ = found[0]
+    wanted = f"{kind if kind in CODES else 'vec2 (or vec3)'} {name}(vec3 n, vec3 view)"
+    return _should_be(found[0], wanted)
+
+
+def _check_decode(path: Path, code: str, name: str, kind: str) -> None:
+    """Raises UsageError where there is a decode, but not one of the right types."""
+    found = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
+    if found and not any(one[0] == "vec3" and _types(one[2]) == [kind, "vec3"] for one in found):
+        wanted = f"vec3 {name}_decode({kind} e, vec3 view)"
+        raise UsageError(f"{path}: {_should_be(found[0], wanted)}")
+
+
+def _should_be(function: tuple[str, ...], wanted: str) -> str:
+    """A function as it stands, as it must be, and what is wrong with it."""
+    kind, name, parameters = function
+    said = f"{kind} {name}({' '.join(parameters.split())})"
+    is_short = "the parameter view is missing" if len(_types(parameters)) < 2 else ""
+    why = of_hlsl(said) or is_short or ("a code has two or three numbers" if "vec4" in said else "")
+    return f"{said} must be {wanted}" + (f"; {why}" if why else "")
+
+
+def of_hlsl(text: str) -> str:
+    """What to do with GLSL that has types of HLSL; empty where it has none."""
+    found = HLSL.search(COMMENT.sub(" ", text))
+    return f"{found[0]} is HLSL: {FROM_HLSL}" if found else ""
