@@ -112,6 +112,9 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
     """
     layers = dict(_layers(names))
     shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
+    if len(names) < 3:
+        remedy = "a normal has three channels; save z too, which is sqrt(max(0, 1 - x*x - y*y)) if it is not negative"
+        raise refused(path, f"it has {shown}", remedy)
     if asked is not None:
         words = [word.strip() for word in asked.split(",")]
         if len(words) == 1 and words[0] in layers:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from ...encodings.codecs.files import called
 from ...gbuffer.scenes.files import read as files
 from ..options.counts import checked_sides
-from ..options.option import Reading
+from ..options.option import Reading, fields_of
 from ..options.scene_names import mesh_file, say_notes
 from ..options.words import given_in
-from ..output.errors import UsageError, pick_or_read
+from ..output.errors import UsageError, names_a_folder, pick_or_read, tell
 from .captures import capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from .pixel_files import MAX_PIXELS
@@ -20,6 +22,11 @@ from .pixel_files import READERS as IMAGES
 
 MAX_SIDE = 16384
 ENDINGS = (*IMAGES, *files.READERS)
+JPEG = "JPEG changes normals; save the frame as EXR or PNG"
+# By its ending, why a file of another kind is not read, and what is.
+OTHERS: Mapping[str, str] = MappingProxyType(
+    {".jpg": JPEG, ".jpeg": JPEG, ".npz": "an archive of arrays; save one array by np.save, as .npy"}
+)
 
 
 def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs_rays: bool = False) -> list[NormalSet]:
@@ -30,7 +37,8 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     Raises:
         UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
     """
-
+    for word in map(str.strip, names.split(",")):
+        _check_kind(word)
     typed = [Path(word.strip()).suffix.lower() for word in names.split(",")]
     if reading != Reading(size=reading.size) and not any(ending in IMAGES for ending in typed):
         raise UsageError(f"options of captures are given, but --normals {names} names none ({', '.join(IMAGES)})")
@@ -50,6 +58,23 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     made = [make(count, seed) for make in pick_or_read("normal set", names, known, ENDINGS, read)]
     say_notes(notes)
     return made
+
+
+def _check_kind(word: str) -> None:
+    """Raises UsageError for a file of a kind that is not read, and for a folder."""
+    if (ending := Path(word).suffix.lower()) in OTHERS:
+        raise UsageError(f"{word}: {OTHERS[ending]}")
+    if names_a_folder(word) and word not in NORMAL_SETS and ending not in ENDINGS:
+        raise UsageError(f"{word}: it is a folder; name the files in it, separated by commas")
+
+
+def say_count_is_unused(options: Any) -> None:
+    """Say that --count changes nothing where it is given for files alone."""
+    if not isinstance(options, Reading) or getattr(options, "count", None) == fields_of(type(options))["count"].default:
+        return
+    words = [word.strip() for word in getattr(options, "normals", "").split(",")]
+    if all(Path(word).suffix.lower() in ENDINGS for word in words):
+        tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
 
 
 def given(made: NormalSet) -> Callable[[int, int], NormalSet]:

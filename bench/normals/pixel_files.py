@@ -185,7 +185,8 @@ def _read_npy(path: Path, choose: Choice) -> Pixels:
     stream = io.BytesIO(_bytes(path))
     shape, in_columns, kind = _npy_header(path, stream)
     if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):
-        raise refused(path, f"numbers of type {kind}", "float16, float32, float64, uint8 and uint16 are read")
+        signed = f"; save array / {np.iinfo(kind).max} as float32" if kind.kind == "i" else ""
+        raise refused(path, f"numbers of type {kind}", f"float16, float32, float64, uint8 and uint16 are read{signed}")
     if len(shape) not in (2, 3) or min(shape) < 1:
         raise refused(path, f"an array of shape {shape}", "(height, width, 3) or (count, 3) is read")
     count = math.prod(shape)

@@ -145,5 +145,12 @@ def names_a_file(word: str) -> bool:
     return False
 
 
+def names_a_folder(word: str) -> bool:
+    """Whether there is a folder of this name."""
+    with suppress(OSError, ValueError):
+        return bool(word) and Path(word).is_dir()
+    return False
+
+
 def quoted(names: Iterable[str]) -> str:
     return ", ".join(repr(name) for name in names)

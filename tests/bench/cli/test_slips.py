@@ -93,7 +93,12 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a shader that is not text": ((*ROW, "--encoding", "bytes.glsl"), "bytes.glsl: it is not text in UTF-8"),
     "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),
-    "a capture of another kind": (("quality", "--normals", "frame.jpg"), "a file that ends in .exr"),
+    "a capture of another kind": (("quality", "--normals", "frame.fbx1"), "a file that ends in .exr"),
+    "a JPEG": (("quality", "--normals", "frame.jpg"), "frame.jpg: JPEG changes normals; save the frame as EXR or PNG"),
+    "an archive": (("quality", "--normals", "frame.npz"), "frame.npz: an archive of arrays; save one array by np.save"),
+    "a folder of captures": (("quality", "--normals", "there"), "there: it is a folder; name the files in it"),
+    "two channels": (("quality", "--normals", "two.npy"), "two.npy: it has 0, 1; a normal has three channels; save z"),
+    "signed bytes": (("quality", "--normals", "signed.npy"), "uint8 and uint16 are read; save array / 127 as float32"),
     "a scene that is not": (("render", "--scene", "glos"), "did you mean gloss?"),
     "a mesh of another kind": (("render", "--scene", "scene.fbx"), "or a file that ends in"),
     "a layout that is not": (("render", "--layout", "unity"), "unknown layout 'unity'"),
@@ -155,6 +160,8 @@ def write_files() -> None:
     for name, text in FILES.items():
         Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
     np.save("f.npy", np.eye(3, dtype=np.float32))
+    np.save("two.npy", np.zeros((4, 4, 2), np.float32))
+    np.save("signed.npy", np.full((4, 4, 3), 73, np.int8))
 
 
 @pytest.mark.parametrize("what", SLIPS)
@@ -185,6 +192,15 @@ def test_what_is_measured_is_not_written_over(run, tmp_path, option, name):
 
 def test_there_are_forty_slips():
     assert len(SLIPS) >= 40
+
+
+def test_a_count_for_files_alone_is_told_to_change_nothing(run, tmp_path):
+    path = str(tmp_path / "f.npy")
+    np.save(path, np.eye(3, dtype=np.float32))
+    told = f"normalbench: --count has no effect on files: every normal of {path} is measured\n"
+    for names, said in ((path, told), (f"{path},sphere", "")):
+        words = ("--encoding", "octahedral", "--backend", "jax", "--count", "1000", "--normals", names)
+        assert run("quality", "--storage", "rg8", *words)[::2] == (0, said)
 
 
 def rows_of(run, *words: str) -> list[dict]:

@@ -145,7 +145,8 @@ def test_the_channels_that_are_normals_are_found(what):
 @pytest.mark.parametrize(
     "names, asked, said",
     [
-        (["depth", "id"], None, ["it has depth, id", "--channels x,y,z"]),
+        (["depth", "id"], None, ["it has depth, id; a normal has three channels"]),
+        (["depth", "id", "mask"], None, ["it has depth, id, mask", "--channels x,y,z"]),
         (["N.X", "N.Y", "N.Z", "normal.R", "normal.G", "normal.B"], None, ["N, normal", "--channels N"]),
         (["R", "G", "B"], "N", ["no channels 'N'", "it has R, G, B"]),
         (["R", "G", "B"], "R,G", ["no channels 'R,G'"]),
