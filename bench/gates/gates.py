@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_toml
+from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
@@ -45,8 +46,10 @@ def read_gates(path: Path) -> list[Gate]:
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
     found = data.get("gate")
-    if set(data) != {"gate"} or not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
-        raise UsageError(f"{path}: gates are [[gate]] tables, and nothing else is there")
+    if other := sorted(set(data) - {"gate"}):
+        raise UsageError(f"{path}: {other[0]!r} is not known; a file of gates has only [[gate]] tables")
+    if not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
+        raise UsageError(f"{path}: there is no [[gate]] table in it")
     if not 1 <= len(found) <= MAX_GATES:
         raise UsageError(f"{path}: {len(found)} gates; from 1 to {MAX_GATES}")
     return [_gate(f"{path}, gate {number}", values) for number, values in enumerate(found, 1)]
@@ -105,9 +108,20 @@ def _rows_of_run(run: Path) -> Measure:
         if not found:
             asked = ", ".join(f"{option} {value!r}" for option, value in gate.options.items())
             raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
-        return [Found(row, lambda: None) for row in gate.table.work.finish(found)]
+        rows = gate.table.work.finish(found)
+        for limit in gate.limits:
+            _check_was_measured(gate, limit, rows, run)
+        return [Found(row, lambda: None) for row in rows]
 
     return rows
+
+
+def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) -> None:
+    """Raises UsageError where a run lacks a figure because it was measured without the option that it needs."""
+    option = limit.option_of(gate.table)
+    if option and all(row.get(limit.column) is None and not row.get("skipped") for row in rows):
+        flag = fields_of(gate.table.options)[option].option.flag
+        raise UsageError(f"{gate.place}: {run} has no {limit.column}; measure the run with {flag}")
 
 
 def _is(value: Any, asked: Any) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..tables.table import Role, Table
 
@@ -43,6 +44,11 @@ class Limit:
             raise UsageError(
                 f"{table.name}: {self.column} is not a figure; `normalbench columns {table.name}` lists them"
             )
+
+    def option_of(self, table: Table) -> str:
+        """The option without which the column is not measured; empty for none."""
+        column = table.column(self.column)
+        return column.option if column and column.option in fields_of(table.options) else ""
 
     def broken_by(self, table: Table, row: Mapping[str, Any]) -> str | None:
         """What is to be said of a row that does not keep it; None where it does.

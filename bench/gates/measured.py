@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any
 
 from ..metrics.meter import Worst
-from ..options.option import checked_options, fields_of
-from ..output.errors import UsageError, noting_what_is_left_out
+from ..options.option import checked_options
+from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps
 from ..tables.registry import TABLES
 from ..tables.table import Row, Table
@@ -59,13 +60,22 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What a gate measures: what it says, and one row's worth of the rest. A layout is measured as it is."""
-    usual = {} if given.get("layout") is not None else table.single
+    """What a gate measures: what it says, and one row's worth of the rest.
+
+    A layout is measured as it is. A shader without a Python twin is measured by GLSL.
+    """
+    usual = {} if given.get("layout") is not None else dict(table.single)
+    if "backend" in usual and _is_in_glsl_only(str(given.get("encoding", ""))):
+        usual["backend"] = "glsl"
     return {**usual, **given}
+
+
+def _is_in_glsl_only(names: str) -> bool:
+    """Whether one of the names is a GLSL file without a Python twin."""
+    files = [Path(word.strip()) for word in names.split(",") if word.strip().endswith(".glsl")]
+    return any(names_a_file(str(file)) and not names_a_file(str(file.with_suffix(".py"))) for file in files)
 
 
 def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
     """The options, and those without which a limited column is not measured: `flip`, `worst_case`, `codes`."""
-    known = fields_of(table.options)
-    columns = [column for limit in limits if (column := table.column(limit.column))]
-    return dict(values) | {column.option: True for column in columns if column.option in known}
+    return dict(values) | {option: True for limit in limits if (option := limit.option_of(table))}

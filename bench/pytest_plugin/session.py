@@ -138,6 +138,9 @@ class Measured:
         limits = list(limits)
         for one in limits:
             one.check(self.table)
+            option = one.option_of(self.table)
+            if option and not getattr(self.table.options(**self.asked), option):
+                raise UsageError(f"{one.column} is measured only with {option}=True; add it")
         rows = self._measurable()
         self._raise_for([(one, [said for x in limits if (said := x.broken_by(self.table, one.row))]) for one in rows])
 

@@ -120,6 +120,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a run that is not": (("report", "missing"), "missing"),
     "gates that are not": (("check", "missing.toml"), "missing.toml: there is no such file"),
     "gates that are not text": (("check", "bytes.toml"), "bytes.toml: it is not text in UTF-8"),
+    "a plural": (("check", "plural.toml"), "'gates' is not known; a file of gates has only [[gate]] tables"),
     "a key twice": (("check", "twice.toml"), "twice.toml: line 3, column 18: a key or a table is given twice"),
     "TOML that is cut off": (("check", "cut.toml"), "cut.toml: its end: this is not TOML"),
     "a layout that is not there": (("render", "--layout", "missing.toml"), "missing.toml: there is no such file"),
@@ -149,6 +150,7 @@ FILES = {
     "short.glsl": "vec2 s_encode(vec3 n) { return n.xy; }",
     "decode.glsl": "vec2 d_encode(vec3 n, vec3 view) { return n.xy; } vec3 d_decode(vec2 e) { return vec3(e, 0.0); }",
     "twice.toml": '[[gate]]\nencoding = "xy"\nencoding = "cube"\n',
+    "plural.toml": "[[gates]]\n",
     "cut.toml": "gate = [",
 }
 

@@ -29,6 +29,29 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
 
 
+@pytest.mark.usefixtures("gl")
+def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
+    (tmp_path / "mine.glsl").write_text(
+        "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
+    )
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{tmp_path}/mine.glsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 1000\n'
+    path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
+    status, out, err = run("check", str(path), "--format", "json")
+    (row,) = json.loads(out)
+    assert (status, row["holds"]) == (0, "pass") and row["row"].endswith("glsl"), err
+
+
+def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_path):
+    path, folder = tmp_path / "gates.toml", str(tmp_path / "results")
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    assert run("run", "--tables", "quality", *words, "-o", folder)[0] == 0
+    path.write_text('[[gate]]\nencoding = "xy"\nangle_sup_deg = "at most 90"\n')
+    status, out, err = run("check", str(path), "--run", folder)
+    assert (status, out) == (2, "") and f"{folder} has no angle_sup_deg; measure the run with --worst-case" in err
+
+
 @pytest.mark.parametrize(
     "encoding, said",
     [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],
@@ -126,10 +149,11 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("", "gates are [[gate]] tables"),
-        ("gate = 1", "gates are [[gate]] tables"),
+        ("", "there is no [[gate]] table in it"),
+        ("gate = 1", "there is no [[gate]] table in it"),
         ("gate = []", "0 gates; from 1"),
-        ("[[gate]]\n[other]", "gates are [[gate]] tables"),
+        ("[[gate]]\n[other]", "'other' is not known; a file of gates has only [[gate]] tables"),
+        ('[[gates]]\nencoding = "xy"', "'gates' is not known; a file of gates has only [[gate]] tables"),
         ("[[gate]", "this is not TOML"),
         ('[[gate]]\nencoding = "xy"', "no limit given"),
         ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a limit; say"),

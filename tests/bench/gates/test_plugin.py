@@ -127,6 +127,7 @@ MISUSE = {
     f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a limit; say "at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
+    f"quality(**{SMALL}).assert_that(angle_sup_deg='at most 5')": "angle_sup_deg is measured only with worst_case=True",
     f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; take one of .rows",
     f"quality(**{SMALL}).matches_baseline()": "--normalbench-baseline FILE names one",
 }
@@ -229,7 +230,7 @@ def test_a_file_of_gates_is_tests(inside, pytester):
     result.stdout.fnmatch_lines(["xy rgba8 nearest sphere jax: psnr_db is *, not at least 50", "  worst normal: (*"])
     result = inside("other.toml")
     result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines(["*other.toml: gates are [[][[]gate]] tables, and nothing else is there"])
+    result.stdout.fnmatch_lines(["*other.toml: 'x' is not known; a file of gates has only [[][[]gate]] tables"])
 
 
 BOTH = """
