@@ -10,9 +10,10 @@ Arrays are float of shape (count, 3): unit normals as the file has them, before 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,34 +86,40 @@ def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
     return Pixels(found, (2 * column + 1 - width) / height, 1 - (2 * row + 1) / height, True)
 
 
-def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Iterator[tuple[str, object]]:
-    """What is likely wrong with the space that the normals are read in: at most one finding.
+class Finding(NamedTuple):
+    """What is likely wrong with the space that normals are read in.
+
+    Attributes:
+        said: a line that lacks its remedy.
+        remedy: a matrix (3, 3) to use instead, an angle of view, or None where nothing helps that is known here.
+    """
+
+    said: str
+    remedy: np.ndarray | float | None
+
+
+def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Finding | None:
+    """What is likely wrong with the space that the normals are read in; None where nothing is.
 
     Args:
         to_view: what turns the file's normals to view space, as the frame is read.
         fov: the vertical angle of view in degrees as it was given, if it was.
         is_world: whether `to_view` is a view matrix.
-
-    Returns:
-        a line that lacks its remedy, and the remedy: a matrix (3, 3) to use instead of `to_view`, an angle of view, or
-        None where nothing helps that is known here.
     """
     share, _ = pixels.least_away(to_view, fov)
     if share <= (AWAY if pixels.has_places else AWAY_OF_A_LIST):
-        return
+        return None
     said = f"{share:.0%} of the normals face away from the viewer"
     readings = _of_a_matrix(to_view) if is_world else IN_VIEW_SPACE
     for what, matrix in readings.items():
         other, _ = pixels.least_away(matrix, fov)
         if other < LESS * share and other < AWAY:
-            yield f"{said}, {other:.0%} if {what}", matrix
-            return
+            return Finding(f"{said}, {other:.0%} if {what}", matrix)
     if fov is not None and pixels.has_places:
         other, field = pixels.least_away(to_view, None)
         if other < LESS * share and other < AWAY:
-            yield f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field
-            return
-    yield said, None
+            return Finding(f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field)
+    return Finding(said, None)
 
 
 def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:

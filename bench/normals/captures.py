@@ -327,10 +327,11 @@ def _which_way(n: np.ndarray, covered: np.ndarray, to_view: np.ndarray, reading:
     """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
     is_world = SPACES[reading.space] is None
     pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
-    return [f"{said}: {_remedy(found, is_world)}" for said, found in which_way(pixels, to_view, reading.fov, is_world)]
+    found = which_way(pixels, to_view, reading.fov, is_world)
+    return [f"{found.said}: {_remedy(found.remedy, is_world)}"] if found else []
 
 
-def _remedy(found: object, is_world: bool) -> str:
+def _remedy(found: np.ndarray | float | None, is_world: bool) -> str:
     if isinstance(found, np.ndarray):
         space = next(
             (name for name, known in SPACES.items() if known is not None and np.array_equal(known, found)), None
