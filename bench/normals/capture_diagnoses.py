@@ -28,6 +28,7 @@ FIELDS = (0.0, *range(5, 121, 5))
 # Pixels looked at.
 MOST = 2**15
 MIRRORED = np.diag([1.0, 1.0, -1.0])
+SWAPPED = np.eye(3)[::-1]
 # How a frame in view space is read wrongly: what mends it turns the file's normals to view space.
 IN_VIEW_SPACE: Mapping[str, np.ndarray] = MappingProxyType(
     {
@@ -35,7 +36,7 @@ IN_VIEW_SPACE: Mapping[str, np.ndarray] = MappingProxyType(
         "z points towards the viewer": np.eye(3),
         "y points down, or rows run from the bottom up": np.diag([1.0, -1.0, 1.0]),
         "y points down and z into the screen": np.diag([1.0, -1.0, -1.0]),
-        "red and blue are swapped": np.eye(3)[::-1],
+        "red and blue are swapped": SWAPPED,
     }
 )
 

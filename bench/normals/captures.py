@@ -17,7 +17,7 @@ from ...encodings.codecs.files import called, file_text
 from ...encodings.storages.rounding import from_srgb, to_srgb
 from ..options.option import Reading
 from ..output.errors import UsageError, pick_one
-from .capture_diagnoses import MIRRORED, some_pixels, which_way
+from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
 from .normal_sets import NormalSet, from_arrays
 from .pixel_files import READERS, Pixels, read_pixels, refused
 
@@ -58,12 +58,18 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     """
     reading = checked(reading)
     to_view, notes = view_matrix(reading)
-    pixels = read_pixels(path, lambda names: chosen_channels(path, names, reading.channels))
+    chosen: list[str] = []
+
+    def choose(names: Sequence[str]) -> Sequence[str]:
+        chosen[:] = chosen_channels(path, names, reading.channels)
+        return chosen
+
+    pixels = read_pixels(path, choose)
     surface = _mask(path, reading, pixels.shape)
     n, covered, of_lengths = _directions(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
-    notes += of_lengths + _which_way(n, covered, to_view, reading)
+    notes += of_lengths + _which_way(n, covered, to_view, reading, chosen)
     if pixels.full == EIGHT_BITS:
         notes.append(
             "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
@@ -323,15 +329,19 @@ def typed(matrix: np.ndarray) -> str:
     return ",".join(f"{value + 0.0:.7g}" for value in matrix.ravel())
 
 
-def _which_way(n: np.ndarray, covered: np.ndarray, to_view: np.ndarray, reading: Reading) -> list[str]:
+def _which_way(
+    n: np.ndarray, covered: np.ndarray, to_view: np.ndarray, reading: Reading, chosen: Sequence[str]
+) -> list[str]:
     """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
     is_world = SPACES[reading.space] is None
     pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
     found = which_way(pixels, to_view, reading.fov, is_world)
-    return [f"{found.said}: {_remedy(found.remedy, is_world)}"] if found else []
+    return [f"{found.said}: {_remedy(found.remedy, is_world, chosen)}"] if found else []
 
 
-def _remedy(found: np.ndarray | float | None, is_world: bool) -> str:
+def _remedy(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
+    if found is SWAPPED:
+        return f"read it with --channels {','.join(reversed(chosen))}"
     if isinstance(found, np.ndarray):
         space = next(
             (name for name, known in SPACES.items() if known is not None and np.array_equal(known, found)), None

@@ -138,7 +138,7 @@ WRONG = {
     ),
     "red and blue swapped": Wrong(
         lambda path: floats(path, N[..., ::-1]),
-        "red and blue are swapped: read it with --space world --view-matrix 0,0,1,0,1,0,1,0,0",
+        "red and blue are swapped: read it with --channels 2,1,0",
         Reading(),
         Reading(channels="2,1,0"),
     ),
