@@ -69,7 +69,13 @@ COLUMNS = (
     Column("front", "Whether no other code is as good in every figure and better in one.", HOW, shown=False),
     shared.BITS,
     Column("angle_mean_deg", "Mean angle between normal and decode.", unit="degrees", better="less"),
-    Column("angle_max_deg", "The largest angle that was met.", unit="degrees", better="less"),
+    Column(
+        "angle_max_deg",
+        "The largest angle among the `count` normals that were measured. The largest error in the answer's sentences "
+        "is angle_sup_deg where that is larger.",
+        unit="degrees",
+        better="less",
+    ),
     Column(
         "angle_sup_deg",
         "The supremum: the largest angle of exact arithmetic. Of the best; with --aim worst of all that qualify.",
