@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
+from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.storage import Storage
@@ -58,6 +59,8 @@ def encoding(
     """
     if not name.isidentifier() or components not in CODES:
         raise UsageError(f"encoding {name!r}: the name is an identifier, and components are 2 or 3")
+    if name in ENCODINGS:
+        raise UsageError(f"encoding {name!r}: the catalogue has one of this name; choose another name")
     twin = glsl or Path(f"{name}.glsl")
     return Encoding(name, name, encode, decode, components, domain, "the caller's own", twin, (0, 0), "not compared")
 

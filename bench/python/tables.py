@@ -99,6 +99,8 @@ def _typed(key: str, value: Any) -> Any:
     several = list(value) if isinstance(value, list | tuple) else [value]
     if isinstance(value, Mapping):
         return Words(list(value), {name: _value(key, name, one) for name, one in value.items()})
+    if key == "size" and len(several) == 2 and all(isinstance(side, int) for side in several):
+        return f"{several[0]}x{several[1]}"
     if not any(isinstance(one, Encoding | Storage) for one in several) and not isinstance(value, list | tuple):
         return value
     own = {one.name: one for one in several if isinstance(one, Encoding | Storage)}

@@ -98,12 +98,19 @@ def test_every_table_is_a_function_that_says_its_options(name):
         (lambda: nb.quality(encodings="xy"), "unknown option 'encodings'"),
         (lambda: nb.quality(count="many"), "count is 'many'"),
         (lambda: nb.encoding("my own", None, None), "identifier"),
+        (lambda: nb.encoding("octahedral", None, None), "encoding 'octahedral': the catalogue has one of this name"),
     ],
 )
 def test_misuse_is_one_line(call, said):
     with pytest.raises(UsageError, match=said) as error:
         call()
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_size_may_be_two_numbers():
+    rows = nb.render(size=(64, 48), lights=2, repeats=1, layout="fp32")
+    assert list(rows["size"]) == ["64x48"]
 
 
 UNIT = np.eye(3, dtype=np.float32)
