@@ -23,7 +23,7 @@ from ...encodings.errors import CatalogueError
 from ...reports.charts.plots import PlotError
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
-from ..output.writing import abandon_output, write
+from ..output.writing import abandon_output, check_is_folder, check_page, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from .commands import add_tables, command_with
@@ -109,6 +109,7 @@ add_tables(app, TABLES.values())
 def _run(options: Any, output: Path | None) -> int:
     from ..suite.run import run_command
 
+    check_is_folder(output, "run writes into")
     return run_command(options, output)
 
 
@@ -199,6 +200,7 @@ def report(
     """
     from ..suite.report import report_command
 
+    check_page(None if markdown else output)
     report_command(run, markdown, pictures is PicturePlace.beside, output)
 
 

@@ -11,6 +11,7 @@ import typer
 
 from ..options.counts import whole_number
 from ..options.option import Field, Reading, fields_of
+from ..output.writing import check_is_folder, check_page
 from ..tables.table import Table
 from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
 from .names import NAMES, completion_of
@@ -39,6 +40,8 @@ def command_of(table: Table) -> Callable[..., int]:
     def command(format: Format | None, output: Path | None, report: Path | None, **typed: Any) -> int:
         from ..suite.table_command import table_command
 
+        check_page(report)
+        check_is_folder(typed.get("images"), "--images writes into")
         options, outputs = (_made(group, typed) for group in (table.options, table.outputs))
         return table_command(table, options, outputs, format_of(format, output), output, report)
 

@@ -18,6 +18,8 @@ from .errors import UsageError
 
 # Of a run's rows, facts and tables.
 OWN_SUFFIXES = (".json", ".jsonl", ".csv", ".parquet")
+NOT_PAGES = (".pdf", ".png", ".svg", ".md", ".csv", ".json")
+FILE_SUFFIXES = (*NOT_PAGES, ".jpg", ".jpeg", ".exr", ".html", ".parquet", ".txt")
 
 
 def check_writable(path: Path, makes_folder: bool = False) -> None:
@@ -111,6 +113,18 @@ def whole_file(path: Path) -> Iterator[Path]:
     finally:
         if partial != path:
             partial.unlink(missing_ok=True)
+
+
+def check_page(path: Path | None) -> None:
+    """Raises UsageError where the name of a page is that of another kind of file; None will do."""
+    if path and path.suffix.lower() in NOT_PAGES:
+        raise UsageError(f"{path}: the page is HTML; name it {path.with_suffix('.html')}")
+
+
+def check_is_folder(path: Path | None, what: str) -> None:
+    """Raises UsageError where a folder is called like a file, or a file has its name; None will do."""
+    if path and not path.is_dir() and (path.is_file() or path.suffix.lower() in FILE_SUFFIXES):
+        raise UsageError(f"{path}: {what} a folder; name one, such as {path.with_suffix('').name or 'pictures'}")
 
 
 def check_plot(path: Path | None) -> None:
