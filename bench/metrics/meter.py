@@ -249,7 +249,11 @@ def _worst(keys: np.ndarray, n: Vec3, decoded: Vec3) -> Worst | None:
     if highest < 0:
         return None
     at = np.flatnonzero(keys == highest)
-    normals, found = (np.stack([np.asarray(plane).ravel()[at] for plane in planes], axis=1) for planes in (n, decoded))
+    normals, found = ([np.asarray(plane).ravel()[at] for plane in planes] for planes in (n, decoded))
+    # What comes back as it was has an angle of 0: the first of these stands for all.
+    moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
+    some = np.concatenate([[0], np.flatnonzero(moved)])
+    normals, found = (np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found))
     angles = _angles(normals.astype(np.float64), found.astype(np.float64))
     first = int(np.argmax(angles))
     return Worst(normals[first], found[first], float(angles[first]))
