@@ -13,6 +13,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..metrics.angles import angles_deg
+
 # Two directions this near are the same one; storages of 8 bits move them by half of it.
 SAME_DEG = 1.0
 # And this near nearly so: a scale that is a few hundredths off.
@@ -50,7 +52,7 @@ class Trip:
 
     def angles(self) -> np.ndarray:
         """How far each comes back, in degrees."""
-        return angles(self.n, self.decoded)
+        return angles_deg(self.n, self.decoded)
 
     def example(self, at: int) -> str:
         """A direction and what it becomes."""
@@ -70,13 +72,6 @@ DOMAINS: Mapping[str, Callable[[Trip], np.ndarray]] = MappingProxyType(
         "view": lambda trip: np.sum(trip.n * trip.view, axis=1) < 0,
     }
 )
-
-
-def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Degrees between vectors of any length."""
-    one, other = one.astype(np.float64), other.astype(np.float64)
-    across = np.linalg.norm(np.cross(one, other), axis=1)
-    return np.degrees(np.arctan2(across, np.sum(one * other, axis=1)))
 
 
 def vector(values: np.ndarray) -> str:
@@ -116,7 +111,7 @@ def _other_half(trip: Trip, domain: str) -> Iterator[str]:
         yield f"directions with z < 0 come back with {what}: {behind.worst}"
     # A fold that keeps signs and swaps the rest.
     sizes = np.abs(behind.n)[:, (1, 0, 2)]
-    if (angles(sizes, np.abs(behind.decoded)) < SAME_DEG).mean() > MOST:
+    if (angles_deg(sizes, np.abs(behind.decoded)) < SAME_DEG).mean() > MOST:
         yield f"directions with z < 0 come back with |x| and |y| swapped: is .yx missing? {behind.worst}"
 
 
@@ -142,7 +137,7 @@ def _axes_of(trip: Trip) -> str:
         for signs in itertools.product((1, -1), repeat=3):
             if order == (0, 1, 2) and signs == (1, 1, 1):
                 continue
-            if (angles(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
+            if (angles_deg(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
                 return _said(order, signs)
     return ""
 
@@ -173,7 +168,7 @@ def _poles(trip: Trip) -> Iterator[str]:
     """Directions beside an axis that come back elsewhere, by a large part of their distance from it."""
     for axis, side in itertools.product(range(3), (1.0, -1.0)):
         pole = side * np.eye(3)[axis]
-        beside = angles(trip.n, np.broadcast_to(pole, trip.n.shape))
+        beside = angles_deg(trip.n, np.broadcast_to(pole, trip.n.shape))
         near = (beside > POLE_DEG / 2) & (beside < 2 * POLE_DEG)
         if not near.any():
             continue

@@ -23,6 +23,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
 from ..machine.cores import on_all_cores
+from .angles import angles_deg
 
 BLOCK = 2**14
 FAST_BLOCK = 2**15
@@ -254,7 +255,7 @@ def _worst(keys: np.ndarray, n: Vec3, decoded: Vec3) -> Worst | None:
     moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
     some = np.concatenate([[0], np.flatnonzero(moved)])
     normals, found = (np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found))
-    angles = _angles(normals.astype(np.float64), found.astype(np.float64))
+    angles = _angles(normals, found)
     first = int(np.argmax(angles))
     return Worst(normals[first], found[first], float(angles[first]))
 
@@ -262,9 +263,8 @@ def _worst(keys: np.ndarray, n: Vec3, decoded: Vec3) -> Worst | None:
 def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
     """As `angle_between`, in float64, of rows; 180 where a decode is not a number."""
     with np.errstate(invalid="ignore", over="ignore"):
-        across, along = np.linalg.norm(np.cross(n, decoded - n), axis=1), np.sum(n * decoded, axis=1)
-        angles = np.degrees(np.arctan2(across, along))
-    return np.where(np.isfinite(along) & (decoded != 0).any(axis=1), angles, 180.0)
+        angles = angles_deg(n, decoded)
+    return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
 
 
 class Total:

@@ -1,12 +1,14 @@
 """The encodings in NumPy, whole arrays of shape (count, 3), as one would write them in an afternoon.
 
-What the throughput is held against, and a second, independent implementation for the tests: nothing here is shared with
-the catalogue. Any float dtype; codes are signed.
+What the throughput is held against, and a second, independent implementation for the tests: no encoding here is shared
+with the catalogue. Any float dtype; codes are signed.
 """
 
 from __future__ import annotations
 
 import numpy as np
+
+from ..metrics.angles import angles_deg
 
 
 def quantise_unorm(code: np.ndarray, levels: int = 255) -> np.ndarray:
@@ -131,16 +133,10 @@ def squared_error_and_maximum(n: np.ndarray, d: np.ndarray) -> tuple[float, floa
     return float(squared.mean()), float(squared.max())
 
 
-def angles(n: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """The angle between each pair, degrees, in float64."""
-    n, d = n.astype(np.float64), d.astype(np.float64)
-    return np.degrees(np.arctan2(np.linalg.norm(np.cross(n, d), axis=1), np.sum(n * d, axis=1)))
-
-
 def whole_row(n: np.ndarray, d: np.ndarray) -> tuple[float, ...]:
     """MSE, the article's 8-bit MSE, and mean, RMS, 99th percentile and largest of the angle in degrees."""
     difference = np.abs(n - d)
-    angle = angles(n, d)
+    angle = angles_deg(n, d)
     return (
         float(np.mean(difference**2)),
         float(np.mean((np.round(np.minimum(difference, 1) * 255) / 255) ** 2)),

@@ -14,11 +14,12 @@ from skimage.metrics import peak_signal_noise_ratio
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.machine.cores import cores, on_all_cores
 from normalbench.bench.metrics import meter as metrics
+from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.metrics.meter import Meter, angle_between, compiled, psnr_db, squared_errors
 from normalbench.bench.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.options import counts
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.throughput.numpy_baseline import angles, whole_row
+from normalbench.bench.throughput.numpy_baseline import whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
@@ -48,7 +49,7 @@ def test_small_angles_keep_six_digits_in_float32():
     n = random_directions(2**16)
     degrees = np.geomspace(1e-5, 179.9, len(n))
     other = turned(n, degrees).astype(np.float32)
-    got, expected = measured_angles(n, other), angles(n, other)
+    got, expected = measured_angles(n, other), angles_deg(n, other)
     worst = np.argmax(np.abs(got - expected) / expected)
     assert got[worst] == pytest.approx(expected[worst], rel=2e-6), f"at {degrees[worst]} degrees"
 
