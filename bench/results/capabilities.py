@@ -3,64 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from importlib.util import find_spec
 from types import MappingProxyType
 
-from ...gbuffer.gl.device import NoDeviceError, device
-from ..isa import spirv
-from ..machine.devices import require_jax
+from ...reports import tables
+from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..output.errors import MissingError
+from .machine import require_compilers
 
 
-def _jax() -> str:
-    try:
-        require_jax()
-    except MissingError as error:
-        return str(error)
-    return ""
+def _require_parquet() -> None:
+    if not tables.has_parquet():
+        raise MissingError("pip install pyarrow")
 
 
-def _gl() -> str:
-    try:
-        device()
-    except NoDeviceError as error:
-        return str(error)
-    return ""
-
-
-def _compilers() -> str:
-    found = (
-        (spirv.version(spirv.COMPILER), spirv.NO_COMPILER),
-        (spirv.version(spirv.OPTIMISER), spirv.NO_OPTIMISER),
-    )
-    return "; ".join(missing for version, missing in found if not version)
-
-
-def _flip() -> str:
-    try:
-        require_flip()
-    except MissingError as error:
-        return str(error)
-    return ""
-
-
-def _parquet() -> str:
-    return "" if find_spec("pyarrow") else "pip install pyarrow"
-
-
-# What there is to do, and what is missing for it; nothing where all is there.
-CAPABILITIES: Mapping[str, Callable[[], str]] = MappingProxyType(
+# What there is to do, and what raises MissingError where something is missing for it.
+CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
     {
-        "quality, depth, frames by JAX": _jax,
-        "quality by GLSL, render, lights, sweep": _gl,
-        "instructions (cost --isa, pick)": _compilers,
-        "render --flip": _flip,
-        "-o FILE.parquet": _parquet,
+        "quality, depth, frames by JAX": require_jax,
+        "quality by GLSL, render, lights, sweep": require_device,
+        "instructions (cost --isa, pick)": require_compilers,
+        "render --flip": require_flip,
+        "-o FILE.parquet": _require_parquet,
     }
 )
 
 
 def capabilities() -> dict[str, str]:
     """ "yes" for each of CAPABILITIES, or "no" with what to install."""
-    return {name: f"no: {missing}" if (missing := lacks()) else "yes" for name, lacks in CAPABILITIES.items()}
+    return {name: _answer(require) for name, require in CAPABILITIES.items()}
+
+
+def _answer(require: Callable[[], object]) -> str:
+    try:
+        require()
+    except MissingError as error:
+        return f"no: {error}"
+    return "yes"

@@ -13,6 +13,7 @@ from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
+from ..output.errors import MissingError
 
 ROUNDS = {
     "nearest": "nearest",
@@ -40,7 +41,7 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | _gl() | _compilers()
+    return facts | _gl() | {"RADV": isa.driver_version()} | _compilers()
 
 
 def _gl() -> dict[str, str]:
@@ -61,18 +62,19 @@ def _gl() -> dict[str, str]:
 
 
 def _compilers() -> dict[str, str]:
-    """What `cost` counts instructions by."""
+    """The compilers of shaders; of one that is missing, what to install."""
     glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
     return {
-        "RADV": isa.driver_version(),
         "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
         "SPIR-V optimiser": optimiser.splitlines()[0] if optimiser else spirv.NO_OPTIMISER,
     }
 
 
-def lacks_compilers() -> bool:
-    """Whether there is something that `cost --isa` would have to do without."""
-    return any("install" in value for value in _compilers().values())
+def require_compilers() -> None:
+    """Raises MissingError where a compiler of shaders is missing."""
+    missing = [said for said in _compilers().values() if said in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
+    if missing:
+        raise MissingError("; ".join(missing))
 
 
 def examine() -> list[dict[str, str]]:

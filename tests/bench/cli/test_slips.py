@@ -13,6 +13,7 @@ import typer
 from normalbench.bench.cli.app import app
 from normalbench.bench.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
+from normalbench.reports import tables
 
 ROW = ("quality", "--storage", "rg8", "--normals", "sphere", "--backend", "jax", "--count", "1000")
 ONE = (*ROW, "--encoding", "octahedral")
@@ -339,9 +340,7 @@ def test_a_list_fits_the_terminal_with_a_table_for_each_kind(run, monkeypatch, w
 
 
 def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
-    from normalbench.bench.results import capabilities
-
-    monkeypatch.setattr(capabilities, "find_spec", lambda _: None)
+    monkeypatch.setattr(tables, "find_spec", lambda _: None)
     status, out, _ = run("doctor", "--format", "json")
     rows = {row["name"]: row["value"] for row in json.loads(out)}
     assert status == 0 and rows["quality, depth, frames by JAX"] == "yes"
