@@ -9,6 +9,7 @@ REPRODUCED, SHORT, HOLDS = "reproduced", "short by sampling", "holds"
 DIFFERENT, NOT_MEASURED, UNEXPLAINED = "different", "not measured", "unexplained"
 # How far a maximum of some million samples may lie below the supremum, as a share of it.
 SHORT_BY = 0.02
+DEGREES, DECIBELS = "degrees", "dB"
 
 
 class Measure(Protocol):
