@@ -48,6 +48,15 @@ def _set(name: str) -> NormalSet:
     return NORMAL_SETS[name](COUNT, 0)
 
 
+class Exact:
+    """A measure without samples of its own: another measurement gives the same figure."""
+
+    @property
+    def scatter(self) -> float:
+        """See figure.Measure."""
+        return 0.0
+
+
 @dataclass(frozen=True)
 class Quality:
     """A column of the quality table."""
@@ -78,7 +87,7 @@ class Quality:
 
 
 @dataclass(frozen=True)
-class ArticleMse:
+class ArticleMse(Exact):
     """The squared error that the article's PSNR stands for."""
 
     encoding: str
@@ -87,11 +96,6 @@ class ArticleMse:
     def command(self) -> str:
         """What shows it."""
         return f"{Quality(self.encoding, published.STORAGE, '', published.NORMALS).command}; 10^(-psnr_article_db / 10)"
-
-    @property
-    def scatter(self) -> float:
-        """None: it is a picture's."""
-        return 0.0
 
     def figure(self) -> float | None:
         """10^(-PSNR / 10)"""
@@ -140,7 +144,7 @@ def _instructions() -> dict[tuple[str, str], float]:
 
 
 @dataclass(frozen=True)
-class Instructions:
+class Instructions(Exact):
     """Instructions of an operation in a fragment shader."""
 
     encoding: str
@@ -152,18 +156,13 @@ class Instructions:
         words = f"--encoding {self.encoding} --operation {self.operation}"
         return f"normalbench cost --isa --family {FAMILY} --stage {STAGE} {words}"
 
-    @property
-    def scatter(self) -> float:
-        """None: they are counted."""
-        return 0.0
-
     def figure(self) -> float | None:
         """How many; None where there is no compiler."""
         return _instructions().get((self.encoding, self.operation))
 
 
 @dataclass(frozen=True)
-class Counted:
+class Counted(Exact):
     """What a few lines compute."""
 
     compute: Callable[[], float]
@@ -173,11 +172,6 @@ class Counted:
     def command(self) -> str:
         """What shows it."""
         return f"normalbench published --source {self.source}"
-
-    @property
-    def scatter(self) -> float:
-        """None: it is exact."""
-        return 0.0
 
     def figure(self) -> float | None:
         """Its value."""
