@@ -33,7 +33,6 @@ from .typed import added_up, check_begins_with_command
 app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
-    help="Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does.",
 )
 
 # What `list` leaves out where the terminal is narrow.
