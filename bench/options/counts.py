@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from decimal import Decimal
 from typing import Any, TypeVar
 
 from ..output.errors import UsageError
@@ -30,6 +29,8 @@ def whole_number(text: str | int) -> int:
     if re.fullmatch(r"[-+]?\d+", word):
         return int(word)
     if number := re.fullmatch(r"([-+]?\d+(?:\.\d+)?)(?:e\+?(\d{1,2})|([kmg]))", word):
+        from decimal import Decimal
+
         times = 10 ** int(number[2]) if number[2] else TIMES[number[3]]
         value = Decimal(number[1]) * times
         if value == int(value):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from types import MappingProxyType
 
 # By what is named: other words for it, in lower case and without marks.
@@ -54,6 +53,8 @@ def meant(word: str, known: Iterable[str]) -> str:
     parts = [part for part in re.split(r"[\s;|+]+", word) if part]
     if len(parts) > 1 and all(part in known or "." in part for part in parts):
         return f"separate names by commas: {','.join(parts)}"
+    from difflib import get_close_matches
+
     by_plain = {plain(name): name for name in known}
     near = get_close_matches(plain(word), by_plain, n=1, cutoff=0.75)
     return f"did you mean {by_plain[near[0]]}?" if near else ""
