@@ -58,7 +58,8 @@ def encodings_named(names: str) -> list[Encoding]:
     """
     check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
-    for word in words:
+    own = given_in(names)
+    for word in (word for word in words if word not in own):
         _check_word(word)
     files, complaints, notes = _read_all([word for word in words if word.endswith(ENDING)])
     rest = [word for word in words if word in files or not word.endswith(ENDING)]
@@ -67,7 +68,7 @@ def encodings_named(names: str) -> list[Encoding]:
     for line in complaints:
         leave_out(line)
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
-    picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **given_in(names)})
+    picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
     # At last: an error is one line alone.
     for line in notes:
         tell(line)

@@ -14,6 +14,7 @@ from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.output.errors import UsageError
 from normalbench.bench.python import stub
 from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
 
 CODECS = (
@@ -105,6 +106,15 @@ def test_misuse_is_one_line(call, said):
     with pytest.raises(UsageError, match=said) as error:
         call()
     assert "\n" not in str(error.value)
+
+
+def test_an_encoding_may_have_the_name_of_its_glsl_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.glsl").write_text("")
+    xy = ENCODINGS["xy"]
+    mine = nb.encoding("mine", xy.encode, xy.decode, domain="hemisphere")
+    rows = nb.quality(encoding=mine, storage="rg8", normals="axes", backend="jax")
+    assert list(rows["encoding"]) == ["mine"]
 
 
 @pytest.mark.usefixtures("gl")
