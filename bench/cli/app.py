@@ -180,7 +180,7 @@ class PicturePlace(StrEnum):
 
 @app.command()
 def report(
-    run: Annotated[Path, typer.Argument(help="A results folder.")],
+    runs: Annotated[list[Path], typer.Argument(help="A results folder; or several, to compare.", metavar="RUN...")],
     markdown: Annotated[
         bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
     ] = False,
@@ -190,17 +190,19 @@ def report(
     ] = PicturePlace.inside,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Write the page to this file. Default: report.html in the folder."),
+        typer.Option("-o", "--output", help="The page. Default: report.html in the folder; runs.html for several."),
     ] = None,
 ) -> None:
     """A run on one page: who wins, tables, pictures, charts, and how each figure was measured. Opens offline.
+
+    Several runs on one page: what differs, on which machines, and every figure side by side.
 
     The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
     """
     from ..suite.report import report_command
 
     check_page(None if markdown else output)
-    report_command(run, markdown, pictures is PicturePlace.beside, output)
+    report_command(runs, markdown, pictures is PicturePlace.beside, output)
 
 
 def _say(message: str) -> None:

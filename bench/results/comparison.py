@@ -30,13 +30,13 @@ def compared(before: Done, after: Done) -> list[Row]:
     found: list[Row] = []
     for name in dict.fromkeys([*ours, *theirs]):
         table = TABLES.get(name)
-        before_rows, after_rows = (_named(table, rows.get(name, [])) for rows in (ours, theirs))
+        before_rows, after_rows = (named_rows(table, rows.get(name, [])) for rows in (ours, theirs))
         found += _between(name, table, before_rows, after_rows, same_machine)
     return sorted(found, key=lambda row: -row["severity"])
 
 
-def _named(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
-    """Rows by what they are called, and those called alike by their order."""
+def named_rows(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
+    """Rows by what they are called, and those that are called alike by their order."""
     found: dict[tuple[str, int], Row] = {}
     counts: dict[str, int] = {}
     for row in rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +15,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES
 from ...reports.charts import drawings
 from ...reports.charts.pareto import Panel, Point, decibels
-from ...reports.page import embedded, library, markdown, page
+from ...reports.page import embedded, library, markdown, page, several
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, SphereMap, plain_text
 from ...reports.page.pixels import Subject
@@ -23,9 +23,10 @@ from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..output import cache
-from ..output.errors import tell
+from ..output.errors import UsageError, tell
 from ..output.sources import sources
 from ..output.writing import check_folder, check_writable, files_of, say, whole_file
+from ..results import side_by_side
 from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
 from ..tables.cost.measure import OPERATIONS, listing
@@ -34,6 +35,7 @@ from ..tables.quality import sphere_maps
 from ..tables.registry import TABLES, table_of_run
 from ..tables.table import Role, Table
 
+SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES, MAPS, LISTINGS = "report.html", "charts", "pictures", "sphere", "disassembly"
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
@@ -41,18 +43,52 @@ STAGE, LISTED = "fragment", 2**20
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
-def report_command(folder: Path, as_markdown: bool, pictures_beside: bool, output: Path | None) -> None:
-    """Write a run's page and charts, or a text for a pull request; the run's own files stay as they are."""
-    done = read_run(folder)
-    if done.damage:
-        tell(f"{done.damage}")
-    if not as_markdown:
+def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: bool, output: Path | None) -> None:
+    """Write a page and charts of a run, a page of several, or a text for a pull request; runs stay as they are.
+
+    Raises:
+        UsageError: a folder is not a run's, or the page cannot be written.
+    """
+    done = [read_run(folder) for folder in folders]
+    for damage in filter(None, (one.damage for one in done)):
+        tell(f"{damage}")
+    if len(folders) > 1:
+        _report_several(folders, done, as_markdown, pictures_beside, output)
+    elif as_markdown:
+        _write_text(lambda: markdown.markdown(gathered(folders[0], done[0])), output)
+    else:
         charts = f"{output.stem}-{CHARTS}" if output else CHARTS
-        say(f"{write_report(folder, done, output or folder / PAGE, charts, pictures_beside)}\n")
+        say(f"{write_report(folders[0], done[0], output or folders[0] / PAGE, charts, pictures_beside)}\n")
+
+
+def _report_several(
+    folders: Sequence[Path], done: Sequence[Done], as_markdown: bool, pictures_beside: bool, output: Path | None
+) -> None:
+    if pictures_beside:
+        raise UsageError("--pictures is for the page of one run; a page of several compares figures")
+    names = side_by_side.labels([str(plain_text(folder.resolve().name)) for folder in folders])
+    runs = dict(zip(names, map(_cleaned, done), strict=True))
+    if as_markdown:
+        _write_text(lambda: several.markdown(names, list(side_by_side.sheets(runs))), output)
         return
+    target = output or Path(SEVERAL)
+    check_writable(target)
+    made = several.html(names, list(side_by_side.sheets(runs)), list(side_by_side.figures(runs)))
+    with whole_file(target) as partial:
+        partial.write_text(made, encoding="utf-8")
+    say(f"{target}\n")
+
+
+def _cleaned(done: Done) -> Done:
+    """A run of plain text and numbers, whatever its files hold."""
+    steps = [{"table": plain_text(step["table"]), "key": {}, "rows": _clean(step["rows"])} for step in done.steps]
+    return Done(plain_text(done.facts), steps, done.damage)
+
+
+def _write_text(make: Callable[[], str], output: Path | None) -> None:
     if output:
         check_writable(output)
-    text = markdown.markdown(gathered(folder, done))
+    text = make()
     if not output:
         say(text)
         return

@@ -85,6 +85,11 @@ def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
     return _table(Sheet(title, rows), says, lambda _: "", ())
 
 
+def shown_sheet(sheet: Sheet) -> Table:
+    """A sheet whose columns need no definition."""
+    return _table(sheet, lambda _: "", lambda _: "", ())
+
+
 def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str], encodings: Container[str]) -> Table:
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
@@ -202,7 +207,8 @@ def drawings(found: Found) -> list[Drawing]:
     return [drawing for section in found.sections for drawing in section.drawings] + spheres.drawings(found.maps)
 
 
-def _template() -> Any:
+def template(name: str) -> Any:
+    """A template of the folder web."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -212,7 +218,7 @@ def _template() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("page.html.j2")
+    return environment.get_template(name)
 
 
 def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
@@ -241,7 +247,7 @@ def html(
     scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
     parts = [_part(found, section, specs) for section in found.sections]
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
-    return _template().render(
+    return template("page.html.j2").render(
         found=found,
         remarks=remarks(found),
         nav=navigation(found, bool(gallery.subjects)),
@@ -254,22 +260,22 @@ def html(
         cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
         strip=spheres.colour_strip(),
         gallery=gallery,
-        picture_data=_data_block(gallery.data) if gallery.subjects else "",
+        picture_data=data_block(gallery.data) if gallery.subjects else "",
         codecs=codecs(found, specs),
         library=library.packed(library_script) if specs else "",
         specs=library.packed(json.dumps(specs)) if specs else "",
         scripts=scripts,
         style=(WEB / "page.css").read_text(encoding="utf-8"),
-        script_sources=_sources([*scripts, library_script], is_beside=bool(gallery.files)),
+        script_sources=sources_of([*scripts, library_script], is_beside=bool(gallery.files)),
     )
 
 
-def _data_block(data: Any) -> str:
+def data_block(data: Any) -> str:
     """JSON inside a script element, which no text in it can end."""
     return json.dumps(data).replace("<", "\\u003c")
 
 
-def _sources(scripts: Sequence[str], is_beside: bool) -> str:
+def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     """What the page may execute: its own scripts, and those of pictures beside it."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])

@@ -17,6 +17,7 @@ from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import NormalPixels, Pictured, Subject, angle_bytes, read_png
 from ....reports.page.verdict import LEADING, is_count, is_number
 from ...metrics import published
+from ...metrics.angles import angles_deg
 from ...output.arrays import DamagedError, read_npz
 from ...output.writing import files_of, whole_file
 from ..table import Row
@@ -74,18 +75,11 @@ def _write_png(path: Path, pixels: np.ndarray) -> None:
 
 def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
     """The angle and the stored bits of every pixel."""
-    angle = angle_bytes(_angles(trip), trip.covered)
+    with np.errstate(invalid="ignore"):
+        angle = angle_bytes(angles_deg(trip.normals, trip.decoded), trip.covered)
     codes, bits = _codes(codec, trip.encoded)
     with whole_file(path) as partial, partial.open("wb") as file:
         np.savez_compressed(file, angle=angle, codes=codes, bits=np.array(bits, np.uint8))
-
-
-def _angles(trip: measure.RoundTrip) -> np.ndarray:
-    """Degrees between normals and decodes, (height, width)."""
-    n, decoded = trip.normals.astype(np.float64), trip.decoded.astype(np.float64)
-    with np.errstate(invalid="ignore"):
-        across = np.linalg.norm(np.cross(n, decoded - n), axis=-1)
-        return np.degrees(np.arctan2(across, np.sum(n * decoded, axis=-1)))
 
 
 def _codes(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:

@@ -20,6 +20,7 @@ from ....gbuffer.render import Rendering, bytes_per_pixel, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
+from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
 from ...metrics.meter import Worst, psnr_db
 from .table import TABLE
@@ -238,13 +239,12 @@ def _farthest(one: Drawn, other: Drawn) -> Worst | None:
     if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
         return None
     covered = other.kinds >= 0
-    right, found = (normals[covered].astype(np.float64) for normals in (other.normals, one.normals))
+    right, found = other.normals[covered], one.normals[covered]
     if not len(right):
         return None
-    across, along = np.linalg.norm(np.cross(right, found - right), axis=-1), np.sum(right * found, axis=-1)
-    angles = np.nan_to_num(np.degrees(np.arctan2(across, along)), nan=180.0)
+    angles = np.nan_to_num(angles_deg(right, found), nan=180.0)
     at = int(np.argmax(angles))
-    return Worst(right[at].astype(np.float32), found[at].astype(np.float32), float(angles[at]))
+    return Worst(right[at], found[at], float(angles[at]))
 
 
 def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
