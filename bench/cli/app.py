@@ -23,7 +23,7 @@ from ...encodings.errors import CatalogueError
 from ...reports.charts.plots import PlotError
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
-from ..output.writing import abandon_output, check_is_folder, check_page, write
+from ..output.writing import abandon_output, check_is_folder, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from .commands import add_tables, command_with
@@ -201,7 +201,6 @@ def report(
     """
     from ..suite.report import report_command
 
-    check_page(None if markdown else output)
     report_command(runs, markdown, pictures is PicturePlace.beside, output)
 
 

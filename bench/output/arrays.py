@@ -48,14 +48,14 @@ def read_npy(path: Path, most: int) -> np.ndarray:
     return array_of(_bytes(path, most))
 
 
-def read_npz(path: Path, names: Sequence[str]) -> list[np.ndarray]:
-    """Arrays of an archive by their names. Raises OSError or DamagedError."""
-    data = _bytes(path, MOST_BYTES)
+def read_npz(path: Path, names: Sequence[str], most: int = MOST_BYTES) -> list[np.ndarray]:
+    """Arrays of an archive by their names, of at most so many bytes together. Raises OSError or DamagedError."""
+    data = _bytes(path, most)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = [archive.getinfo(f"{name}.npy") for name in names]
-            if sum(info.file_size for info in infos) > MOST_BYTES:
-                raise DamagedError(f"it would unpack to more than {MOST_BYTES} bytes")
+            if sum(info.file_size for info in infos) > most:
+                raise DamagedError(f"it would unpack to more than {most} bytes")
             return [array_of(archive.read(info)) for info in infos]
     except Exception as error:  # of a dozen kinds, by what is damaged
         raise DamagedError("it is damaged") from error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,7 +26,7 @@ from ...reports.tables import LARGEST_WHOLE
 from ..output import cache
 from ..output.errors import UsageError, tell
 from ..output.sources import sources
-from ..output.writing import check_folder, check_writable, files_of, say, whole_file
+from ..output.writing import check_folder, check_page, check_writable, files_of, say, whole_file
 from ..results import side_by_side
 from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
@@ -73,6 +74,7 @@ def _report_several(
         return
     target = output or Path(SEVERAL)
     check_writable(target)
+    check_page(target)
     made = several.html(names, list(side_by_side.sheets(runs)), list(side_by_side.figures(runs)))
     with whole_file(target) as partial:
         partial.write_text(made, encoding="utf-8")
@@ -108,6 +110,7 @@ def write_report(
         UsageError: it cannot be written.
     """
     check_writable(target)
+    check_page(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
     with tempfile.TemporaryDirectory(prefix="normalbench-") as other:
         beside = target.parent / charts if charts else Path(other)
@@ -121,13 +124,23 @@ def write_report(
             gallery = packing.result()
     if gallery.damaged:
         failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
-    for name, text in gallery.files.items():
-        with whole_file(target.parent / pictures / name) as partial:
-            partial.write_text(text, encoding="utf-8")
+    _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         made = page.html(run.with_remarks(failed), gallery, specs, _library() if specs else "")
         partial.write_text(made, encoding="utf-8")
     return target
+
+
+def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
+    """The scripts that hold pictures, in place of those of an earlier page."""
+    if not files:
+        return
+    for name, path in files_of(folder).items():
+        if path.suffix == ".js" and path.stem.isdecimal() and name not in files:
+            path.unlink()
+    for name, text in files.items():
+        with whole_file(folder / name) as partial:
+            partial.write_text(text, encoding="utf-8")
 
 
 def _library() -> str:
@@ -142,7 +155,10 @@ def _drawn(run: Found, folder: Path) -> tuple[dict[str, Sequence[Row]], list[str
         try:
             _write_chart(drawing, folder)
             if drawing.specs:
-                specs[drawing.name] = drawing.specs()
+                made = drawing.specs()
+                # A browser reads no infinity.
+                json.dumps(made, allow_nan=False)
+                specs[drawing.name] = made
         except UNEXPECTED as error:
             failed.append(f"The chart {drawing.name!r} cannot be drawn from these rows: {type(error).__name__}.")
     return specs, failed
@@ -164,7 +180,7 @@ def gathered(folder: Path, done: Done) -> Found:
     if unknown:
         remarks.append(f"This version does not know these tables, which are in the run's folder: {', '.join(unknown)}.")
     if facts.get("sources") != sources():
-        remarks.append("Other sources measured this run than draw it: what columns mean may have changed since.")
+        remarks.append("Another version of the program measured this run: what columns mean may have changed since.")
     quality = tables.get("quality", [])
     found = Found(
         name=str(plain_text(folder.resolve().name)),
@@ -286,7 +302,11 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
             row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
         ]
         where = str(rows[0].get(by)) if rows else ""
-        errors = {codec: row[LEADING] for row in rows if str(row.get(by)) == where and (codec := _codec(row))}
+        chosen = [row for row in rows if str(row.get(by)) == where]
+        errors = {codec: row[LEADING] for row in chosen if (codec := _codec(row))}
+        for row in chosen if costs else ():
+            if not _codec(row):
+                lost.setdefault("it is not of the catalogue", {})[CodecKey.of(row).label] = None
         points = {o: list(_points(costs, o, errors, lost)) for o in OPERATIONS} if costs else {}
         family = f"instructions for {costs[-1].get('family')}, fragment shaders" if costs else ""
         unit = "instructions to {}, with its storage's"

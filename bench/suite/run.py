@@ -55,7 +55,9 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     """
     made: list[Asked] = []
     reasons: dict[str, list[str]] = {}
-    for table in chosen_tables(request.tables):
+    chosen = chosen_tables(request.tables)
+    _check_taken(chosen, given(request))
+    for table in chosen:
         try:
             made.append(_asked(table, given(request), folder))
         except MissingError as error:
@@ -67,6 +69,21 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     for reason, names in reasons.items():
         tell(f"left out: {', '.join(names)}: {reason}")
     return made
+
+
+def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
+    """Raises UsageError for an option that none of the tables takes."""
+    for name in said:
+        takers = [table for table in TABLES.values() if _takes(table, name)]
+        if not set(takers) & set(chosen):
+            option, those = name.replace("_", "-"), ", ".join(table.name for table in takers)
+            raise UsageError(f"--{option} is an option of {those}; none of them is measured")
+
+
+def _takes(table: Table, name: str) -> bool:
+    """Whether a run passes an option on to a table."""
+    known = fields_of(table.options)
+    return name in known and known[name].option.in_run
 
 
 def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:

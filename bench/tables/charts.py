@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
-from ...reports.charts.drawings import for_drawing
+from ...reports.charts.drawings import Drawing, for_drawing
 from ...reports.page.verdict import BACKENDS, is_number
 from .table import Row
 
@@ -14,9 +16,20 @@ NOT_SHOWN = ("angle_counts", "ms_frame_each")
 
 
 def having(rows: Sequence[Row], *columns: str) -> list[Row]:
-    """Rows with a finite figure in each of the columns, for drawing."""
-    usable = [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
-    return for_drawing(usable, NOT_SHOWN)
+    """Rows with a finite figure in each of the columns."""
+    return [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
+
+
+def drawing(
+    name: str,
+    title: str,
+    description: str,
+    rows: Sequence[Row],
+    draw: Callable[[Sequence[Row]], Any],
+    specs: Callable[[Sequence[Row]], Sequence[dict[str, Any]]],
+) -> Drawing:
+    """A chart of rows: as files by `draw`, in the page by `specs`."""
+    return Drawing(name, title, description, lambda: draw(for_drawing(rows, NOT_SHOWN)), partial(specs, rows))
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:

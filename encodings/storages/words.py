@@ -11,7 +11,7 @@ def words(numbers: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
     """The bits of a channel, as unsigned integers.
 
     Args:
-        numbers: any shape, as they come back from the channel; NaN counts as 0.
+        numbers: any shape, as they come back from the channel; to integers NaN is 0.
         storage: the format; colours by the sRGB curve are not numbers of a code.
         channel: which one.
 
@@ -19,12 +19,12 @@ def words(numbers: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
         uint32 of the same shape. SNORM of a render target is two's complement; laid across channels it is biased, so
         that -1 is 0 (see `storage.py`).
     """
-    exact, bits = np.nan_to_num(np.asarray(numbers, np.float64)), storage.bits[channel]
+    exact, bits = np.asarray(numbers, np.float64), storage.bits[channel]
     if storage.is_biased:
         exact = exact / 2 + 0.5
     if storage.kind == "float":
         return _float_words(exact, bits)
-    whole = np.rint(exact * storage.scale(channel)).astype(np.int64)
+    whole = np.rint(np.nan_to_num(exact) * storage.scale(channel)).astype(np.int64)
     if storage.kind == "snorm" and storage.is_packed:
         whole += storage.scale(channel)
     return (whole & 2**bits - 1).astype(np.uint32)
@@ -34,4 +34,5 @@ def _float_words(texels: np.ndarray, bits: int) -> np.ndarray:
     if bits == 32:
         return texels.astype(np.float32).view(np.uint32)
     # Floats of 11 and 10 bits are halves without a sign and with a shorter mantissa.
-    return texels.astype(np.float16).view(np.uint16).astype(np.uint32) >> MANTISSA[16] - MANTISSA[bits]
+    with np.errstate(over="ignore"):
+        return texels.astype(np.float16).view(np.uint16).astype(np.uint32) >> MANTISSA[16] - MANTISSA[bits]

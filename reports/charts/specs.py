@@ -6,10 +6,13 @@ A row of data that has a codec names it in `codec`, as tables and pictures do. E
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
-from .charts import LEAST_DEG, Row, bins, codec_label, frame_label, frame_total, passes_of, steps
+from ..page.codec_key import CodecKey
+from ..page.verdict import is_number
+from .charts import LEAST_DEG, Row, bins, frame_label, frame_total, passes_of, steps
 from .pareto import Error, Panel, Point, pareto_front
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
@@ -21,7 +24,7 @@ PICKED = {"name": "picked", "value": ""}
 # An encoding's name alone stands for each of its codecs.
 IS_PICKED = "(datum.codec == picked || indexof(picked, ' ') < 0 && indexof(datum.codec, picked + ' ') == 0)"
 IS_LIT = f"picked == '' || {IS_PICKED}"
-INK, MUTED, LINE, PAPER = (f"var(--{name})" for name in ("ink", "muted", "line", "paper"))
+INK, MUTED, LINE = (f"var(--{name})" for name in ("ink", "muted", "line"))
 CONFIG = {
     "background": None,
     "font": "system-ui, sans-serif",
@@ -32,6 +35,8 @@ CONFIG = {
     | {"labelFontSize": 12, "titleFontSize": 12, "symbolOpacity": 1, "symbolStrokeWidth": 2},
 }
 Spec = dict[str, Any]
+# What may tell rows of one codec apart, in the order of their names.
+LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "exposure")
 
 
 def _spec(rows: Sequence[Row], description: str, **parts: Any) -> Spec:
@@ -72,7 +77,7 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
     Args:
         rows: as `charts.histogram_chart` takes them.
     """
-    points = [point for row in rows for point in _outline(row)]
+    points = [point | {"line": _line_of(row, rows)} for row in rows for point in _outline(row)]
     choices = ["all", *map(str, sorted({row["bits"] for row in rows}))]
     bits = {"name": "bits", "value": "all", "bind": {"input": "select", "options": choices, "name": "Bits shown "}}
     x = {
@@ -82,7 +87,7 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
         "title": "angle, degrees",
     }
     y = {"field": "y", "type": "quantitative", "title": "% of normals in an octave of angles"}
-    encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "codec"}, "color": _by_bits(points)}
+    encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "line"}, "color": _by_bits(points)}
     tooltip = _tooltip(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
     layers = [
         _line(interpolate="step-after") | {"encoding": {"opacity": _if_lit(1, 0.12), "strokeWidth": _if_lit(1.6, 1)}},
@@ -99,15 +104,26 @@ def _outline(row: Row) -> list[Row]:
     edges, heights = steps(bins(row["angle_counts"]))
     total = sum(count for *_, count in bins(row["angle_counts"]))
     figures = {"mean": _rounded(row["angle_mean_deg"]), "largest": _rounded(row.get("angle_max_deg"))}
-    about = {"codec": codec_label(row), "bits": row["bits"], **figures}
+    about = {"codec": CodecKey.of(row).label, "bits": row["bits"], **figures}
     return [
         {"x": _rounded(edge), "y": _rounded(100 * height / total), **about}
         for edge, height in zip(edges, [*heights, 0.0], strict=True)
     ]
 
 
-def _rounded(value: Any) -> Any:
-    return float(f"{value:.4g}") if isinstance(value, int | float) else None
+def _rounded(value: Any) -> float | None:
+    """Four digits; None for what is no finite number."""
+    return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
+
+
+def _title(text: str) -> Spec:
+    return {"text": text, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
+
+
+def _line_of(row: Row, rows: Sequence[Row]) -> str:
+    """What tells a row of a chart apart: its codec, and what else differs between the rows."""
+    others = [c for c in LINES if len({str(one.get(c)) for one in rows}) > 1]
+    return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
 
 
 def image_specs(rows: Sequence[Row]) -> list[Spec]:
@@ -117,12 +133,17 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
         rows: as `charts.image_chart` takes them.
     """
     found = [
-        {"codec": codec_label(row), "image": _rounded(row["psnr_db"]), "normals": _rounded(row["normal_psnr_db"])}
+        {
+            "codec": CodecKey.of(row).label,
+            "line": _line_of(row, rows),
+            "image": _rounded(row["psnr_db"]),
+            "normals": _rounded(row["normal_psnr_db"]),
+        }
         for row in sorted(rows, key=lambda row: -row["psnr_db"])
     ]
-    y = {"field": "codec", "type": "nominal", "sort": list(dict.fromkeys(row["codec"] for row in found)), "title": None}
+    y = {"field": "line", "type": "nominal", "sort": list(dict.fromkeys(row["line"] for row in found)), "title": None}
     x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False}}
-    tooltip = _tooltip(codec="codec", image="the image, dB", normals="the normals, dB")
+    tooltip = _tooltip(line="codec", image="the image, dB", normals="the normals, dB")
     lit = {"opacity": _if_lit(1, 0.2)}
 
     def dots(name: str, shape: str, colour: str) -> Spec:
@@ -150,7 +171,7 @@ def _pareto(panel: Panel, error: Error) -> Spec:
     log = {} if error.more_is_better else {"type": "log"}
     x = {"field": "cost", "type": "quantitative", "title": panel.unit}
     y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, **log}}
-    tooltip = _tooltip(codec="codec", bits="bits", cost=panel.unit, error=error.label)
+    tooltip = _tooltip(codec="codec", bits="bits", cost="instructions", error="error")
     lit = _if_lit(1, 0.15)
     best = [{"filter": "datum.best"}]
     line = {"type": "line", "interpolate": "step-after", "strokeWidth": 1, "opacity": 0.5}
@@ -165,14 +186,13 @@ def _pareto(panel: Panel, error: Error) -> Spec:
         },
         {"transform": named, "mark": text, "encoding": {"text": {"field": "name"}}},
     ]
-    title = {"text": panel.title, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
-    parts = {"encoding": {"x": x, "y": y}, "layer": layers, "height": 380, "title": title}
+    parts = {"encoding": {"x": x, "y": y}, "layer": layers, "height": 380, "title": _title(panel.title)}
     return _spec(rows, f"{panel.title}: each codec's {error.label} over {panel.unit}.", **parts)
 
 
 def _point(point: Point, is_best: bool) -> Row:
     name = point.name + "*" * point.is_starred
-    about = {"codec": point.codec, "name": name, "cost": point.cost, "error": _rounded(point.error)}
+    about = {"codec": point.codec, "name": name, "cost": _rounded(point.cost), "error": _rounded(point.error)}
     return about | {"bits": point.bits, "best": is_best}
 
 
@@ -229,7 +249,7 @@ def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
     encoding = {"x": x, "y": y | {"axis": {"format": "~e"}}, "color": _named("depth"), "strokeDash": _named("storage")}
     encoding |= {"detail": detail, "tooltip": [*detail, *_tooltip(x="distance", y="error")]}
     said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
-    title = {"text": f"near {near:g}, far {far:g}", "color": MUTED, "fontWeight": "normal", "anchor": "start"}
+    title = _title(f"near {near:g}, far {far:g}")
     return _spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
 
 
@@ -250,7 +270,12 @@ def lights_specs(rows: Sequence[Row]) -> list[Spec]:
 
 def _lights(title: str, lines: Lines) -> Spec:
     found = [
-        {"light_buffer": name, "x": count, "y": max(_rounded(error), LEAST_ERROR), "bound": _rounded(bound) or None}
+        {
+            "light_buffer": name,
+            "x": count,
+            "y": max(_rounded(error) or 0.0, LEAST_ERROR),
+            "bound": _rounded(bound) or None,
+        }
         for name, line in lines.items()
         for count, error, bound in sorted(line)
     ]
@@ -267,6 +292,5 @@ def _lights(title: str, lines: Lines) -> Spec:
             "encoding": {"y": y | {"field": "bound"}},
         },
     ]
-    head = {"text": title, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
     said = f"Error over the number of lights: {title}. Dotted: the most it can be. Errors below 1e-6 are drawn at 1e-6."
-    return _spec(found, said, encoding=encoding, layer=layers, height=380, title=head)
+    return _spec(found, said, encoding=encoding, layer=layers, height=380, title=_title(title))

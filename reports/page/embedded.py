@@ -5,24 +5,29 @@ from __future__ import annotations
 import base64
 import itertools
 import json
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from io import BytesIO
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 from PIL import Image
 
-from .pixels import LEAST_LOG2, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
+from ..charts.pictures import GAIN, POWER
+from .pixels import LEAST_LOG2, NOT_A_NUMBER, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
 
 # What all pictures inside a page may take, in bytes of text.
 BUDGET = 1_750_000
 # Inside a page a picture is at most this wide or high: larger ones are shown as every second pixel, or every third.
 INSIDE = 400
+# Pixels that WebP has room for on a side.
+LARGEST_WEBP = 16383
 # WebP's own scale of 0 to 6; more takes ten times as long for a hundredth less.
 EFFORT = 4
+# Each holds a picture in full size.
+WORKERS = 4
 
 Record = dict[str, Any]
 
@@ -32,7 +37,7 @@ class Gallery:
     """A page's pictures.
 
     Attributes:
-        subjects: what is shown, as page.js reads it.
+        subjects: what is shown, as pictures.js reads it.
         left_out: names of codecs whose pictures are left out, so that the page stays small.
         damaged: names of codecs whose files cannot be read.
         files: scripts that lie beside the page, text by name.
@@ -45,9 +50,10 @@ class Gallery:
 
     @property
     def data(self) -> Record:
-        """Everything that page.js needs to show them."""
-        angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE}
-        return {"subjects": self.subjects, "angle": angle, "colours": colour_map()}
+        """Everything that pictures.js needs to show them."""
+        angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE, "not_a_number": NOT_A_NUMBER}
+        articles = {"gain": GAIN, "power": POWER}
+        return {"subjects": self.subjects, "angle": angle, "articles": articles, "colours": colour_map()}
 
 
 def colour_map(count: int = 33) -> list[str]:
@@ -92,7 +98,7 @@ def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
 
 
 def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int) -> Record | None:
-    """A codec's pixels as page.js reads them; None where they are not as many as the original's."""
+    """A codec's pixels as pictures.js reads them; None where they are not as many as the original's."""
     if isinstance(pixels, NormalPixels):
         if pixels.decoded.shape != original.shape:
             return None
@@ -107,17 +113,12 @@ def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int)
     return {"apart": small_uri(np.ascontiguousarray(apart)), **flip}
 
 
-def _size(record: Record) -> int:
-    return len(json.dumps(record))
-
-
 class _Packer:
     """Takes the pictures of one subject."""
 
     def __init__(self, subject: Subject, original: np.ndarray, is_beside: bool):
         self.subject, self.original = subject, original
-        longer = max(original.shape[:2])
-        self.step = 1 if is_beside else -(-longer // INSIDE)
+        self.step = -(-max(original.shape[:2]) // (LARGEST_WEBP if is_beside else INSIDE))
         shown = np.ascontiguousarray(original[:: self.step, :: self.step])
         self.record: Record = {
             "title": subject.title,
@@ -128,21 +129,27 @@ class _Packer:
             "original": small_uri(shown),
         }
         self.taken: dict[str, Record] = {}
+        self.has_flip = True
 
     def planes(self, one: Pictured) -> Record | None:
         """A codec's pixels; None where they cannot be read."""
         pixels = one.load()
+        self.has_flip = self.has_flip and isinstance(pixels, ImagePixels) and pixels.flip is not None
         return _planes(pixels, self.original, self.step) if pixels else None
+
+    def size_with(self, planes: Record) -> int:
+        """What a further codec takes in the page; the first one brings the original with it."""
+        return len(json.dumps(planes)) + (0 if self.taken else len(self.record["original"]))
 
     def take(self, one: Pictured, what: Record) -> None:
         """Show a codec."""
-        key = {"label": one.label, "encoding": one.key.encoding, "storage": one.key.storage}
-        self.taken[one.label] = key | what
+        self.taken[one.label] = {"label": one.label, "codec": one.codec} | what
 
     @property
     def shown(self) -> Record:
-        """The subject as page.js reads it."""
-        return self.record | {"codecs": [self.taken[c.label] for c in self.subject.codecs if c.label in self.taken]}
+        """The subject as pictures.js reads it."""
+        codecs = [self.taken[one.label] for one in self.subject.codecs if one.label in self.taken]
+        return self.record | {"codecs": codecs, "flip": self.has_flip}
 
 
 def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET) -> Gallery:
@@ -159,8 +166,7 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
     damaged = [subject.title for subject, image in originals if image is None]
     left_out: list[str] = []
     files: dict[str, str] = {}
-    budget -= sum(len(packer.record["original"]) for packer in packers)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(WORKERS) as pool:
         wanted = list(_in_turn(packers))
         for (packer, one), planes in zip(wanted, pool.map(lambda item: item[0].planes(item[1]), wanted), strict=True):
             name = f"{one.label}, {packer.subject.title}"
@@ -169,11 +175,11 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
             elif beside:
                 file = f"{len(files)}.js"
                 files[file] = f"keepPicture({json.dumps(file)}, {json.dumps(planes)});\n"
-                packer.take(one, {"file": f"{beside}/{file}", "name": file})
-            elif _size(planes) > budget:
+                packer.take(one, {"file": quote(f"{beside}/{file}"), "name": file})
+            elif (size := packer.size_with(planes)) > budget:
                 left_out.append(name)
             else:
-                budget -= _size(planes)
+                budget -= size
                 packer.take(one, planes)
     return Gallery([packer.shown for packer in packers if packer.taken], left_out, damaged, files)
 

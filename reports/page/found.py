@@ -78,6 +78,12 @@ class Found:
         return machine if isinstance(machine, dict) else {}
 
     @property
+    def encodings(self) -> set[str]:
+        """The names of encodings of normals: the catalogue's, and those of users' files."""
+        rows = (row for name in ("quality", "render", "pick") for row in self.tables.get(name, ()))
+        return {*self.domains, *(str(row["encoding"]) for row in rows if row.get("encoding"))}
+
+    @property
     def begun(self) -> str:
         """When the run began; empty if it does not say."""
         return str(self.facts.get("time") or "")

@@ -2,7 +2,7 @@
 
 It is Vega-Lite, in the bundle that vl-convert carries: a chart is data instead of code, its expressions are interpreted
 so that a page needs no `eval`, marks are SVG with labels that screen readers read, and packed it takes 0.4 MB. Plotly's
-smallest bundle takes half as much again and its marks have no labels; smaller libraries have no shared selections.
+smallest bundle takes 0.5 MB.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import base64
 import hashlib
 import json
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +78,7 @@ class Table:
     constants: str
     folded: bool = False
     said: Sequence[str] = ()
+    keys: Row = field(default_factory=dict)
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
@@ -105,7 +106,7 @@ def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str
         )
         for at, (row, one) in enumerate(zip(shown, rows, strict=True))
     ]
-    return Table(sheet.title, columns, lines, constants.replace("_", " "), sheet.folded, sheet.said)
+    return Table(sheet.title, columns, lines, constants.replace("_", " "), sheet.folded, sheet.said, sheet.keys)
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
@@ -162,9 +163,7 @@ def remarks(found: Found) -> list[str]:
     """What a reader must know of the run before its figures."""
     said = list(found.remarks)
     if not found.facts.get("finished"):
-        said.insert(
-            0, f"This run is not finished: {found.steps} steps have their rows, and what others would say is open."
-        )
+        said.insert(0, f"This run is not finished. Steps that are done: {found.steps}.")
     return said
 
 
@@ -223,11 +222,12 @@ def template(name: str) -> Any:
 
 def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
     """Every codec that the page shows, by name."""
-    named = {one.label for subject in found.subjects for one in subject.codecs if one.key.encoding in found.domains}
+    named = {one.codec for subject in found.subjects for one in subject.codecs if one.codec}
     drawn = (row for several in specs.values() for spec in several for row in spec["data"]["values"])
     named |= {row["codec"] for row in drawn if "codec" in row}
+    encodings = found.encodings
     rows = [row for section in found.sections for row in section.rows]
-    return sorted(named | {name for row in rows if " " in (name := _codec(row, found.domains))})
+    return sorted(named | {name for row in rows if " " in (name := _codec(row, encodings))})
 
 
 def html(
@@ -283,6 +283,7 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
 
 def _part(found: Found, section: Section, specs: Mapping[str, Sequence[Row]]) -> Part:
     sheets = section.sheets(found.domains)
-    shown = [_table(sheet, section.says, section.better, found.domains) for sheet in sheets]
+    encodings = found.encodings
+    shown = [_table(sheet, section.says, section.better, encodings) for sheet in sheets]
     charts = [Chart(drawing, len(specs[drawing.name])) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

@@ -11,21 +11,23 @@ from PIL import Image
 
 from .codec_key import CodecKey
 
-MAX_PIXELS = 2**24
-# An angle is kept as a byte: 1 is 2^LEAST_LOG2 degrees, each further step an eighth of an octave; 0 is the background.
+# A frame of 3840 x 2160 is shown.
+MAX_PIXELS = 2**23
+# An angle is kept as a byte: 1 is 2^LEAST_LOG2 degrees, each further step an eighth of an octave. 0 is the background.
 LEAST_LOG2, STEPS_PER_OCTAVE = -20, 8
+NOT_A_NUMBER = 255
 
 
 def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Angles as bytes, uint8 of the same shape: within 4.5 % of the angle; NaN is as far as can be.
+    """Angles as bytes, uint8 of the same shape: within 4.5 % of the angle; NaN is NOT_A_NUMBER.
 
     Args:
         degrees: any shape.
         covered: bool of the same shape; elsewhere is background.
     """
-    known = np.maximum(np.nan_to_num(degrees, nan=180.0), 2.0**LEAST_LOG2)
+    known = np.maximum(np.nan_to_num(degrees), 2.0**LEAST_LOG2)
     steps = np.rint((np.log2(known) - LEAST_LOG2) * STEPS_PER_OCTAVE) + 1
-    return np.where(covered, np.clip(steps, 1, 255), 0).astype(np.uint8)
+    return np.where(covered, np.where(np.isnan(degrees), NOT_A_NUMBER, steps), 0).astype(np.uint8)
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class NormalPixels:
 
     Attributes:
         angle: `angle_bytes` of shape (height, width).
-        codes: the stored bits, uint32 of shape (height, width, components).
+        codes: the stored bits, unsigned integers of shape (height, width, components).
         bits: of each component.
         decoded: [-1, 1] as [0, 255], black on the background, uint8 of shape (height, width, 3).
     """
@@ -60,12 +62,14 @@ class Pictured:
     Attributes:
         key: which codec.
         label: what a reader calls it.
+        codec: the codec as tables and charts name it; empty for what is none.
         load: gives its pixels; None where its files are damaged.
         rank: those of a lower rank are shown where there is no room for all.
     """
 
     key: CodecKey
     label: str
+    codec: str
     load: Callable[[], NormalPixels | ImagePixels | None]
     rank: int = 0
 

@@ -224,7 +224,9 @@ def test_every_number_has_bits_of_its_own(name):
         ("rg16f", -0.5, 0xB800),
         ("rgba32f", 1.0, 0x3F800000),
         ("r11g11b10f", 1.0, 0x3C0),
-        ("rgba8", np.nan, 0x80),
+        ("rgba8", np.nan, 0x00),
+        ("rg16f", np.inf, 0x7C00),
+        ("rg16f", np.nan, 0x7E00),
     ],
 )
 def test_the_bits_of_a_number_are_the_formats(name, number, bits):

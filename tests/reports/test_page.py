@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import sync_playwright
-from test_report import HOSTILE, a_run, pixels, quality_row, rendered_run
+from test_report import HOSTILE, a_run, answered_run, pixels, quality_row, rendered_run
 
 ARGUMENTS = [
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
@@ -252,7 +252,7 @@ def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened
     button = sheet.locator("[data-copy=markdown]")
     button.focus()
     opened.page.keyboard.press("Enter")
-    opened.page.wait_for_function("document.querySelector('#quality [data-copy=markdown]').textContent === 'Copied'")
+    opened.page.wait_for_function("document.querySelector('#quality [data-copied]').textContent === 'Copied'")
     lines = opened.page.evaluate("navigator.clipboard.readText()").splitlines()
     assert (
         len(lines) == 4
@@ -441,6 +441,27 @@ def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tm
     assert len(np.unique(drawn(page, "left"))) == 1 and drawn(page, "left").max() > 100, "3 of 255 everywhere"
     (said,) = page.texts("[data-pixel=left]")
     assert said.endswith("off by 3 of 255") and page.said == []
+    page.context.close()
+
+
+def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
+    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(2)")
+    assert page.page.locator(".proof:not([hidden])").count() == 4, "two storages on two scenes"
+    page.page.locator(".proof").nth(2).locator("button").first.click()
+    page.page.wait_for_selector(VIEWED)
+    page.page.wait_for_timeout(300)
+    assert page.page.locator("#subject option:checked").text_content() == "the answer on room at power 47"
+    sides = [page.page.locator(f"#{side} option:checked").text_content() for side in ("left", "right")]
+    assert sides == ["fine rg8", "xy rg8"] and page.page.locator("#view").input_value() == "final"
+    for index in (0, 1, 0):
+        page.page.locator("#subject").select_option(index=index)
+    page.page.wait_for_timeout(500)
+    assert drawn(page, "left").max() > 0 and page.texts("[data-pixel=left]")[0].endswith("off by 2 of 255")
+    page.page.locator("#choice").select_option("xy rgb10a2")
+    page.page.wait_for_timeout(300)
+    assert page.page.locator("#right option:checked").text_content() == "xy rgb10a2" and page.said == []
     page.context.close()
 
 

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import io
 import json
+import math
 import re
 import shutil
 import time
@@ -149,8 +150,8 @@ def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
 def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
-    assert "This run is not finished: 1 steps have their rows" in read.text
-    assert "Other sources measured this run than draw it" in read.text
+    assert "This run is not finished. Steps that are done: 1." in read.text
+    assert "Another version of the program measured this run" in read.text
     assert "it was asked for, and has no rows" in read.text
 
 
@@ -290,7 +291,7 @@ def test_an_angle_as_a_byte_is_within_what_the_page_says():
     degrees = np.array([0.0, 1e-5, 0.003, 0.3, 5.0, 90.0, 180.0, np.nan])
     kept = angle_bytes(degrees, np.ones(8, bool)).astype(float)
     shown = 2.0 ** (LEAST_LOG2 + (kept - 1) / STEPS_PER_OCTAVE)
-    assert kept[0] == 1 and (abs(shown[1:7] / degrees[1:7] - 1) < 0.045).all() and kept[7] == kept[6]
+    assert kept[0] == 1 and (abs(shown[1:7] / degrees[1:7] - 1) < 0.045).all() and kept[7] == 255, "not a number"
     assert (angle_bytes(degrees, np.zeros(8, bool)) == 0).all(), "the background"
 
 
@@ -336,6 +337,61 @@ def rendered_run(folder: Path) -> Path:
         moved[..., 0] += by
         Image.fromarray(moved).save(folder / "images" / f"gloss-power47-hybrid-{name}.png")
     return folder
+
+
+def answered_run(folder: Path) -> Path:
+    """A run with an answer for two storages on two scenes, each with its images; in rg8 on gloss red is 2 steps off."""
+    rows = []
+    (folder / "images").mkdir(parents=True)
+    for scene in ("gloss", "room"):
+        for storage in ("rg8", "rgb10a2"):
+            rows += [
+                row | {"scene": scene, "storage": storage} for row in (pick_row("fine", 0.2, 9), pick_row("xy", 0.3, 5))
+            ]
+            for name in ("fine", "xy"):
+                image = Image.new("RGB", (32, 24), (52 if (scene, storage) == ("gloss", "rg8") else 50, 60, 70))
+                image.save(folder / f"images/pick-{scene}-power47-{name}-{storage}-final.png")
+        Image.new("RGB", (32, 24), (50, 60, 70)).save(folder / f"images/pick-{scene}-power47-reference.png")
+    return a_run(folder, {"pick": rows}, request={"tables": "pick"})
+
+
+def test_an_answers_pictures_are_of_its_own_scene_the_best_first(tmp_path):
+    folder = answered_run(tmp_path / "run")
+    first, second = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
+    assert [first["title"], second["title"]] == ["the answer on gloss at power 47", "the answer on room at power 47"]
+    assert [one["codec"] for one in first["codecs"]] == ["fine rg8", "xy rg8", "fine rgb10a2", "xy rgb10a2"]
+    assert pixels(first["codecs"][0]["apart"])[0, 0].tolist() == [2, 0, 0]
+    assert pixels(second["codecs"][0]["apart"]).max() == 0
+
+
+def test_flip_is_offered_where_the_run_has_it(run, tmp_path):
+    folder = rendered_run(tmp_path / "run")
+    gathered = report_command.gathered(folder, read_run(folder))
+    assert embedded.gallery(gathered.subjects).subjects[0]["flip"] is False
+    for name in ("xy", "octahedral"):
+        path = folder / f"images/gloss-power47-hybrid-fp32-{name}-rgba8-rgba32fx2-flip.png"
+        Image.new("RGB", (32, 24), (128, 128, 128)).save(path)
+    for place in ("", "somewhere"):
+        assert embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects, place).subjects[0]["flip"]
+    (subject,) = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
+    assert (pixels(subject["codecs"][0]["flip"]) == 128).all()
+    assert run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "100%#.html"))[0] == 0
+    assert '"100%25%23-pictures/0.js"' in (tmp_path / "100%#.html").read_text(), "an address"
+
+
+def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
+    """Roundings, layouts and names of users' files; no infinity in what a browser reads."""
+    rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
+    (spec,) = specs.histogram_specs(rows)
+    lines = {row["line"] for row in spec["data"]["values"]}
+    assert lines == {"xy rgba8", "xy rgba8 truncate", '$a\\b" rgba8'}
+    image = {"encoding": "xy", "storage": "rgba8", "rounding": "nearest", "psnr_db": math.inf, "normal_psnr_db": 50.0}
+    (spec,) = specs.image_specs([image | {"layout": name} for name in ("thin", "wide")])
+    assert [row["line"] for row in spec["data"]["values"]] == ["xy rgba8 thin", "xy rgba8 wide"]
+    panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
+    made = [spec, *specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
+    json.dumps(made, allow_nan=False)
+    assert all(vl_convert.vegalite_to_vega(one)["marks"] for one in made)
 
 
 def test_rendered_images_are_in_the_page_as_what_differs_from_the_exact_one(tmp_path):

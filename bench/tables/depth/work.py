@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from ...options.counts import check_seed, checked_numbers, in_range
 from ...options.targets import what_is_left
 from ...output.errors import UsageError, pick
 from ...output.writing import check_folder, check_plot, save_plot, whole_file
-from ..charts import having, one_backend
+from ..charts import drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
 from .table import TABLE, DepthOptions, DepthOutputs
@@ -167,8 +167,8 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     if usable:
         said = "The largest distance between true and rebuilt position over the distance from the eye, both on "
         said += "logarithmic scales, a line for each depth code in its storage. The figures are in the table."
-        both = (partial(draw, usable) for draw in (plots.depth_figure, specs.depth_specs))
-        yield Drawing("depth", "Position error over distance", said, *both)
+        title = "Position error over distance"
+        yield drawing("depth", title, said, usable, plots.depth_figure, specs.depth_specs)
 
 
 def _beside(rows: Sequence[Row]) -> list[Row]:

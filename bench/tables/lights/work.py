@@ -24,7 +24,7 @@ from ...options.scene_names import scenes_named
 from ...options.targets import TARGETS, checked_setting, checked_target
 from ...output.errors import MissingError, UsageError, pick
 from ...output.writing import check_folder, check_plot, save_plot, whole_file
-from ..charts import having
+from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
 from .images import Shot
@@ -239,8 +239,8 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     if equal or random:
         said = "What is lost of the sum over the number of lights, by the model, a line for each light buffer; dotted: "
         said += "the most it can be. The figures are in the rows of the experiments equal and random."
-        both = (partial(draw, equal + random) for draw in (plots.lights_figure, specs.lights_specs))
-        yield Drawing("lights", "Error over the number of lights", said, *both)
+        title = "Error over the number of lights"
+        yield drawing("lights", title, said, equal + random, plots.lights_figure, specs.lights_specs)
 
 
 WORK = Work(

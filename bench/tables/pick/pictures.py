@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from ....gbuffer.layouts.layout import LayoutError
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...output.writing import files_of, whole_file
+from ..render import measure as render
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, IMAGE, PICTURE, RUNNER_UP
 from .measure import Case, Pictures
@@ -25,10 +28,12 @@ def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pi
     for case in chosen:
         if (case.codec.storage.name, case.codec.encoding.name, case.maker.name) not in placed:
             continue
-        for power, (image, exact) in drawing.shown(case).items():
-            scene = _scene(case.maker.name, power)
-            _write(folder / f"{scene}-reference.png", exact)
-            _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
+        # A code that the device has no room for has no image.
+        with suppress(LayoutError, *render.UNMEASURABLE):
+            for power, (image, exact) in drawing.shown(case).items():
+                scene = _scene(case.maker.name, power)
+                _write(folder / f"{scene}-reference.png", exact)
+                _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
 
 
 def _scene(name: str, power: float) -> str:
@@ -53,7 +58,7 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             exact = there.get(f"{stem}-reference.png")
             codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
             paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
-            known = [Pictured(key, key.label, partial(_read, path)) for key, path in paths.items() if path]
+            known = [Pictured(key, key.label, key.label, partial(_read, path)) for key, path in paths.items() if path]
             if exact and known:
                 yield Subject(f"the answer on {scene} at power {power:g}", "image", partial(read_png, exact), known)
 

@@ -131,10 +131,10 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """For each question the answer in sentences, and the codes that no other beats."""
-    for (storage, normals, _), group in groups(rows).items():
+    for (storage, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{storage}, on {normals}: the codes that no other one beats in every figure"
-        said, keys = tuple(sentences(group)), {"storage": storage}
+        said, keys = tuple(sentences(group)), {"storage": storage, "scene": scene}
         yield Sheet(title if front else "", front, TABLE.drops(front), said=said, keys=keys)
 
 

@@ -14,7 +14,7 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.storages.words import words
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
-from ....reports.page.pixels import NormalPixels, Pictured, Subject, angle_bytes, read_png
+from ....reports.page.pixels import MAX_PIXELS, NormalPixels, Pictured, Subject, angle_bytes, read_png
 from ....reports.page.verdict import LEADING, is_count, is_number
 from ...metrics import published
 from ...metrics.angles import angles_deg
@@ -25,6 +25,8 @@ from . import measure
 
 KINDS = ("encoded", "decoded", "error", "power")
 PIXELS = ("angle", "codes", "bits")
+# Of those arrays: a byte for the angle, and at most three numbers of 32 bits.
+MOST_BYTES = MAX_PIXELS * 13 + 2**16
 Drawn = dict[tuple[str, Codec], dict[str, np.ndarray]]
 
 
@@ -55,7 +57,8 @@ def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
         four = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
         for kind, pixels in four.items():
             _write_png(folder / f"{name}-{kind}.png", pixels)
-        _write_pixels(folder / f"{name}.npz", codec, trip)
+        if trip.covered.size <= MAX_PIXELS:
+            _write_pixels(folder / f"{name}.npz", codec, trip)
         drawn[(normals, codec)] = four
     return drawn
 
@@ -79,7 +82,8 @@ def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
         angle = angle_bytes(angles_deg(trip.normals, trip.decoded), trip.covered)
     codes, bits = _codes(codec, trip.encoded)
     with whole_file(path) as partial, partial.open("wb") as file:
-        np.savez_compressed(file, angle=angle, codes=codes, bits=np.array(bits, np.uint8))
+        small = codes.astype(np.min_scalar_type(2 ** max(bits) - 1))
+        np.savez_compressed(file, angle=angle, codes=small, bits=np.array(bits, np.uint8))
 
 
 def _codes(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
@@ -124,17 +128,17 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
 
 def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:
     arrays, decoded = there.get(f"{name}.npz"), there.get(f"{name}-decoded.png")
-    return Pictured(key, key.label, partial(_read, arrays, decoded), rank) if arrays and decoded else None
+    return Pictured(key, key.label, key.label, partial(_read, arrays, decoded), rank) if arrays and decoded else None
 
 
 def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
     """The codecs of rows of one set, the best of the fewest bits first, with their ranks: the best of each number of
-    bits, the second best, the article's, the others."""
+    bits with the second best of the fewest, the other second best, the article's, the others."""
     figures = {CodecKey.of(row): row for row in rows if is_count(row.get("bits")) and is_number(row.get(LEADING))}
     ranks: dict[CodecKey, int] = {}
     for key, row in sorted(figures.items(), key=lambda item: (item[1]["bits"], -item[1][LEADING])):
         better = sum(figures[other]["bits"] == row["bits"] for other in ranks)
-        ranks[key] = better if better < 2 else 2 if key in ARTICLES else 3
+        ranks[key] = 0 if len(ranks) < 2 else better if better < 2 else 2 if key in ARTICLES else 3
     return ranks
 
 
@@ -144,11 +148,11 @@ ARTICLES = {CodecKey(name, published.STORAGE, "nearest") for name in published.P
 def _read(arrays: Path, decoded: Path) -> NormalPixels | None:
     """The files of a codec; None where they are damaged or do not fit together."""
     try:
-        angle, codes, bits = read_npz(arrays, PIXELS)
+        angle, codes, bits = read_npz(arrays, PIXELS, MOST_BYTES)
     except (OSError, DamagedError):
         return None
     pixels = read_png(decoded)
-    is_right = angle.dtype == np.uint8 and codes.dtype == np.uint32 and bits.dtype == np.uint8
+    is_right = angle.dtype == np.uint8 and codes.dtype.kind == "u" and bits.dtype == np.uint8
     shapes = pixels is not None and pixels.shape[:2] == angle.shape == codes.shape[:2] and codes.shape[2:] == bits.shape
     known = is_right and shapes and len(bits) and max(bits) <= 32
     return NormalPixels(angle, codes, tuple(map(int, bits)), pixels) if known and pixels is not None else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import partial
 from typing import Any
 
 from ....reports.charts import charts, specs
@@ -16,7 +15,7 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, leave_out, pick
 from ...output.writing import check_folder, without
-from ..charts import having, one_backend
+from ..charts import drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .order import ONCE, in_order, with_limits
@@ -173,9 +172,7 @@ def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
             "The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the tables "
         )
         said += "of what normals lose."
-        yield Drawing(
-            f"angles-{at}", title, said, partial(charts.histogram_chart, part), partial(specs.histogram_specs, part)
-        )
+        yield drawing(f"angles-{at}", title, said, part, charts.histogram_chart, specs.histogram_specs)
 
 
 def _worst(step: Step) -> Any:

@@ -77,7 +77,9 @@ def _title(row: Row, rows: Sequence[Row]) -> str:
 def _pictured(there: Mapping[str, Path], row: Row, part: Sequence[Row], rank: int) -> Pictured | None:
     final = there.get(f"{stem(row)}-final.png")
     flip = there.get(f"{stem(row)}-flip.png")
-    return Pictured(CodecKey.of(row), _label(row, part), partial(_read, final, flip), rank) if final else None
+    key = CodecKey.of(row)
+    codec = "" if row["layout"] is None else key.label
+    return Pictured(key, _label(row, part), codec, partial(_read, final, flip), rank) if final else None
 
 
 def _label(row: Row, part: Sequence[Row]) -> str:

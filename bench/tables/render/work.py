@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -29,7 +28,7 @@ from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...output.errors import UsageError, by_reason, pick, pick_one
 from ...output.writing import check_folder, without
-from ..charts import having
+from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import pictures
 from .measure import Bench, Case, described, in_order, ranked, shown_scene
@@ -233,7 +232,7 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
         said = "PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The figures "
         said += "are in the table below."
         title = f"The image of {scene} and the normals it was lit by"
-        yield Drawing(f"image-{at}", title, said, partial(charts.image_chart, part), partial(specs.image_specs, part))
+        yield drawing(f"image-{at}", title, said, part, charts.image_chart, specs.image_specs)
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:

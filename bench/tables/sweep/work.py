@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 from typing import Any
 
 from ....gbuffer.frame.plan import Plan
@@ -26,7 +25,7 @@ from ...options.targets import (
 )
 from ...output.errors import pick
 from ...output.writing import check_plot, save_plot, without
-from ..charts import having
+from ..charts import drawing, having
 from ..render.work import suited
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure
@@ -102,8 +101,7 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
         part = [row for row in usable if row.get("objects") == objects]
         said = "A bar for each pipeline, divided by pass: milliseconds a frame, medians. The figures are in the table."
         title = f"What the milliseconds of a frame of {objects} objects go into"
-        both = (partial(draw, part) for draw in (charts.passes_chart, specs.passes_specs))
-        yield Drawing(f"passes-{at}", title, said, *both)
+        yield drawing(f"passes-{at}", title, said, part, charts.passes_chart, specs.passes_specs)
 
 
 WORK = Work(steps=_steps, measure=_measure, shown=_shown, summary=_summary, write=_write, drawings=_drawings)

@@ -44,13 +44,16 @@ async function draw(figure) {
     view.addEventListener("click", (_, item) => item?.datum?.codec && picked.pick(item.datum.codec));
     const title = element("span", { class: "visually-hidden" }, `: ${spec.title?.text || spec.description}`);
     const button = element("button", { type: "button", "data-png": "" }, "Save as PNG", title);
-    button.addEventListener("click", () => png(spec, plots[at].clientWidth, figure.dataset.chart));
+    button.addEventListener("click", () => png(spec, view, plots[at].clientWidth, figure.dataset.chart));
     figure.querySelector(".tools").append(button);
   }
 }
 
-async function png(spec, width, name) {
+// As it is shown: with what is highlighted and the bits that are chosen.
+async function png(spec, shown, width, name) {
   const made = await vegaEmbed(document.createElement("div"), { ...withColours(spec), width }, { ...OPTIONS, renderer: "canvas" });
+  for (const { name: signal } of spec.params) made.view.signal(signal, shown.signal(signal));
+  await made.view.runAsync();
   save(`${name}.png`, await made.view.toImageURL("png", 2));
   made.finalize();
 }
@@ -63,7 +66,7 @@ const coming = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
     if (!isIntersecting) continue;
     coming.unobserve(target);
-    draw(target);
+    draw(target).catch((error) => target.querySelector(".tools").append(`The chart cannot be drawn: ${error.message}`));
   }
 }, { rootMargin: "400px" });
 for (const figure of document.querySelectorAll("figure[data-chart]")) coming.observe(figure);

@@ -4,19 +4,19 @@
 // computed here from each pixel's stored bits, decoded normal and angle, or from its rendered colour.
 const SIDES = ["left", "right"];
 const ORIGINAL = -1;
-const NORMAL_VIEWS = {
+const normalViews = ({ gain, power }) => ({
   angle: "angle",
-  error: "30 × |error|",
-  power: "1 − dot^1024",
+  error: `${gain} × |error|`,
+  power: `1 − dot^${power}`,
   code: "stored code",
   decoded: "decoded normal",
-};
+});
 const IMAGE_VIEWS = { apart: "difference", final: "image", flip: "FLIP" };
 // What full colour stands for.
 const ANGLE_SCALES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 const APART_SCALES = [1, 2, 4, 8, 16, 32, 64, 128, 255];
-const ARTICLE_GAIN = 30, ARTICLE_POWER = 1024;
-const LENS = 11;
+// Pixels that the lens shows on a side, and how large each is; how wide a small picture is; how many codecs are kept.
+const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8;
 
 function penOf(canvas) {
   return canvas.getContext("2d", { willReadFrequently: true });
@@ -40,7 +40,7 @@ function keepPicture(name, planes) {
 function besides(codec) {
   return new Promise((resolve, reject) => {
     beside[codec.name] = resolve;
-    const failed = () => reject(new Error(`${codec.file} cannot be read; it belongs beside this page`));
+    const failed = () => reject(new Error(`${codec.file} is missing; it should lie in the folder next to this page`));
     document.head.append(element("script", { src: codec.file, onerror: failed }));
   });
 }
@@ -64,7 +64,7 @@ class Planes {
   static async of(subject, codec, exact) {
     const made = new Planes(subject, codec, exact), { width, height } = subject;
     if (codec === null) return made;
-    const kept = codec.file ? (codec.loaded ||= await besides(codec)) : codec;
+    const kept = codec.file ? await (codec.loading ||= besides(codec)) : codec;
     const read = (uri) => (uri ? pixelsOf(uri, width, height) : null);
     [made.angles, made.decoded, made.apart, made.flip] = await Promise.all(
       [kept.angle, kept.decoded, kept.apart, kept.flip].map(read),
@@ -78,7 +78,7 @@ class Planes {
   async readCodes(uris, read) {
     const pictures = await Promise.all(uris.map(read)), count = this.subject.width * this.subject.height;
     const sizes = this.bits.map((bits) => Math.ceil(bits / 8));
-    const codes = this.bits.map(() => new Float64Array(count));
+    const codes = this.bits.map(() => new Uint32Array(count));
     let plane = 0;
     for (let level = 0; level < Math.max(...sizes); level++) {
       for (const [c, size] of sizes.entries()) {
@@ -91,11 +91,13 @@ class Planes {
     return codes.map((all, c) => all.map((value) => Math.floor(value / 2 ** (8 * sizes[c] - this.bits[c]))));
   }
 
-  // Degrees; NaN on the background.
+  // Degrees; NaN on the background. What is not a number is as far as can be.
   angle(i) {
-    if (!this.angles) return 0;
-    const step = this.angles[4 * i], { least_log2, steps_per_octave } = viewer.data.angle;
-    return step === 0 ? NaN : step === 1 ? 0 : 2 ** (least_log2 + (step - 1) / steps_per_octave);
+    return this.angles ? viewer.degrees[this.angles[4 * i]] : 0;
+  }
+
+  isNumber(i) {
+    return this.angles[4 * i] !== viewer.data.angle.not_a_number;
   }
 
   final(i, c) {
@@ -117,8 +119,8 @@ class Planes {
     if (view === "angle") share = this.angle(i) / scale;
     else if (view === "apart") share = this.difference(i) / scale;
     else if (view === "flip") share = this.flip ? this.flip[at] / 255 : 0;
-    else if (view === "error") return grey(ARTICLE_GAIN * 2 * Math.sin((this.angle(i) * Math.PI) / 360), to, at);
-    else if (view === "power") return grey(1 - Math.max(0, Math.cos((this.angle(i) * Math.PI) / 180)) ** ARTICLE_POWER, to, at);
+    else if (view === "error") return grey(viewer.data.articles.gain * 2 * Math.sin((this.angle(i) * Math.PI) / 360), to, at);
+    else if (view === "power") return grey(1 - Math.max(0, Math.cos((this.angle(i) * Math.PI) / 180)) ** viewer.data.articles.power, to, at);
     else return this.colour(view, i, to, at);
     if (isGrey) return grey(share, to, at);
     const from = 3 * Math.max(0, Math.min(255, Math.round(share * 255)));
@@ -132,6 +134,15 @@ class Planes {
       else to[at + c] = (this.decoded || this.exact)[4 * i + c];
     }
     if (view === "code" && this.angles && this.angles[4 * i] === 0) to[at] = to[at + 1] = to[at + 2] = 0;
+  }
+
+  // At most so many pixels wide, for a small picture.
+  drawSmall(canvas, view, scale, isGrey, width = THUMB) {
+    const whole = document.createElement("canvas");
+    this.draw(whole, view, scale, isGrey);
+    canvas.width = Math.min(width, whole.width);
+    canvas.height = Math.max(1, Math.round((canvas.width * whole.height) / whole.width));
+    penOf(canvas).drawImage(whole, 0, 0, canvas.width, canvas.height);
   }
 
   draw(canvas, view, scale, isGrey) {
@@ -152,13 +163,17 @@ class Planes {
       const flip = this.flip ? `, FLIP ${(this.flip[4 * i] / 255).toFixed(2)}` : "";
       return this.apart ? `${rgb}, off by ${this.difference(i)} of 255${flip}` : rgb;
     }
-    const normal = (from) => `(${[0, 1, 2].map((c) => (from[4 * i + c] / 127.5 - 1).toFixed(2)).join(", ")})`;
-    if (!this.angles) return `normal ${normal(this.exact)}`;
+    if (!this.angles) return `normal ${normalOf(this.exact, i)}`;
     const angle = this.angle(i);
     if (Number.isNaN(angle)) return "background";
     const bits = this.codes.map((plane, c) => plane[i].toString(2).padStart(this.bits[c], "0")).join(" ");
-    return `code ${bits}, decoded ${normal(this.decoded)}, off by ${Number(angle.toPrecision(2))}°`;
+    if (!this.isNumber(i)) return `code ${bits}, decoded to what is not a number`;
+    return `code ${bits}, decoded ${normalOf(this.decoded, i)}, off by ${Number(angle.toPrecision(2))}°`;
   }
+}
+
+function normalOf(from, i) {
+  return `(${[0, 1, 2].map((c) => (from[4 * i + c] / 127.5 - 1).toFixed(3)).join(", ")})`;
 }
 
 function grey(share, to, at) {
@@ -169,6 +184,9 @@ class Viewer {
   constructor(root, data) {
     Object.assign(this, { root, data, place: { x: 0, y: 0 }, shown: {}, read: new Map(), turn: 0 });
     fillColours(data.colours);
+    const { least_log2, steps_per_octave, not_a_number } = data.angle;
+    this.degrees = Array.from({ length: 256 }, (_, step) => 2 ** (least_log2 + (step - 1) / steps_per_octave));
+    Object.assign(this.degrees, { 0: NaN, 1: 0, [not_a_number]: 180 });
     data.subjects.forEach((subject, at) => this.one("#subject").add(new Option(subject.title, at)));
     this.listen();
     root.hidden = false;
@@ -202,13 +220,14 @@ class Viewer {
     return this.one(`#${side}`);
   }
 
-  // A codec's pixels, read once; the exact ones for ORIGINAL.
+  // A codec's pixels; the exact ones for ORIGINAL. The last few are kept.
   planes(at) {
     const subject = this.subject, key = `${this.one("#subject").value}/${at}`;
     if (!this.read.has(key)) {
       subject.exact ||= pixelsOf(subject.original, subject.width, subject.height);
       const codec = Number(at) === ORIGINAL ? null : subject.codecs[at];
       this.read.set(key, subject.exact.then((exact) => Planes.of(subject, codec, exact)));
+      if (this.read.size > KEPT) this.read.delete(this.read.keys().next().value);
     }
     return this.read.get(key);
   }
@@ -239,43 +258,60 @@ class Viewer {
     picked.listeners.push((name) => this.follow(name));
   }
 
-  // A subject from its start: the best codec against the next one.
+  // A subject from its start: the best codec against the next one, or against the exact pixels.
   async begin() {
-    const { subject } = this, views = subject.of === "image" ? IMAGE_VIEWS : NORMAL_VIEWS;
+    const { subject } = this, turn = ++this.turn;
+    this.shown = {};
+    this.fillLists(subject);
+    this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
+    const note = subject.step > 1 ? `One pixel of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
+    this.one("[data-step]").textContent = note;
+    this.fillThumbs();
+    const at = this.find(picked.name);
+    if (at >= 0) this.side("right").value = at;
+    try {
+      const both = await Promise.all(SIDES.map((side) => this.planes(this.side(side).value)));
+      if (turn !== this.turn) return;
+      this.fitScale(both);
+    } catch (error) {
+      this.say(error.message);
+    }
+    this.isReady = true;
+    await this.show();
+  }
+
+  fillLists(subject) {
     for (const side of SIDES) {
       const options = subject.codecs.map((codec, at) => new Option(codec.label, at));
       this.side(side).replaceChildren(new Option("exact", ORIGINAL), ...options);
-      this.side(side).value = Math.min(SIDES.indexOf(side), subject.codecs.length - 1);
     }
-    const first = subject.codecs[0], hasFlip = first.flip || (first.loaded && first.loaded.flip);
-    const names = Object.entries(views).filter(([name]) => name !== "flip" || hasFlip);
+    this.side("left").value = 0;
+    this.side("right").value = subject.codecs.length > 1 ? 1 : ORIGINAL;
+    const views = subject.of === "image" ? IMAGE_VIEWS : normalViews(this.data.articles);
+    const names = Object.entries(views).filter(([name]) => name !== "flip" || subject.flip);
     this.one("#view").replaceChildren(...names.map(([name, title]) => new Option(title, name)));
     this.one("#scale").max = this.scales.length - 1;
     for (const [axis, size] of [["x", subject.width], ["y", subject.height]]) this.one(`#lens-${axis}`).max = size - 1;
-    this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
-    const note = subject.step > 1 ? `One pixel of ${subject.step} × ${subject.step} is shown, exactly as it is.` : "Every pixel is shown, exactly as it is.";
-    this.one("[data-step]").textContent = note;
-    await this.fitScale();
-    this.fillThumbs();
-    if (picked.name) this.follow(picked.name);
-    return this.show();
   }
 
   // Full colour for what only one pixel in fifty exceeds, of the worse side.
-  async fitScale() {
-    const both = await Promise.all(SIDES.map((side) => this.planes(this.side(side).value)));
-    const most = Math.max(...both.map((planes) => planes.codec ? this.nearlyMost(planes) : 0));
+  fitScale(both) {
+    const most = Math.max(...both.map((planes) => (planes.codec ? this.nearlyMost(planes) : 0)));
     const at = this.scales.findIndex((scale) => scale >= most);
     this.one("#scale").value = at < 0 ? this.scales.length - 1 : at;
   }
 
   nearlyMost(planes) {
-    const values = [], count = this.subject.width * this.subject.height;
-    for (let i = 0; i < count; i += 7) {
-      const value = this.subject.of === "image" ? planes.difference(i) : planes.angle(i);
-      if (value === value) values.push(value);
-    }
-    return values.sort((a, b) => a - b)[Math.floor(values.length * 0.98)] || 0;
+    const counts = new Uint32Array(256), count = this.subject.width * this.subject.height;
+    const isImage = this.subject.of === "image";
+    for (let i = 0; i < count; i++) counts[isImage ? planes.difference(i) : planes.angles[4 * i]]++;
+    let left = (isImage ? count : count - counts[0]) * 0.02, at = 255;
+    while (at > 0 && left >= counts[at]) left -= counts[at--];
+    return isImage ? at : this.degrees[at] || 0;
+  }
+
+  say(text) {
+    this.one("[data-values]").textContent = text;
   }
 
   async show() {
@@ -287,19 +323,23 @@ class Viewer {
       for (const side of SIDES) {
         const planes = await this.planes(this.side(side).value);
         if (turn !== this.turn) return;
-        this.shown[side] = planes;
-        const canvas = this.one(`[data-canvas="${side}"]`), label = planes.codec ? planes.codec.label : "exact";
-        planes.draw(canvas, view, scale, isGrey);
-        const title = this.one("#view").selectedOptions[0].textContent;
-        canvas.setAttribute("aria-label", `${side} of the divider: ${label}, ${title}, ${this.subject.title}`);
-        this.one(`[data-name="${side}"]`).textContent = label;
+        this.put(side, planes, view, scale, isGrey);
       }
     } catch (error) {
-      this.one("[data-values]").textContent = error.message;
+      this.say(error.message);
       return;
     }
     this.legend(scaled || view === "flip");
     this.magnify();
+  }
+
+  put(side, planes, view, scale, isGrey) {
+    this.shown[side] = planes;
+    const canvas = this.one(`[data-canvas="${side}"]`), label = planes.codec ? planes.codec.label : "exact";
+    planes.draw(canvas, view, scale, isGrey);
+    const title = this.one("#view").selectedOptions[0].textContent;
+    canvas.setAttribute("aria-label", `${side} of the divider: ${label}, ${title}, ${this.subject.title}`);
+    this.one(`[data-name="${side}"]`).textContent = label;
   }
 
   legend(isThere) {
@@ -308,6 +348,7 @@ class Viewer {
     const most = this.view === "flip" ? "1" : `${this.scale}${unit}`;
     this.one("[data-most]").textContent = `${most}${this.view === "flip" ? "" : " and more"}`;
     this.one("[data-scale]").textContent = `${this.scale}${unit}`;
+    this.one("#scale").setAttribute("aria-valuetext", `${this.scale}${unit}`);
     strip.width = 256;
     strip.height = 1;
     const image = new ImageData(256, 1);
@@ -322,9 +363,12 @@ class Viewer {
     this.one(".stage").style.setProperty("--at", `${at}%`);
     this.one("#divider").value = at;
     this.one("[data-divided]").textContent = `${Math.round(at)} %`;
+    this.one("#divider").setAttribute("aria-valuetext", `${Math.round(at)} %`);
   }
 
   point(event) {
+    // What a pointer passes over is not read out.
+    this.one(".said").setAttribute("aria-live", "off");
     const stage = this.one(".stage"), box = stage.getBoundingClientRect(), { width, height } = this.subject;
     const share = { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height };
     if (stage.classList.contains("dragging")) this.divide(Math.max(0, Math.min(100, 100 * share.x)));
@@ -336,6 +380,7 @@ class Viewer {
     const moves = { ArrowLeft: [-by, 0], ArrowRight: [by, 0], ArrowUp: [0, -by], ArrowDown: [0, by] };
     if (!(event.key in moves)) return;
     event.preventDefault();
+    this.one(".said").setAttribute("aria-live", "polite");
     const [x, y] = moves[event.key];
     this.goTo({ x: this.place.x + x, y: this.place.y + y });
   }
@@ -354,47 +399,60 @@ class Viewer {
 
   // The pixels around the place, from either side, and what the one in the middle is.
   magnify() {
-    const { x, y } = this.place, { width, height } = this.subject, half = Math.floor(LENS / 2);
+    const { x, y } = this.place, { width, height, step, of } = this.subject, i = y * width + x;
     for (const side of SIDES) {
-      const from = this.one(`[data-canvas="${side}"]`), to = this.one(`[data-lens="${side}"]`), pen = penOf(to);
-      const cell = to.width / LENS;
-      pen.imageSmoothingEnabled = false;
-      pen.clearRect(0, 0, to.width, to.height);
-      pen.drawImage(from, x - half, y - half, LENS, LENS, 0, 0, to.width, to.height);
-      pen.strokeStyle = "#fff";
-      pen.strokeRect(half * cell + 0.5, half * cell + 0.5, cell - 1, cell - 1);
-      this.one(`[data-pixel="${side}"]`).textContent = this.shown[side] ? this.shown[side].say(y * width + x) : "";
+      if (!this.shown[side]) return;
+      this.enlarge(side, x, y);
+      this.one(`[data-pixel="${side}"]`).textContent = this.shown[side].say(i);
     }
     for (const axis of ["x", "y"]) {
       const field = this.one(`#lens-${axis}`);
       if (document.activeElement !== field) field.value = this.place[axis];
     }
-    const lens = this.one(".lens").style;
-    // Away from what it shows, and never outside of the picture.
-    lens.left = x > width / 2 ? "auto" : `${(100 * x) / width + 3}%`;
-    lens.right = x > width / 2 ? `${100 - (100 * x) / width + 3}%` : "auto";
-    lens.top = y > height / 2 ? "auto" : `${(100 * y) / height + 3}%`;
-    lens.bottom = y > height / 2 ? `${100 - (100 * y) / height + 3}%` : "auto";
-    const said = this.subject.of === "image" ? "" : this.shown.left ? `, ${normalOf(this.shown.left, y * width + x)}` : "";
-    this.one("[data-values]").textContent = `Pixel ${x * this.subject.step}, ${y * this.subject.step}${said}`;
+    this.placeLens(x / width, y / height);
+    const exact = of === "image" ? "" : `, exact normal ${normalOf(this.shown.left.exact, i)}`;
+    this.say(`Pixel ${x * step}, ${y * step}${exact}`);
+  }
+
+  enlarge(side, x, y) {
+    const to = this.one(`[data-lens="${side}"]`), half = Math.floor(LENS / 2);
+    to.width = to.height = LENS * CELL;
+    const pen = penOf(to);
+    pen.imageSmoothingEnabled = false;
+    pen.drawImage(this.one(`[data-canvas="${side}"]`), x - half, y - half, LENS, LENS, 0, 0, to.width, to.height);
+    pen.strokeStyle = "#fff";
+    pen.strokeRect(half * CELL + 0.5, half * CELL + 0.5, CELL - 1, CELL - 1);
+  }
+
+  // Away from what it shows, and never outside of the picture.
+  placeLens(x, y) {
+    const { style } = this.one(".lens"), beyond = (share) => `${100 * share + 3}%`;
+    style.left = x > 0.5 ? "auto" : beyond(x);
+    style.right = x > 0.5 ? beyond(1 - x) : "auto";
+    style.top = y > 0.5 ? "auto" : beyond(y);
+    style.bottom = y > 0.5 ? beyond(1 - y) : "auto";
+  }
+
+  find(name) {
+    return name ? this.subject.codecs.findIndex((one) => one.codec && agrees(one.codec, name)) : -1;
   }
 
   // What is highlighted on the page stands to the right.
   follow(name) {
-    const at = this.subject.codecs.findIndex((codec) => codec.label === name || agrees(codec.label, name));
-    if (!name || at < 0 || String(at) === this.side("right").value) return;
+    const at = this.isReady ? this.find(name) : -1;
+    if (at < 0 || String(at) === this.side("right").value) return;
     this.side("right").value = at;
     this.show();
   }
 
   // One codec of a subject against the next one, brought into view.
-  async open(subject, name, view) {
+  async open(subject, codec, view) {
     this.one("#subject").value = this.data.subjects.indexOf(subject);
     this.begun = this.begin();
     await this.begun;
-    const at = subject.codecs.findIndex((codec) => codec.label === name);
+    const at = subject.codecs.indexOf(codec), count = subject.codecs.length;
     this.side("left").value = at;
-    this.side("right").value = (at + 1) % subject.codecs.length;
+    this.side("right").value = count > 1 ? (at + 1) % count : ORIGINAL;
     this.one("#view").value = view;
     await this.show();
     this.root.scrollIntoView();
@@ -408,13 +466,17 @@ class Viewer {
         if (!isIntersecting) continue;
         seen.unobserve(target);
         const view = subject.of === "image" ? "final" : "error";
-        this.planes(target.dataset.at).then((planes) => planes.draw(target.querySelector("canvas"), view, 1, true), () => {});
+        this.planes(target.dataset.at).then((planes) => planes.drawSmall(target.querySelector("canvas"), view, 1, true), () => {});
       }
     });
     const made = subject.codecs.map((codec, at) => {
-      const picture = element("canvas", { role: "img", "aria-label": `${codec.label} in small` });
+      const picture = element("canvas", { "aria-hidden": "true" });
       const button = element("button", { type: "button", "data-at": at }, picture, element("span", {}, codec.label));
-      button.addEventListener("click", () => picked.pick(codec.label));
+      button.addEventListener("click", () => {
+        this.side("right").value = at;
+        this.show();
+        if (codec.codec && picked.name !== codec.codec) picked.pick(codec.codec);
+      });
       seen.observe(button);
       return button;
     });
@@ -422,35 +484,33 @@ class Viewer {
   }
 }
 
-function normalOf(planes, i) {
-  return `exact normal (${[0, 1, 2].map((c) => (planes.exact[4 * i + c] / 127.5 - 1).toFixed(2)).join(", ")})`;
-}
-
 // The pictures of an answer: its image, and how far that is off.
+const ANSWER_SCALE = 32;
+
 async function showAnswer(place) {
-  const name = place.dataset.answer;
-  for (const subject of viewer.data.subjects) {
-    const codec = subject.codecs.find((one) => one.label === name);
-    if (!codec || subject.of !== "image") continue;
-    const exact = await pixelsOf(subject.original, subject.width, subject.height);
-    const planes = await Planes.of(subject, codec, exact), most = 32;
-    for (const [view, title] of [["final", "image"], ["apart", `difference, full colour at ${most} of 255`]]) {
-      const canvas = element("canvas", { role: "img", "aria-label": `${name}, ${subject.title}: ${title}` });
-      planes.draw(canvas, view, most, false);
-      const button = element("button", { type: "button" }, canvas, element("span", {}, `${subject.title.replace("the answer on ", "")}: ${title}`));
-      button.addEventListener("click", () => viewer.open(subject, name, view));
-      place.append(button);
-    }
-    place.hidden = false;
-    return;
+  const { answer, scene } = place.dataset, of = (subject) => subject.title.startsWith(`the answer on ${scene} at power `);
+  const subject = viewer.data.subjects.find((one) => of(one) && one.codecs.some((codec) => codec.codec === answer));
+  if (!subject) return;
+  const codec = subject.codecs.find((one) => one.codec === answer);
+  const exact = await pixelsOf(subject.original, subject.width, subject.height);
+  const planes = await Planes.of(subject, codec, exact);
+  for (const [view, title] of [["final", "image"], ["apart", `difference, full colour at ${ANSWER_SCALE} of 255`]]) {
+    const canvas = element("canvas", { "aria-hidden": "true" });
+    planes.drawSmall(canvas, view, ANSWER_SCALE, false, 2 * THUMB);
+    const name = element("span", {}, `${subject.title.replace("the answer on ", "")}: ${title}`);
+    const button = element("button", { type: "button" }, canvas, name);
+    button.addEventListener("click", () => viewer.open(subject, codec, view));
+    place.append(button);
   }
+  place.hidden = false;
 }
 
 let viewer = null;
 const viewerRoot = document.querySelector("#viewer");
 if (viewerRoot) {
   viewer = new Viewer(viewerRoot, JSON.parse(document.querySelector("#picture-data").textContent));
-  document.querySelectorAll("[data-answer]").forEach(showAnswer);
+  // Pictures that are missing leave the answer's words as they are.
+  for (const place of document.querySelectorAll("[data-answer]")) showAnswer(place).catch(() => {});
   const start = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     start.disconnect();

@@ -89,15 +89,15 @@ function asCsv(table) {
   return shownOf(table, (cell) => valueOf(cell).trim()).map(line).join("\n") + "\n";
 }
 
-async function copy(text, button) {
-  const before = button.textContent;
+// What was copied is said next to the button, and read out.
+async function copy(text, said) {
   try {
     await navigator.clipboard.writeText(text);
-    button.textContent = "Copied";
+    said.textContent = "Copied";
   } catch (error) {
-    button.textContent = `Not copied: ${error.message}`;
+    said.textContent = `Not copied: ${error.message}`;
   }
-  setTimeout(() => (button.textContent = before), 1500);
+  setTimeout(() => (said.textContent = ""), 3000);
 }
 
 function save(name, href) {
@@ -118,11 +118,12 @@ function addTools(sheet) {
   const file = `${name.replace(/[^\w.-]+/g, "-").slice(0, 60)}.csv`, of = element("span", { class: "visually-hidden" }, `: ${name}`);
   const markdown = element("button", { type: "button", "data-copy": "markdown" }, "Copy as Markdown", of);
   const csv = element("button", { type: "button", "data-copy": "csv" }, "Save as CSV", of.cloneNode(true));
-  markdown.addEventListener("click", () => copy(asMarkdown(table), markdown));
+  const said = element("span", { role: "status", "data-copied": "" });
+  markdown.addEventListener("click", () => copy(asMarkdown(table), said));
   csv.addEventListener("click", () => saveText(file, asCsv(table)));
   let tools = sheet.querySelector(".tools");
   if (!tools) sheet.prepend((tools = element("p", { class: "tools" })));
-  tools.append(markdown, csv);
+  tools.append(markdown, csv, said);
 }
 
 // Rows of a codec are chosen by their first cell.

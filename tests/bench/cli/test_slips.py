@@ -123,6 +123,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "options of captures without one": ((*ONE, "--fov", "60"), "options of captures are given, but --normals sphere"),
     "a family that is not": (("pick", "--family", "navi99"), "unknown family 'navi99'"),
     "a backend that is not": ((*ONE[:6], "cuda"), "unknown back end 'cuda'"),
+    "an option of another table": (("run", "--tables", "depth", "--encoding", "xy"), "none of them is measured"),
     "a table that is not": (("run", "--tables", "qualiti"), "did you mean quality?"),
     "columns of no table": (("columns", "qualities"), "did you mean quality?"),
     "a list of nothing": (("list", "encoder"), "unknown list 'encoder'"),
