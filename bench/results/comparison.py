@@ -146,17 +146,23 @@ def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
     return [_line(group) for group in grouped]
 
 
+def _presence(change: Row) -> str:
+    """Whether only one of the runs has the row, and which; empty where both have it."""
+    return change["change"] if change["change"] in ONLY.values() else ""
+
+
 def _by_row(change: Row) -> tuple:
-    return change["table"], change["row"]
+    return change["table"], change["row"], _presence(change)
 
 
 def _by_encoding(change: Row) -> tuple:
     keys = change["keys"]
-    return change["table"], next((keys[name] for name in ("encoding", "depth", "light_buffer") if keys.get(name)), "")
+    code = next((keys[name] for name in ("encoding", "depth", "light_buffer") if keys.get(name)), "")
+    return change["table"], code, _presence(change)
 
 
 def _by_table(change: Row) -> tuple:
-    return (change["table"],)
+    return change["table"], _presence(change)
 
 
 def _line(group: Sequence[Row]) -> Row:

@@ -54,7 +54,10 @@ class Done:
     @property
     def finished(self) -> bool:
         """Whether every step has its rows."""
-        return bool(self.facts.get("finished"))
+        before = self.facts.get("before")
+        requests = [one for one in before if isinstance(one, dict)] if isinstance(before, list) else []
+        # A run of an older version does not say whether its earlier requests were finished.
+        return bool(self.facts.get("finished")) and all(one.get("finished") is not False for one in requests)
 
 
 def _renamed(table: Table | None, row: Row) -> Row:
@@ -230,7 +233,7 @@ def _begun(folder: Path, facts: Row) -> Row:
 
 def _extended(folder: Path, kept: Row, facts: Row) -> Row:
     """The facts of a run that goes on with another request: what was asked before is remembered."""
-    before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time")}]
+    before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time", "finished")}]
     made = facts | {"before": before, "finished": False}
     _write_facts(folder, made)
     return made

@@ -98,7 +98,7 @@ def _parity(name: str, done: Done) -> Iterator[Row]:
         ]
         if apart:
             most, key, row = max(apart, key=lambda found: found[0])
-            about = {"run": name, "device": row.get("device"), "figure": column, "codecs": len(apart)}
+            about = {"run": name, "device": row.get("device"), "figure": column, "rows": len(apart)}
             yield about | {"largest": most, "where": " ".join(str(word) for word in key if word != "nearest")}
 
 

@@ -50,6 +50,8 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
     Raises:
         UsageError: a folder is not a run's, or the page cannot be written.
     """
+    if output:
+        _check_output(output, as_markdown)
     done = [read_run(folder) for folder in folders]
     for damage in filter(None, (one.damage for one in done)):
         tell(f"{damage}")
@@ -60,6 +62,15 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
     else:
         charts = f"{output.stem}-{CHARTS}" if output else CHARTS
         say(f"{write_report(folders[0], done[0], output or folders[0] / PAGE, charts, pictures_beside)}\n")
+
+
+def _check_output(output: Path, as_markdown: bool) -> None:
+    """Raises UsageError for a file that cannot be written, or whose name says that it is something else."""
+    check_writable(output)
+    if not as_markdown:
+        check_page(output)
+    elif output.suffix.lower() in (".html", ".htm"):
+        raise UsageError(f"{output}: --markdown writes text; name it {output.with_suffix('.md')}")
 
 
 def _report_several(
@@ -74,7 +85,6 @@ def _report_several(
         return
     target = output or Path(SEVERAL)
     check_writable(target)
-    check_page(target)
     made = several.html(names, list(side_by_side.sheets(runs)), list(side_by_side.figures(runs)))
     with whole_file(target) as partial:
         partial.write_text(made, encoding="utf-8")
@@ -110,7 +120,6 @@ def write_report(
         UsageError: it cannot be written.
     """
     check_writable(target)
-    check_page(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
     with tempfile.TemporaryDirectory(prefix="normalbench-") as other:
         beside = target.parent / charts if charts else Path(other)
@@ -187,6 +196,7 @@ def gathered(folder: Path, done: Done) -> Found:
         facts=facts,
         tables=tables,
         steps=len(done.steps),
+        finished=done.finished,
         domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
         subjects=list(_subjects(folder, tables, remarks)),
         maps=list(_maps(folder / MAPS, quality)),

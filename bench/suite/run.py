@@ -12,7 +12,7 @@ from typing import Any
 
 from ...reports import tables
 from ..options.option import fields_of
-from ..output.errors import MissingError, UsageError, pick, tell
+from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
 from ..results.measuring import Asked, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
@@ -67,7 +67,7 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     if not made:
         raise MissingError("; ".join(reasons))
     for reason, names in reasons.items():
-        tell(f"left out: {', '.join(names)}: {reason}")
+        leave_out(f"{', '.join(names)}: {reason}")
     return made
 
 
@@ -108,7 +108,9 @@ def run_command(request: Any, output: Path | None) -> int:
     facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
     facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
     folder = output or unfinished(RESULTS, facts) or _new_folder()
-    asks = asked_of(request, folder)
+    with noting_what_is_left_out() as left_out:
+        asks = asked_of(request, folder)
+    facts |= {"left_out": left_out}
     total = sum(len(ask.steps) for ask in asks)
     with opened(folder, facts) as run:
         if run.kept:

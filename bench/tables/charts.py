@@ -33,7 +33,21 @@ def drawing(
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:
-    """The rows of one back end: JAX's where it has some."""
-    backends = list(dict.fromkeys(row.get("backend") for row in rows))
-    chosen = next((b for b in backends if b in BACKENDS), backends[0] if backends else None)
-    return [row for row in rows if row.get("backend") == chosen]
+    """Of each encoding or depth code the rows of one back end: JAX's where it has some."""
+    chosen: dict[Any, Any] = {}
+    for backend in sorted(
+        {str(row.get("backend")) for row in rows}, key=lambda name: (name not in BACKENDS, name != "jax")
+    ):
+        for row in rows:
+            if str(row.get("backend")) == backend:
+                chosen.setdefault(_code(row), backend)
+    return [row for row in rows if str(row.get("backend")) == chosen[_code(row)]]
+
+
+def _code(row: Row) -> Any:
+    return row.get("encoding") or row.get("depth")
+
+
+def backends_of(rows: Sequence[Row]) -> str:
+    """By which back ends rows are, as a title says it."""
+    return " or ".join(dict.fromkeys(str(row.get("backend")) for row in rows))

@@ -86,7 +86,7 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
         "scale": {"type": "log", "domain": [LEAST_DEG, 180], "nice": False},
         "title": "angle, degrees",
     }
-    y = {"field": "y", "type": "quantitative", "title": "% of normals in an octave of angles"}
+    y = {"field": "y", "type": "quantitative", "title": "density, % of normals per octave"}
     encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "line"}, "color": _by_bits(points)}
     tooltip = _tooltip(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
     layers = [
@@ -142,7 +142,7 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
         for row in sorted(rows, key=lambda row: -row["psnr_db"])
     ]
     y = {"field": "line", "type": "nominal", "sort": list(dict.fromkeys(row["line"] for row in found)), "title": None}
-    x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False}}
+    x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False, "padding": 8}}
     tooltip = _tooltip(line="codec", image="the image, dB", normals="the normals, dB")
     lit = {"opacity": _if_lit(1, 0.2)}
 
@@ -170,7 +170,7 @@ def _pareto(panel: Panel, error: Error) -> Spec:
     rows = [_point(point, point in front) for point in [*front, *(p for p in panel.points if p not in front)]]
     log = {} if error.more_is_better else {"type": "log"}
     x = {"field": "cost", "type": "quantitative", "title": panel.unit}
-    y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, **log}}
+    y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, "padding": 8, **log}}
     tooltip = _tooltip(codec="codec", bits="bits", cost="instructions", error="error")
     lit = _if_lit(1, 0.15)
     best = [{"filter": "datum.best"}]

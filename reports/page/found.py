@@ -45,6 +45,7 @@ class Found:
         tables: rows by table, as they were kept.
         sections: the tables as the page shows them, in its order.
         steps: how many have their rows.
+        finished: whether all that was asked for has.
         domains: of each encoding, the normals that it is made for.
         subjects: what codecs were tried on, and their pixels.
         maps: errors over the sphere.
@@ -59,6 +60,7 @@ class Found:
     tables: Mapping[str, Sequence[Row]]
     sections: Sequence[Section] = ()
     steps: int = 0
+    finished: bool = False
     domains: Mapping[str, str] = field(default_factory=dict)
     subjects: Sequence[Subject] = ()
     maps: Sequence[SphereMap] = ()

@@ -110,11 +110,12 @@ def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
-    """The places of a column's best figures, of those of as many bits; none where all are the same."""
+    """The places of a column's best figures, of those of as many bits and of one operation; none where all are the
+    same."""
     groups: dict[Any, list[int]] = {}
     for at, row in enumerate(rows):
         if is_number(row[column.name]):
-            groups.setdefault(row.get("bits"), []).append(at)
+            groups.setdefault((row.get("bits"), row.get("operation")), []).append(at)
     for places in groups.values():
         texts = {tables.text_of(shown[at][column.name]) for at in places}
         best = (max if column.better == "more" else min)(shown[at][column.name] for at in places)
@@ -162,7 +163,9 @@ def judged(found: Found) -> list[Contest]:
 def remarks(found: Found) -> list[str]:
     """What a reader must know of the run before its figures."""
     said = list(found.remarks)
-    if not found.facts.get("finished"):
+    left_out = found.facts.get("left_out")
+    said += [f"Left out of this run: {line}." for line in left_out] if isinstance(left_out, list) else []
+    if not found.finished:
         said.insert(0, f"This run is not finished. Steps that are done: {found.steps}.")
     return said
 

@@ -37,7 +37,7 @@ class Figures:
 
         def differing(column: str) -> tuple[int, int]:
             rows = self.columns[column].values()
-            return sum(len(set(map(str, row))) > 1 for row in rows), min(2, len({str(row) for row in rows}))
+            return sum(map(_differ, rows)), min(2, len({str(row) for row in rows}))
 
         return max(self.columns, key=differing)
 
@@ -45,7 +45,7 @@ class Figures:
     def rows(self) -> list[tuple[str, list[str], bool]]:
         """Of that column each row's name, its figures as text, and whether they differ."""
         lines = self.columns[self.first].items()
-        return [(name, [tables.text_of(v) for v in values], len(set(map(str, values))) > 1) for name, values in lines]
+        return [(name, [tables.text_of(v) for v in values], _differ(values)) for name, values in lines]
 
     @property
     def data(self) -> str:
@@ -54,6 +54,11 @@ class Figures:
             name: [[row, list(map(_plain, values))] for row, values in c.items()] for name, c in self.columns.items()
         }
         return data_block({"columns": kept})
+
+
+def _differ(values: Sequence[Any]) -> bool:
+    """Whether the runs that have a figure differ in it."""
+    return len({str(value) for value in values if value is not None}) > 1
 
 
 def _pairs(rows: Mapping[str, Sequence[Any]]) -> list[tuple[str, list[Any]]]:

@@ -129,6 +129,15 @@ def standing(measure: Measure, figures: Mapping[str, float]) -> Standing | None:
     return Standing(measure, first, best, after.first if after else (), after.figure if after else None)
 
 
+def counted_set(row: Row, rows: Sequence[Row]) -> str:
+    """A row's set of normals, with their number where rows have several of that set: they are not compared."""
+    name, counts = (
+        str(row.get("normals")),
+        {one.get("count") for one in rows if one.get("normals") == row.get("normals")},
+    )
+    return name if len(counts) == 1 else f"{name} of {row.get('count')} normals"
+
+
 def contests(
     quality: Sequence[Row], images: Sequence[Row], costs: Mapping[str, float], domains: Mapping[str, str]
 ) -> list[Contest]:
@@ -143,7 +152,7 @@ def contests(
     usable = [row for row in quality if is_number(row.get(LEADING)) and is_count(row.get("bits"))]
     groups: dict[tuple[str, int], list[Row]] = {}
     for row in usable:
-        groups.setdefault((str(row.get("normals")), row["bits"]), []).append(row)
+        groups.setdefault((counted_set(row, usable), row["bits"]), []).append(row)
     made = [_contest(key, rows, images, costs, domains) for key, rows in groups.items()]
     encodings = {key: len({row.get("encoding") for row in rows}) for key, rows in groups.items()}
     sets = list(dict.fromkeys(normals for normals, _ in groups))

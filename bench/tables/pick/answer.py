@@ -23,6 +23,8 @@ HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
 )
 # What normals outside an encoding's domain do.
 BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer"}
+# Images are compared of codes whose angles are this close.
+CLOSE = 0.95
 # Of `cheaper`: its instructions' share of the best's.
 CHEAP = 0.5
 
@@ -66,6 +68,12 @@ def beats(one: Row, other: Row) -> bool:
     """Whether a code is nowhere worse than another one and somewhere better."""
     pairs = [(figure(one, aim), figure(other, aim)) for aim in AIMS]
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
+
+
+def clearly_beats(one: Row, other: Row) -> bool:
+    """Whether a code has so much smaller angles than another, at no higher cost, that no image needs to be drawn."""
+    angles = all(figure(one, aim) < CLOSE * figure(other, aim) for aim in ("angle", "worst"))
+    return angles and figure(one, "cost") <= figure(other, "cost")
 
 
 def why_left_out(row: Row) -> str:

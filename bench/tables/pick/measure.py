@@ -32,7 +32,7 @@ from ...worst_case.exact_figures import has_twin
 from ..cost import measure as cost
 from ..quality import measure as quality
 from ..render import measure as render
-from .answer import IMAGE, answered
+from .answer import IMAGE, answered, clearly_beats
 from .table import TABLE
 
 Row = dict[str, Any]
@@ -113,7 +113,8 @@ class Question:
             self._find_suprema(self._qualified("angle"))
             self._take_suprema()
         if pictures:
-            drawn = self._qualified("angle") if aim == "image" else [row for row in self.answered() if row["front"]]
+            fit = self._qualified("angle")
+            drawn = fit if aim == "image" else [row for row in fit if not any(clearly_beats(one, row) for one in fit)]
             for row in drawn + [row for row in self._rows.values() if row["against"]]:
                 self._rows[row["encoding"]] |= pictures.of(self._cases[row["encoding"]])
         self._find_suprema(self.answered()[:1])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ....encodings.catalogue import ENCODINGS
 from .answer import AIMS, BEST, CHEAPER, IMAGE, PICTURE, RUNNER_UP, beats, image_db, largest, lost
 
 Row = dict[str, Any]
@@ -77,11 +78,17 @@ def _loops(row: Row) -> str:
 def _next(row: Row, best: Row) -> str:
     aim = best["aim"]
     one, other = AIMS[aim](row), AIMS[aim](best)
-    by = f" ({100 * (one / other - 1):.1f} % more)" if aim in ("angle", "worst") and other else ""
+    by = f" ({_more(one / other)})" if aim in ("angle", "worst") and other else ""
     count = "" if row["instructions"] is None else f", {row['instructions']:g} instructions"
     if aim == "cost":
         return f"{_aimed(row, aim)} instructions"
-    return f"{AIM_TITLES[aim]} {_aimed(row, aim)}{by}{count}"
+    worst = "" if aim == "worst" else f", largest {degrees(largest(row))}"
+    return f"{AIM_TITLES[aim]} {_aimed(row, aim)}{by}{worst}{count}"
+
+
+def _more(ratio: float) -> str:
+    percent = f"{100 * (ratio - 1):.1f}"
+    return "equal" if float(percent) == 0 else f"{percent} % more"
 
 
 def _aimed(row: Row, aim: str) -> str:
@@ -93,7 +100,10 @@ def _aimed(row: Row, aim: str) -> str:
 
 
 def _bits(row: Row, best: Row) -> str:
-    return f" in {row['bits']} bits" if row["bits"] != best["bits"] else ""
+    if row["bits"] == best["bits"]:
+        return ""
+    has_sign = row["encoding"] in ENCODINGS and ENCODINGS[row["encoding"]].sign_bits
+    return f" in {row['bits']} bits" + (", one of them in the sign of the depth" if has_sign else "")
 
 
 def _cheaper(places: dict[str, Row], best: Row) -> Iterator[str]:
@@ -113,11 +123,11 @@ def _picture(places: dict[str, Row], best: Row) -> Iterator[str]:
         return
     row = places[PICTURE]
     if row is best or row is places.get(CHEAPER):
-        yield from [] if best["aim"] == "image" else [f"{row['encoding']} also has the best image."]
+        yield from [] if best["aim"] == "image" else [f"{row['encoding']} also has the best image of those rendered."]
         return
     count = "" if row["instructions"] is None else f" for {row['instructions']:g} instructions"
     price = f"{count}{_bits(row, best)}; mean error {degrees(row['angle_mean_deg'])}."
-    yield f"Best image: {row['encoding']}, {images(row)}{price}"
+    yield f"Best image of those rendered: {row['encoding']}, {images(row)}{price}"
 
 
 def _against(row: Row, best: Row) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
+from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...codecs.names import check_twin, codecs_named, fitting
 from ...machine.devices import require_device, require_jax
@@ -15,7 +16,7 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, leave_out, pick
 from ...output.writing import check_folder, without
-from ..charts import drawing, having, one_backend
+from ..charts import backends_of, drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .order import ONCE, in_order, with_limits
@@ -110,11 +111,12 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
-        groups.setdefault((row["normals"], row["storage"]), []).append(row)
+        groups.setdefault((counted_set(row, rows), row["storage"]), []).append(row)
     for (normals, storage), part in groups.items():
         lines = beside(part)
         said = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
-        title = f"{normals}, {storage}: {said}; angles in degrees, by {part[0]['backend']}"
+        measured = backends_of(one_backend([row for row in part if row["angle_mean_deg"] is not None]))
+        title = f"{normals}, {storage}: {said}; angles in degrees" + (f", by {measured}" if measured else "")
         yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage})
 
 
@@ -167,7 +169,7 @@ def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     usable = [r for r in having(rows, "bits", "angle_mean_deg") if charts.bins(r.get("angle_counts"))]
     for at, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
         part = one_backend([row for row in usable if str(row.get("normals")) == normals])
-        title = f"Angles on {normals}, by {part[0].get('backend')}"
+        title = f"Angles on {normals}, by {backends_of(part)}"
         said = (
             "The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the tables "
         )

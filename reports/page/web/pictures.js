@@ -253,7 +253,9 @@ class Viewer {
     stage.addEventListener("keydown", (event) => this.key(event));
     stage.addEventListener("focus", () => this.look());
     for (const axis of ["x", "y"]) {
-      this.one(`#lens-${axis}`).addEventListener("input", (event) => this.goTo({ [axis]: Number(event.target.value) || 0 }));
+      const field = this.one(`#lens-${axis}`);
+      field.addEventListener("input", () => this.goTo({ [axis]: Number(field.value) || 0 }));
+      field.addEventListener("change", () => (field.value = this.place[axis]));
     }
     picked.listeners.push((name) => this.follow(name));
   }

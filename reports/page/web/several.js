@@ -16,7 +16,7 @@ function showFigures(part, data) {
     head.setAttribute("aria-sort", "none");
   }
   const rows = data.columns[select.value].map(([name, values]) => {
-    const differs = values.some((value) => value !== values[0]);
+    const known = values.filter((value) => value !== null), differs = known.some((value) => value !== known[0]);
     const row = element("tr", differs ? { class: "differs" } : {}, element("th", { scope: "row" }, name));
     for (const value of values) row.append(element("td", { class: "n", "data-v": value ?? "" }, textOf(value)));
     row.hidden = only.checked && !differs;

@@ -59,6 +59,10 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a folder that is not there": ((*ONE, "-o", "no/x.csv"), "cannot write no/x.csv: there is no folder no"),
     "a page in no folder": ((*ONE, "--report", "no/x.html"), "cannot write no/x.html: there is no folder no"),
     "a page as PDF": ((*ONE, "--report", "page.pdf"), "page.pdf: the page is HTML; name it page.html"),
+    "a text as a page": (
+        ("report", "there", "--markdown", "-o", "x.html"),
+        "x.html: --markdown writes text; name it x.md",
+    ),
     "the page of a run as PDF": (("report", "there", "-o", "page.pdf"), "page.pdf: the page is HTML"),
     "a picture for a folder": (
         ("render", "--images", "x.png"),
