@@ -53,11 +53,13 @@ class Done:
 
     @property
     def finished(self) -> bool:
-        """Whether every step has its rows."""
+        """Whether every step has its rows, of every request that was made of the folder."""
         before = self.facts.get("before")
         requests = [one for one in before if isinstance(one, dict)] if isinstance(before, list) else []
+        # The same request may have been made again since.
+        last = {json.dumps(one.get("request"), sort_keys=True): one for one in [*requests, self.facts]}
         # A run of an older version does not say whether its earlier requests were finished.
-        return bool(self.facts.get("finished")) and all(one.get("finished") is not False for one in requests)
+        return bool(self.facts.get("finished")) and all(one.get("finished") is not False for one in last.values())
 
 
 def _renamed(table: Table | None, row: Row) -> Row:

@@ -155,6 +155,27 @@ def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
     assert "it was asked for, and has no rows" in read.text
 
 
+def test_rows_of_one_set_with_several_counts_are_not_compared(run, tmp_path):
+    rows = [quality_row("xy", count=1000, psnr_db=60.0), quality_row("octahedral", count=4096)]
+    _, read = reported(run, a_run(tmp_path / "run", {"quality": [*rows, quality_row("xy", count=4096, psnr_db=45.0)]}))
+    assert "In 16 bits on playground of 4096 normals, octahedral in rgba8 wins: 50.00 dB" in read.text
+    assert "playground of 1000 normals, rgba8: dB by back end" in read.text
+
+
+def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
+    folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, left_out=["mine.glsl: line 3 does not compile"])
+    _, read = reported(run, folder)
+    assert "Left out of this run: mine.glsl: line 3 does not compile." in read.text
+
+
+def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_path):
+    rows = [quality_row("xy"), quality_row("xy", backend="glsl"), quality_row("mine", backend="glsl")]
+    folder = a_run(tmp_path / "run", {"quality": rows})
+    text, read = reported(run, folder)
+    assert "Angles on playground, by jax or glsl" in read.text
+    assert text.count('data-codec="mine rgba8"') >= 2 and "<option>mine rgba8</option>" in text
+
+
 def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     tables = {
         "quality": [

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from test_readme import a_copy_of_the_rooms
 
-from normalbench.bench.results.comparison import compared, mann_whitney
+from normalbench.bench.results.comparison import compared, in_short, mann_whitney
 from normalbench.bench.results.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -51,6 +51,18 @@ def test_steps_that_one_run_lacks_are_named():
     (change,) = compared(run_of(a, b), run_of(b))
     assert (change["row"], change["before"], change["after"], change["change"]) == ("a", True, False, "only before")
     assert change["verdict"] == "gone" and compared(run_of(b), run_of(a, b))[0]["verdict"] == ""
+
+
+def test_new_rows_and_rows_that_are_gone_are_not_said_in_one_line():
+    rows = [{"encoding": name, "storage": storage} for name in ("xy", "xyz") for storage in ("rg8", "rgba8")]
+    done = [
+        Done(MACHINE, [{"table": "quality", "key": {}, "rows": [row]} for row in part]) for part in (rows[:2], rows[2:])
+    ]
+    lines = in_short(compared(*done), most=2)
+    assert sorted((line["change"], line["rows"], line["verdict"]) for line in lines) == [
+        ("only after", 2, ""),
+        ("only before", 2, "gone"),
+    ]
 
 
 def step_of(*rows: dict) -> Done:

@@ -136,6 +136,17 @@ def test_a_finished_run_is_extended_and_keeps_its_rows(tmp_path):
     assert done.finished and [one["request"] for one in done.facts["before"]] == [{"count": 1}]
 
 
+def test_a_run_whose_earlier_request_was_stopped_is_not_finished_by_another(tmp_path):
+    folder, measured, other = tmp_path / "run", [], FACTS | {"request": {"count": 2}}
+    with opened(folder, FACTS) as run:
+        kept(run, 1, measured)
+    for facts, is_finished in ((other, False), (FACTS, True)):
+        with opened(folder, facts) as run:
+            kept(run, 2, measured)
+            run.finish()
+        assert read_run(folder).finished is is_finished
+
+
 def test_a_folder_with_something_else_is_not_touched(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(UsageError, match="holds no run"), opened(tmp_path, FACTS):
