@@ -176,6 +176,14 @@ def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_
     assert text.count('data-codec="mine rgba8"') >= 2 and "<option>mine rgba8</option>" in text
 
 
+def test_a_row_without_an_encoding_has_no_empty_heading(run, tmp_path):
+    """The cost of a storage alone."""
+    about = {"measure": "isa", "storage": "rg8", "operation": "encode", "stage": "fragment", "family": "navi31"}
+    rows = [TABLES["cost"].empty() | about | {"instructions": count} for count in (3, 4)]
+    text, _ = reported(run, a_run(tmp_path / "run", {"cost": rows}))
+    assert "<th scope=row></th>" not in text and "Every row of cost" in text
+
+
 def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     tables = {
         "quality": [
