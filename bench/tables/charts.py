@@ -35,9 +35,7 @@ def drawing(
 def one_backend(rows: Sequence[Row]) -> list[Row]:
     """Of each encoding or depth code the rows of one back end: JAX's where it has some."""
     chosen: dict[Any, Any] = {}
-    for backend in sorted(
-        {str(row.get("backend")) for row in rows}, key=lambda name: (name not in BACKENDS, name != "jax")
-    ):
+    for backend in dict.fromkeys([*BACKENDS, *(str(row.get("backend")) for row in rows)]):
         for row in rows:
             if str(row.get("backend")) == backend:
                 chosen.setdefault(_code(row), backend)

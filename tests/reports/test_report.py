@@ -1,12 +1,9 @@
 """The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
 
-import base64
 import hashlib
-import io
 import json
 import math
 import re
-import shutil
 import time
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,8 +14,6 @@ import vl_convert
 from PIL import Image
 
 from normalbench.bench.normals.normal_sets import hemisphere
-from normalbench.bench.results.runs import read_run
-from normalbench.bench.suite import report as report_command
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.work import beside
@@ -27,9 +22,8 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import charts, pareto, plots, specs
-from normalbench.reports.page import embedded, page
+from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
-from normalbench.reports.page.pixels import LEAST_LOG2, STEPS_PER_OCTAVE, angle_bytes
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800"
 FORBIDDEN = ("<script>alert", "<img src=x", "\u202e")
@@ -273,141 +267,6 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
     assert "the other way round" not in read.text and "spherical" in read.text
 
 
-def pixels(uri: str) -> np.ndarray:
-    with Image.open(io.BytesIO(base64.b64decode(uri.partition(",")[2]))) as image:
-        return np.asarray(image.convert("RGB"))
-
-
-def codes_of(record: dict) -> np.ndarray:
-    """The codes in a page's pictures, read as pictures.js reads them."""
-    planes = np.concatenate([pixels(uri) for uri in record["codes"]], axis=-1).astype(np.int64)
-    sizes, at = [-(-bits // 8) for bits in record["bits"]], 0
-    codes = np.zeros((*planes.shape[:2], len(sizes)), np.int64)
-    for level in range(max(sizes)):
-        for i, size in enumerate(sizes):
-            if level < size:
-                codes[..., i] = codes[..., i] * 256 + planes[..., at]
-                at += 1
-    return codes >> np.array([8 * size - bits for size, bits in zip(sizes, record["bits"], strict=True)])
-
-
-def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
-    folder, *_ = results
-    (subject,) = report_command.gathered(folder, read_run(folder)).subjects
-    (inside,) = embedded.gallery([subject]).subjects
-    assert (inside["title"], inside["step"]) == ("the normals of playground", 2)
-    assert [one["label"] for one in inside["codecs"]][:2] == ["octahedral_precise rgba8", "octahedral rgba8"]
-    for record in inside["codecs"][:3]:
-        name = f"playground-{record['label'].replace(' ', '-')}"
-        with (
-            np.load(folder / "images" / f"{name}.npz") as kept,
-            Image.open(folder / f"images/{name}-decoded.png") as png,
-        ):
-            assert (pixels(record["angle"])[..., 0] == kept["angle"][::2, ::2]).all(), name
-            assert (codes_of(record) == kept["codes"][::2, ::2]).all(), name
-            assert (pixels(record["decoded"]) == np.asarray(png)[::2, ::2]).all(), name
-
-
-def test_codes_of_any_size_come_back_from_pictures():
-    random = np.random.default_rng(0)
-    for bits in ((8, 8), (10, 10), (11, 11, 10), (16, 16), (8, 8, 1), (32, 20, 3)):
-        codes = np.stack([random.integers(0, 2**n, (6, 9), np.uint32, endpoint=False) for n in bits], axis=-1)
-        record = {"codes": embedded._code_uris(codes, bits), "bits": bits}
-        assert (codes_of(record) == codes).all(), bits
-
-
-def test_an_angle_as_a_byte_is_within_what_the_page_says():
-    degrees = np.array([0.0, 1e-5, 0.003, 0.3, 5.0, 90.0, 180.0, np.nan])
-    kept = angle_bytes(degrees, np.ones(8, bool)).astype(float)
-    shown = 2.0 ** (LEAST_LOG2 + (kept - 1) / STEPS_PER_OCTAVE)
-    assert kept[0] == 1 and (abs(shown[1:7] / degrees[1:7] - 1) < 0.045).all() and kept[7] == 255, "not a number"
-    assert (angle_bytes(degrees, np.zeros(8, bool)) == 0).all(), "the background"
-
-
-def test_pictures_that_do_not_fit_are_named_and_the_best_come_first(results):
-    (subject,) = report_command.gathered(results[0], read_run(results[0])).subjects
-    made = embedded.gallery([subject], budget=300_000)
-    (shown,) = made.subjects
-    assert len(json.dumps(made.subjects)) <= 310_000
-    assert (
-        shown["codecs"][0]["label"] == "octahedral_precise rgba8"
-        and "xy rgba8, the normals of playground" in made.left_out
-    )
-    assert len(shown["codecs"]) + len(made.left_out) == len(subject.codecs)
-
-
-def test_damaged_pictures_are_named(results, tmp_path):
-    folder = tmp_path / "run"
-    shutil.copytree(results[0], folder)
-    (folder / "images/playground-octahedral-rgba8.npz").write_bytes(b"PK no")
-    (folder / "images/playground-xy-rgba8-decoded.png").write_bytes(b"\x89PNG\r\n\x1a\nno")
-    Image.new("RGB", (8, 8)).save(folder / "images/playground-xyz-rgba8-decoded.png")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert sorted(name.split(",")[0] for name in made.damaged) == ["octahedral rgba8", "xy rgba8", "xyz rgba8"]
-    (folder / "images/playground-normals.png").write_bytes(b"no")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert (made.damaged, made.subjects) == (["the normals of playground"], [])
-
-
-def rendered_run(folder: Path) -> Path:
-    """A run whose images were rendered: two codecs in rgba8, one step of red off and exact."""
-    about = {"pipeline": "hybrid", "scene": "gloss", "power": 47.0, "shadow": True, "layout": "fp32"}
-    about |= {"storage": "rgba8", "rounding": "nearest", "light_buffer": "rgba32f", "light_targets": 2}
-    rows = [
-        TABLES["render"].empty() | about | {"encoding": name, "psnr_db": figure, "normal_psnr_db": figure, "mse": 1e-4}
-        for name, figure in (("xy", 40.0), ("octahedral", 50.0))
-    ]
-    a_run(folder, {"render": [row | {"normal_bits": 16} for row in rows]}, request={"tables": "render"})
-    image = np.random.default_rng(1).integers(10, 240, (24, 32, 3), np.uint8)
-    (folder / "images").mkdir()
-    off = {"reference": 0, "fp32-xy-rgba8-rgba32fx2-final": 3, "fp32-octahedral-rgba8-rgba32fx2-final": 0}
-    for name, by in off.items():
-        moved = image.copy()
-        moved[..., 0] += by
-        Image.fromarray(moved).save(folder / "images" / f"gloss-power47-hybrid-{name}.png")
-    return folder
-
-
-def answered_run(folder: Path) -> Path:
-    """A run with an answer for two storages on two scenes, each with its images; in rg8 on gloss red is 2 steps off."""
-    rows = []
-    (folder / "images").mkdir(parents=True)
-    for scene in ("gloss", "room"):
-        for storage in ("rg8", "rgb10a2"):
-            rows += [
-                row | {"scene": scene, "storage": storage} for row in (pick_row("fine", 0.2, 9), pick_row("xy", 0.3, 5))
-            ]
-            for name in ("fine", "xy"):
-                image = Image.new("RGB", (32, 24), (52 if (scene, storage) == ("gloss", "rg8") else 50, 60, 70))
-                image.save(folder / f"images/pick-{scene}-power47-{name}-{storage}-final.png")
-        Image.new("RGB", (32, 24), (50, 60, 70)).save(folder / f"images/pick-{scene}-power47-reference.png")
-    return a_run(folder, {"pick": rows}, request={"tables": "pick"})
-
-
-def test_an_answers_pictures_are_of_its_own_scene_the_best_first(tmp_path):
-    folder = answered_run(tmp_path / "run")
-    first, second = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
-    assert [first["title"], second["title"]] == ["the answer on gloss at power 47", "the answer on room at power 47"]
-    assert [one["codec"] for one in first["codecs"]] == ["fine rg8", "xy rg8", "fine rgb10a2", "xy rgb10a2"]
-    assert pixels(first["codecs"][0]["apart"])[0, 0].tolist() == [2, 0, 0]
-    assert pixels(second["codecs"][0]["apart"]).max() == 0
-
-
-def test_flip_is_offered_where_the_run_has_it(run, tmp_path):
-    folder = rendered_run(tmp_path / "run")
-    gathered = report_command.gathered(folder, read_run(folder))
-    assert embedded.gallery(gathered.subjects).subjects[0]["flip"] is False
-    for name in ("xy", "octahedral"):
-        path = folder / f"images/gloss-power47-hybrid-fp32-{name}-rgba8-rgba32fx2-flip.png"
-        Image.new("RGB", (32, 24), (128, 128, 128)).save(path)
-    for place in ("", "somewhere"):
-        assert embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects, place).subjects[0]["flip"]
-    (subject,) = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
-    assert (pixels(subject["codecs"][0]["flip"]) == 128).all()
-    assert run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "100%#.html"))[0] == 0
-    assert '"100%25%23-pictures/0.js"' in (tmp_path / "100%#.html").read_text(), "an address"
-
-
 def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     """Roundings, layouts and names of users' files; no infinity in what a browser reads."""
     rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
@@ -421,32 +280,6 @@ def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     made = [spec, *specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
     json.dumps(made, allow_nan=False)
     assert all(vl_convert.vegalite_to_vega(one)["marks"] for one in made)
-
-
-def test_rendered_images_are_in_the_page_as_what_differs_from_the_exact_one(tmp_path):
-    folder = rendered_run(tmp_path / "run")
-    (subject,) = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
-    assert subject["title"] == "the image of gloss at power 47"
-    assert [one["label"] for one in subject["codecs"]] == ["octahedral rgba8", "xy rgba8"], "the best first"
-    exact, off = pixels(subject["original"]), pixels(subject["codecs"][1]["apart"])
-    with Image.open(folder / "images/gloss-power47-hybrid-fp32-xy-rgba8-rgba32fx2-final.png") as final:
-        assert (exact + off == np.asarray(final)).all()
-    assert (pixels(subject["codecs"][0]["apart"]) == 0).all()
-
-
-def test_pictures_beside_the_page_are_all_there_in_full_size(run, tmp_path):
-    folder = rendered_run(tmp_path / "run")
-    status, out, _ = run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "page.html"))
-    assert (status, out) == (0, f"{tmp_path / 'page.html'}\n")
-    names = sorted(path.name for path in (tmp_path / "page-pictures").iterdir())
-    assert names == ["0.js", "1.js"]
-    assert (
-        (tmp_path / "page-pictures/0.js")
-        .read_text()
-        .startswith('keepPicture("0.js", {"apart": "data:image/webp;base64,')
-    )
-    policies = [a["content"] for a in Read((tmp_path / "page.html").read_text()).all("meta") if "http-equiv" in a]
-    assert "'self' file:" in policies[0]
 
 
 def test_every_column_is_defined():
@@ -523,29 +356,3 @@ def test_maps_are_in_the_page_with_means_by_area(results):
     (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
     (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)
     assert float(mean) == pytest.approx(measured, rel=0.01) and "away" not in text, "it cannot hold what faces away"
-
-
-def pick_row(encoding: str, mean: float, instructions: int) -> dict:
-    """A code of an answer."""
-    about = {"storage": "rg8", "encoding": encoding, "normals": "sphere", "scene": "gloss", "aim": "angle", "bits": 16}
-    about |= {"domain": "sphere", "family": "navi21", "invalid": 0, "lost_percent": 0.0, "against": False}
-    figures = {"angle_mean_deg": mean, "angle_max_deg": 1.0, "image_db_47": 50.0, "instructions": instructions}
-    costs = {"encode_instructions": instructions, "decode_instructions": 0, "loops": 0}
-    return TABLES["pick"].empty(["47"]) | about | figures | costs
-
-
-def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
-    """With its price, whatever names hold."""
-    rows = [pick_row("<b>fine", 0.2, 90), pick_row("_cheap_ www.a.b", 0.3, 10)]
-    folder = a_run(tmp_path / "run", {"pick": rows, "quality": [quality_row("xyz")]})
-    assert run("report", str(folder))[0] == 0
-    page = (folder / "report.html").read_text()
-    answer = page.index('<p class="lead">rg8, on sphere: take &lt;b&gt;fine.</p>')
-    costs = page.index("It costs 90 instructions on navi21: 90 to encode and 0 to decode.")
-    assert answer < costs < page.index('id="quality"')
-    assert page.index("Runner-up: _cheap_ www.a.b, mean error 0.3°") and "<b>fine" not in page
-    text = run("report", str(folder), "--markdown")[1]
-    assert (
-        "**rg8, on sphere: take &#60;b&#62;fine.**" in text
-        and "Runner-up: &#95;cheap&#95; www&#46;a&#46;b, mean" in text
-    )

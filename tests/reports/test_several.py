@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from playwright.sync_api import sync_playwright
-from test_page import ARGUMENTS, AXE
+from browsing import AXE
 from test_report import FORBIDDEN, HOSTILE, Read, a_run, quality_row
 
 from normalbench.bench.results import side_by_side
@@ -90,31 +89,27 @@ def test_hostile_runs_inject_nothing(run, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_figure_is_chosen_and_what_differs_is_marked(chromium, run, runs, tmp_path):
+def test_a_figure_is_chosen_and_what_differs_is_marked(browser, run, runs, tmp_path):
     assert run("report", *map(str, runs.values()), "-o", str(tmp_path / "p.html"))[0] == 0
-    with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=chromium, args=ARGUMENTS)
-        page = browser.new_page()
-        said = []
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.goto((tmp_path / "p.html").as_uri())
-        part = page.locator("#quality [data-figures]")
-        assert part.locator("[data-figure]").input_value() == "psnr_db", "the figure in which most differs"
-        assert part.locator("tbody tr.differs").count() == 4
-        part.get_by_label("only what differs").check()
-        assert part.locator("[data-shown]").text_content() == "4 of 5 rows"
-        part.locator("[data-figure]").select_option("angle_mean_deg")
-        assert part.locator("[data-shown]").text_content() == "0 of 5 rows", (
-            "a row that one run has is not a difference"
-        )
-        part.get_by_label("only what differs").uncheck()
-        assert part.locator("tbody tr").first.locator("td").all_text_contents() == ["0.3000"] * 3
-        part.locator("[data-figure]").select_option("psnr_db")
-        part.locator("thead button", has_text="three").click()
-        assert part.locator("tbody tr").first.locator("td").last.text_content() == "inf", "the best on top"
-        from axe_playwright_python.base import AXE_FILE_PATH
+    page = browser.new_page()
+    said = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto((tmp_path / "p.html").as_uri())
+    part = page.locator("#quality [data-figures]")
+    assert part.locator("[data-figure]").input_value() == "psnr_db", "the figure in which most differs"
+    assert part.locator("tbody tr.differs").count() == 3
+    part.get_by_label("only what differs").check()
+    assert part.locator("[data-shown]").text_content() == "3 of 5 rows"
+    part.locator("[data-figure]").select_option("angle_mean_deg")
+    assert part.locator("[data-shown]").text_content() == "0 of 5 rows", "a row that one run has is not a difference"
+    part.get_by_label("only what differs").uncheck()
+    assert part.locator("tbody tr").first.locator("td").all_text_contents() == ["0.3000"] * 3
+    part.locator("[data-figure]").select_option("psnr_db")
+    part.locator("thead button", has_text="three").click()
+    assert part.locator("tbody tr").first.locator("td").last.text_content() == "inf", "the best on top"
+    from axe_playwright_python.base import AXE_FILE_PATH
 
-        page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
-        assert page.evaluate(AXE) == [] == said
-        browser.close()
+    page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
+    assert page.evaluate(AXE) == [] == said
+    page.close()
