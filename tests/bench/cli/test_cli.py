@@ -103,7 +103,8 @@ def test_the_pictures_show_the_scene(run, tmp_path):
     status, _, err = run("quality", "--encoding", "xy,xyz", "--images", str(tmp_path))
     assert status == 0, err
     names = {f"playground-{e}-rgba8-{k}.png" for e in ("xy", "xyz") for k in ("encoded", "decoded", "error", "power")}
-    assert {p.name for p in tmp_path.iterdir()} == names | {"playground-normals.png"}, "and the set itself"
+    others = {"playground-normals.png", "playground-xy-rgba8.npz", "playground-xyz-rgba8.npz"}
+    assert {p.name for p in tmp_path.iterdir()} == names | others, "and the set itself, and each pixel's code and angle"
     pictures = {name: np.asarray(pixels_of(tmp_path / name)).astype(int) for name in names}
     assert all(p.shape == (480, 640, 3) and p.std() > 3 for p in pictures.values())
     assert abs(pictures["playground-xyz-rgba8-decoded.png"] - pictures["playground-xyz-rgba8-encoded.png"]).max() <= 1
@@ -157,7 +158,7 @@ def test_run_leaves_a_results_folder(tmp_path, run):
     facts = json.loads((folder / "run.json").read_text())
     assert facts["machine"]["jax"] and facts["machine"]["GL"] and facts["finished"] and facts["sources"]
     assert facts["command"] == arguments
-    assert len(list((folder / "images").iterdir())) == codecs * 4 + 2, "and the set itself, and the sheet"
+    assert len(list((folder / "images").iterdir())) == codecs * 5 + 2, "and the set itself, and the sheet"
     assert len(list((folder / "sphere").iterdir())) == codecs
     with Image.open(folder / "images" / "playground-rgba8.png") as sheet:
         assert sheet.size == (4 * 320, 7 * (240 + 16))
