@@ -9,8 +9,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Protocol
 
-from ..normals.normal_names import say_count_is_unused
-from ..options.option import fields_of
+from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
 from ..output.progress import progress
@@ -63,7 +62,11 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
     """
     outputs = table.outputs() if outputs is None else outputs
     steps = table.work.steps(options, outputs)
-    say_count_is_unused(options)
+    if isinstance(options, Reading):
+        # It imports JAX, which tables that read normals have imported by now.
+        from ..normals.normal_names import say_count_is_unused
+
+        say_count_is_unused(options)
     # Files are fingerprinted once they were read, which refuses what is too large.
     found = files_of(options)
     return Asked(table, options, outputs, [replace(step, key=step.key | found) for step in steps])
