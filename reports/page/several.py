@@ -50,10 +50,7 @@ class Figures:
     @property
     def data(self) -> str:
         """All columns as several.js reads them."""
-        kept = {
-            name: [[row, list(map(_plain, values))] for row, values in c.items()] for name, c in self.columns.items()
-        }
-        return data_block({"columns": kept})
+        return data_block({"columns": {name: _pairs(rows) for name, rows in self.columns.items()}})
 
 
 def _differ(values: Sequence[Any]) -> bool:

@@ -22,28 +22,26 @@ CONTENT = ("layout", "encoding", "storage", "rounding", "light_buffer", "light_t
 REFERENCE = "reference"
 
 
-def scene_stem(row: Row) -> str:
+def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
     """What the files of a row's reference are called, without what they show."""
     power = [] if row["power"] is None else [f"power{row['power']:g}"]
-    return "-".join([row["scene"], *power, row["pipeline"], *([] if row["shadow"] else ["unshadowed"])])
+    return "-".join([row["scene"], *power, row["pipeline"], *content, *([] if row["shadow"] else ["unshadowed"])])
 
 
 def stem(row: Row) -> str:
     """What the files of a row are called, without what they show."""
-    words = [row["scene"], *([] if row["power"] is None else [f"power{row['power']:g}"]), row["pipeline"]]
-    if row["layout"] is not None:
-        words += [row["layout"], row["encoding"], row["storage"]]
-        words += [] if row["rounding"] == "nearest" else [row["rounding"]]
-        words += [f"{row['light_buffer']}x{row['light_targets']}"]
-    return "-".join([*words, *([] if row["shadow"] else ["unshadowed"])])
+    if row["layout"] is None:
+        return scene_stem(row)
+    rounding = [] if row["rounding"] == "nearest" else [row["rounding"]]
+    light = f"{row['light_buffer']}x{row['light_targets']}"
+    return scene_stem(row, [row["layout"], row["encoding"], row["storage"], *rounding, light])
 
 
 def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
-    """The first frame, how far it is off, and its reference once for all."""
+    """The first frame, how far it is off, and its reference, which rows of one scene share."""
     made = {f"{stem(row)}-{kind}": pixels for kind, pixels in _made(drawn, reference).items()}
-    exact = f"{scene_stem(row)}-{REFERENCE}"
-    if not (folder / f"{exact}.png").exists():
-        made[exact] = pictures.picture(reference.shown)
+    # Written anew each time: the folder may hold one of other settings.
+    made[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
     for name, pixels in made.items():
         with whole_file(folder / f"{name}.png") as partial:
             pictures.write_png(partial, pixels)
