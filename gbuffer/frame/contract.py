@@ -31,7 +31,7 @@ class Pass:
         writes: what later passes may read. What it does not read as well is cleared before it runs.
         build: given a canvas it compiles, and returns what to run for each frame. It is not called where nothing that
             the pass writes is there.
-        after: of an effect's pass: the pass that it follows.
+        after: of an effect's pass: the passes that it follows; of those the pipeline has, the last.
         tells: macros for itself and every later pass. An effect tells who may read what it writes.
         expects: values of macros that it can work with, some earlier pass having told one of them.
         needs: components that it cannot do without in the G-buffer.
@@ -41,7 +41,7 @@ class Pass:
     reads: tuple[Resource, ...]
     writes: tuple[Resource, ...]
     build: Callable[[Canvas], Run]
-    after: str = ""
+    after: tuple[str, ...] = ()
     tells: Mapping[str, int] = field(default_factory=dict)
     expects: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     needs: frozenset[str] = frozenset()
@@ -140,14 +140,14 @@ class Pipeline:
 
 
 def _place(pipeline: str, one: Pass, stages: list[Pass]) -> int:
-    names = [stage.name for stage in stages]
-    if one.after not in names:
-        known = ", ".join(names)
-        raise PipelineError(f"pipeline {pipeline}: pass {one.name} comes after {one.after!r}; known: {known}")
-    place = names.index(one.after) + 1
-    while place < len(stages) and stages[place].after == one.after:
-        place += 1
-    return place
+    places = [index for index, stage in enumerate(stages) if stage.name in one.after]
+    if not places:
+        known = ", ".join(stage.name for stage in stages)
+        raise PipelineError(
+            f"pipeline {pipeline}: pass {one.name} comes after {' or '.join(one.after)}; known: {known}"
+        )
+    behind = (index for index in range(places[-1] + 1, len(stages)) if not stages[index].after)
+    return next(behind, len(stages))
 
 
 def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:

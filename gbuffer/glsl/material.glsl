@@ -39,6 +39,7 @@ Terms light_terms(int kind, vec3 direction, vec3 l, vec3 v, float power) {
     return Terms(lit, lit * lobe(d_h, power));
 }
 
-vec3 unlit(Surface s) { return ambient.rgb * s.albedo + s.emissive; }
+// Light from everywhere, times 1 / pi, and the surface's own.
+vec3 unlit(Surface s, vec3 everywhere) { return everywhere * s.albedo + s.emissive; }
 
 vec3 compose(Surface s, vec3 diffuse, vec3 specular) { return s.albedo * diffuse + s.specular * specular; }

@@ -22,5 +22,5 @@ void main() {
         diffuse += incoming * t.diffuse;
         specular += incoming * t.specular;
     }
-    colour = vec4(base * unlit(s) + compose(s, diffuse, specular), s.alpha);
+    colour = vec4(base * unlit(s, ambient.rgb) + compose(s, diffuse, specular), s.alpha);
 }

@@ -2,10 +2,14 @@
 // The second geometry pass: materials under the light that was accumulated.
 #include "fragment.glsl"
 #include "accumulation.glsl"
+#include "indirect.glsl"
 #if FILTERS
 #include "filter.glsl"
 #endif
 
+#ifdef HAS_SCATTERED
+uniform sampler2D scattered;
+#endif
 layout(location = 0) out vec4 colour;
 
 void main() {
@@ -15,6 +19,12 @@ void main() {
 #else
     Accumulated a = fetch_light(ivec2(gl_FragCoord.xy));
 #endif
-    vec3 lit = compose(s, a.first.rgb, specular_light(a, s.kind, s.power));
-    colour = vec4(LIGHT_HOLDS == BY_KIND ? lit + s.emissive : lit + unlit(s), s.alpha);
+    vec3 diffuse = a.first.rgb, specular = specular_light(a, s.kind, s.power);
+    // The pixel of the G-buffer, which may have a size of its own.
+    ivec2 pixel = ivec2(gl_FragCoord.xy / target_size.xy * size.xy);
+#ifdef HAS_SCATTERED
+    if (s.kind == SKIN) diffuse = texelFetch(scattered, pixel, 0).rgb;
+#endif
+    vec3 own = LIGHT_HOLDS == BY_KIND ? s.emissive : unlit(s, light_from_everywhere(pixel));
+    colour = vec4(compose(s, diffuse, specular) + own, s.alpha);
 }

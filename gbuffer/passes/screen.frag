@@ -3,6 +3,7 @@
 #include "gbuffer.glsl"
 #include "material.glsl"
 #include "accumulation.glsl"
+#include "indirect.glsl"
 
 layout(location = 0) out vec4 colour;
 
@@ -10,5 +11,5 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Surface s = read_gbuffer(pixel);
     bool finished = s.kind == GENERAL || LIGHT_HOLDS != BY_KIND;
-    colour = vec4(unlit(s) + (finished ? fetch_light(pixel).first.rgb : vec3(0.0)), 1.0);
+    colour = vec4(unlit(s, light_from_everywhere(pixel)) + (finished ? fetch_light(pixel).first.rgb : vec3(0.0)), 1.0);
 }

@@ -14,6 +14,7 @@ import pytest
 from drawing import FP32, scene_of
 
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.effects.effect import Choice, Effect, EffectError, Number, chosen
 from normalbench.gbuffer.frame.contract import Pass, Pipeline, PipelineError
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.frame.resource import Resource
@@ -116,15 +117,15 @@ def test_a_pipeline_that_does_not_fit_is_refused_in_one_line(stages, said):
 
 
 def test_an_effect_behind_no_pass_is_refused():
-    glow = Pass("glow", (FINAL,), (FINAL,), nothing, after="bloom")
+    glow = Pass("glow", (FINAL,), (FINAL,), nothing, after=("bloom", "haze"))
     with pytest.raises(
-        PipelineError, match=r"^pipeline forward: pass glow comes after 'bloom'; known: shadow_map, for"
+        PipelineError, match=r"^pipeline forward: pass glow comes after bloom or haze; known: shadow_map, for"
     ):
         PIPELINES["forward"].with_effect([glow])
 
 
 def test_effects_follow_the_pass_they_name_in_the_order_they_are_added():
-    first, second = (Pass(name, (GBUFFER,), (HALF,), nothing, after="geometry") for name in ("one", "two"))
+    first, second = (Pass(name, (GBUFFER,), (HALF,), nothing, after=("geometry", "forward")) for name in ("one", "two"))
     made = PIPELINES["hybrid"].with_effect([first]).with_effect([second])
     assert [stage.name for stage in made.stages][:5] == ["shadow_map", "geometry", "one", "two", "linear_depth"]
 
@@ -323,15 +324,63 @@ def test_a_pass_may_look_from_anywhere(gl, tmp_path):
     assert np.mean(images[0] != images[2]) > 0.3, "the two views show the same"
 
 
+# What an effect can be told
+
+WORN = Effect(
+    "worn",
+    "nothing",
+    "this test",
+    HALF,
+    lambda **_: (),
+    {
+        "taps": Number(8, 1, 64, "Taps a pixel."),
+        "depth": Number(0.5, 0.0, 1.0, "Metres."),
+        "size": Choice(("full", "half"), "Of its target."),
+    },
+)
+
+
+@pytest.mark.parametrize(
+    "given, name",
+    [
+        ({}, "worn"),
+        ({"size": "half", "taps": "4"}, "worn:taps=4:size=half"),
+        ({"depth": "0.25"}, "worn:depth=0.25"),
+        ({"depth": "0.5", "taps": "8"}, "worn"),
+    ],
+)
+def test_an_effect_is_named_by_what_is_not_as_usual(given, name):
+    assert chosen(WORN, given).name == name
+
+
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        ({"steps": "3"}, "effect worn has no setting 'steps'; known: taps, depth, size"),
+        ({"taps": "65"}, "effect worn: taps=65 is not a whole number from 1 to 64"),
+        ({"taps": "2.5"}, "effect worn: taps=2.5 is not a whole number from 1 to 64"),
+        ({"depth": "nan"}, "effect worn: depth=nan is not a number from 0 to 1"),
+        ({"size": "third"}, "effect worn: size=third is not full or half"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused_in_one_line(given, said):
+    with pytest.raises(EffectError) as refused:
+        chosen(WORN, given)
+    assert str(refused.value) == said
+
+
 # How an effect is added
 
 EFFECT = '''"""The image, darker with distance, by a target of half the size."""
+
+from functools import partial
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run
 from ..frame.resource import Resource
 from ..frame.resources import FINAL, SURFACE
 from ..gl.device import MULTIPLY
+from .effect import Effect, Number
 
 NEARNESS = Resource("nearness", "r32f", scale=0.5)
 
@@ -340,14 +389,19 @@ def _measure(canvas: Canvas) -> Run:
     return canvas.over("dusk.frag", NEARNESS, TINTS=0)
 
 
-def _tint(canvas: Canvas) -> Run:
-    return canvas.over("dusk.frag", FINAL, blend=MULTIPLY, TINTS=1)
+def _tint(strength: float, canvas: Canvas) -> Run:
+    return canvas.over("dusk.frag", FINAL, blend=MULTIPLY, TINTS=1, STRENGTH=strength)
 
 
-PASSES = (
-    Pass("nearness", SURFACE, (NEARNESS,), _measure, after="linear_depth", tells={"HAS_NEARNESS": 1}),
-    Pass("dusk", (FINAL,), (FINAL,), _tint, after="transparent"),
-)
+def _passes(strength: float) -> tuple[Pass, ...]:
+    return (
+        Pass("nearness", SURFACE, (NEARNESS,), _measure, after=("linear_depth",), tells={"HAS_NEARNESS": 1}),
+        Pass("dusk", (FINAL,), (FINAL,), partial(_tint, strength), after=("transparent",)),
+    )
+
+
+SETTINGS = {"strength": Number(1.0, 0.0, 4.0, "How much darker.")}
+EFFECT = Effect("dusk", "darker with distance", "a test", NEARNESS, _passes, SETTINGS)
 '''
 SHADER = """#version 430
 // How near each surface is, and the image times that.
@@ -357,7 +411,7 @@ SHADER = """#version 430
 layout(location = 0) out vec4 colour;
 #ifdef HAS_NEARNESS
 uniform sampler2D nearness;
-void main() { colour = vec4(texelFetch(nearness, ivec2(gl_FragCoord.xy) / 2, 0).x); }
+void main() { colour = vec4(pow(texelFetch(nearness, ivec2(gl_FragCoord.xy) / 2, 0).x, STRENGTH)); }
 #endif
 #else
 layout(location = 0) out float nearness;
@@ -372,6 +426,7 @@ import sys
 import numpy as np
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
+from normalbench.gbuffer.effects.effect import chosen
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -383,7 +438,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 plain, found = PIPELINES["deferred"], {}
 plan = Plan((48, 36), 1, LAYOUTS["hybrid"], LIGHT_BUFFERS["rgba16f"], 1, True, 1.0)
-for name, pipeline in (("plain", plain), ("dusk", plain.with_effect(EFFECTS["dusk"]))):
+dusk = chosen(EFFECTS["dusk"], {"strength": "2"})
+for name, pipeline in (("plain", plain), ("dusk", plain.with_effect(dusk.passes()))):
     with rendering(device(), pipeline, SCENES["room"].make(Setting(lights=4)), plan) as made:
         made.draw()
         found |= {name: made.image(), f"{name}_depth": -made.gbuffer()[0][..., 2]}
@@ -402,7 +458,7 @@ def copied_tree(folder: Path) -> Path:
 
 @pytest.mark.usefixtures("gl")
 def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
-    """In a copy of the tree: the image is what it was, times what the effect says of the depth, to 6 digits."""
+    """In a copy of the tree: the image is what it was, times what the effect says of the depth and its setting."""
     effects = copied_tree(tmp_path) / "gbuffer" / "effects"
     (effects / "dusk.py").write_text(EFFECT)
     (effects / "dusk.frag").write_text(SHADER)
@@ -416,7 +472,7 @@ def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
     found = np.load(tmp_path / "found.npz")
     # Rows are counted from the top here, and from the bottom where the half-size target reads every odd one.
     depth = found["plain_depth"][::-1][1::2, 1::2].repeat(2, axis=0).repeat(2, axis=1)[::-1]
-    expected = found["plain"] / (1 + depth[..., None])
+    expected = found["plain"] / (1 + depth[..., None]) ** 2
     error = np.abs(found["dusk"] - expected).max() / expected.max()
     assert error < 1e-6, f"{error:.2g} of the brightest pixel"
     changed = np.mean(np.abs(found["dusk"] - found["plain"]).max(axis=2) > 0.01)

@@ -1,0 +1,119 @@
+"""What an effect is: passes that read what a pipeline keeps, with settings that can be named in one word of text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from ..frame.contract import Pass
+from ..frame.resource import Resource
+from ..scenes.scene import Scene
+
+Value = int | float | str
+
+
+class EffectError(ValueError):
+    """An effect that is not there, or a setting that it does not have: one line that says what would be right."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A setting that is a number.
+
+    Attributes:
+        usual, least, most: what it is unless given, and between which bounds; whole where `usual` is an int.
+        says: what it means, with its unit.
+    """
+
+    usual: int | float
+    least: int | float
+    most: int | float
+    says: str
+
+    def read(self, text: str) -> Value:
+        """The value that a text names. Raises ValueError with the values that are possible."""
+        kind = type(self.usual)
+        try:
+            value = kind(text)
+        except ValueError:
+            value = None
+        if value is None or not self.least <= value <= self.most:
+            raise ValueError(f"{'a whole number' if kind is int else 'a number'} from {self.least:g} to {self.most:g}")
+        return value
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A setting that is one of some words; the first is usual."""
+
+    words: tuple[str, ...]
+    says: str
+
+    @property
+    def usual(self) -> str:
+        return self.words[0]
+
+    def read(self, text: str) -> Value:
+        """The word that a text names. Raises ValueError with the words that are possible."""
+        if text not in self.words:
+            raise ValueError(" or ".join(self.words))
+        return text
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One effect.
+
+    Attributes:
+        name, title, source: what it is called, what it shows, where its method was published.
+        result: the image that it computes of its own, which tables compare: a resource that one of its passes writes.
+        passes: makes its passes; takes a value for each of `settings` by keyword.
+        settings: what can be chosen, by name.
+        lacks: why a scene has nothing for it, such as "nothing here is skin"; None where it has.
+    """
+
+    name: str
+    title: str
+    source: str
+    result: Resource
+    passes: Callable[..., tuple[Pass, ...]]
+    settings: Mapping[str, Number | Choice] = field(default_factory=dict)
+    lacks: Callable[[Scene], str | None] = lambda _: None
+
+
+@dataclass(frozen=True)
+class ChosenEffect:
+    """An effect with the settings that it is made with, all of them, in the effect's order."""
+
+    effect: Effect
+    values: tuple[tuple[str, Value], ...]
+
+    @property
+    def name(self) -> str:
+        """The text that names it: `gtao:slices=4`; settings that are as usual are left out."""
+        settings = self.effect.settings
+        own = (f"{n}={v:g}" if isinstance(v, float) else f"{n}={v}" for n, v in self.values if v != settings[n].usual)
+        return ":".join([self.effect.name, *own])
+
+    def passes(self) -> tuple[Pass, ...]:
+        """Its passes."""
+        return self.effect.passes(**dict(self.values))
+
+
+def chosen(effect: Effect, given: Mapping[str, str]) -> ChosenEffect:
+    """An effect with settings given as text; the others are as usual.
+
+    Raises:
+        EffectError: it has no such setting, or the value is out of range.
+    """
+    settings = effect.settings
+    for name, text in given.items():
+        if name not in settings:
+            known = f"; known: {', '.join(settings)}" if settings else "; it has none"
+            raise EffectError(f"effect {effect.name} has no setting {name!r}{known}")
+        try:
+            settings[name].read(text)
+        except ValueError as error:
+            raise EffectError(f"effect {effect.name}: {name}={text} is not {error}") from None
+    values = ((n, s.read(given[n]) if n in given else s.usual) for n, s in settings.items())
+    return ChosenEffect(effect, tuple(values))
