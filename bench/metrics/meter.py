@@ -301,18 +301,19 @@ class Meter:
     Two programs: the decoder's own, and the statistics', which is the same for all and takes longer to compile.
 
     Args:
-        decode: a traced function from a block to decoded normals. A block is a pytree of planes with the unit normals
+        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit normals
             `n`, which of them count, `covered`, and whatever else the decoder needs.
+        given: what it is called with besides, the same for every block.
     """
 
-    def __init__(self, decode: Callable[[Any], Vec3]):
-        self._decode = jax.jit(decode)
+    def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
+        self._decode, self._given = decode, given
 
     def one(self, load: Callable[[], Any]) -> Part:
         """One chunk's part of the statistics."""
         with jax.enable_x64(True):
             chunk = jax.tree.map(jnp.asarray, load())
-            decoded = self._decode(chunk)
+            decoded = self._decode(chunk, *self._given)
             sums, largest, keys = _scan(Decoded(chunk.n, decoded, chunk.covered))
             keys = np.asarray(keys)
             histogram = np.bincount(keys, minlength=BINS + 1)

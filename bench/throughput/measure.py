@@ -79,7 +79,7 @@ def compare(name: str, statistics: str, data: Input, read: float) -> dict[str, o
     by_numpy = baseline.BASELINES[name]
     summary = baseline.whole_row if statistics == "row" else baseline.squared_error_and_maximum
     if statistics == "row":
-        meter, normals = Meter(lambda b: codec.round_trip(b.n, b.view)), data.normal_set()
+        meter, normals = Meter(jax.jit(lambda b: codec.round_trip(b.n, b.view))), data.normal_set()
         project = rate(lambda: meter.measure(normals.loads(), count), count)
     else:
         errors = squared_errors(codec)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
-from .rounding import store_half, store_unorm
+from .rounding import scale_of, store_half, store_unorm
 from .storage import R32F, STORAGES, Storage
 
 
@@ -101,7 +101,7 @@ def store_bytes(integer, bits: int):
     together = jnp.zeros_like(integer)
     for shift in range(bits - 8, -1, -8):
         byte = ((integer >> shift) & 0xFF).astype(jnp.float32)
-        texel = store_unorm(byte / 255.0, 255)
+        texel = store_unorm(byte / 255.0, scale_of(255))
         together = together | ((texel * 255.0 + 0.5).astype(jnp.uint32) << shift)
     return together
 
@@ -112,6 +112,6 @@ def store_depth(c, storage: DepthStorage, is_signed: bool = False):
         integer = store_bytes(fixed(c, storage.scale, is_signed), storage.bits)
         return from_fixed(integer, storage.scale, is_signed)
     if storage.format.kind != "float":
-        return store_unorm(c, storage.scale)
+        return store_unorm(c, scale_of(storage.scale))
     kept = c if storage.is_open else minimum(maximum(c, 0.0), 1.0)
     return store_half(kept) if storage.bits == 16 else kept

@@ -15,6 +15,11 @@ Numbers in float64 stand for the exact map: the same integers and floats, produc
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
 from ..vec import jnp, maximum, minimum, select
 from .storage import MANTISSA, Storage
 
@@ -22,25 +27,36 @@ from .storage import MANTISSA, Storage
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
 
-def rounded(x, scale: int, rounding: str = "nearest"):
-    """x in [-1, 1] (any shape) as a whole number, `scale` standing for 1: nearest, or cut off toward zero, or
-    cut off of x (scale + 1/2)."""
+class Scale(NamedTuple):
+    """What stands for 1 in a fixed-point channel, and its reciprocal: numbers, or arguments of a traced function."""
+
+    one: Any
+    reciprocal: Any
+
+
+def scale_of(integer: int) -> Scale:
+    """The scale of a channel in which an integer stands for 1."""
+    return Scale(float(integer), 1.0 / integer)
+
+
+def rounded(x, scale: Scale, rounding: str = "nearest"):
+    """x in [-1, 1] (any shape) as a whole number: nearest, or cut off toward zero, or cut off of x (one + 1/2)."""
     if rounding == "nearest":
-        return jnp.round(x * float(scale))
-    widened = jnp.trunc(x * (scale + 0.5 if rounding == "truncate_half" else float(scale)))
-    return minimum(maximum(widened, -float(scale)), float(scale))
+        return jnp.round(x * scale.one)
+    widened = jnp.trunc(x * (scale.one + 0.5 if rounding == "truncate_half" else scale.one))
+    return minimum(maximum(widened, -scale.one), scale.one)
 
 
-def store_unorm(x, scale: int, rounding: str = "nearest"):
+def store_unorm(x, scale: Scale, rounding: str = "nearest"):
     """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
-    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * (1.0 / scale)
+    return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * scale.reciprocal
 
 
-def store_snorm(x, scale: int, rounding: str = "nearest"):
+def store_snorm(x, scale: Scale, rounding: str = "nearest"):
     """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
     code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding)
     # An integer has no negative zero.
-    return code.astype(jnp.int32).astype(x.dtype) * (1.0 / scale)
+    return code.astype(jnp.int32).astype(x.dtype) * scale.reciprocal
 
 
 def store_half(x, rounding: str = "nearest"):
@@ -97,7 +113,7 @@ def from_srgb(x):
     return select(straight <= SRGB_KNEE, straight, ((x + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER)
 
 
-def store_srgb(x, scale: int, rounding: str = "nearest"):
+def store_srgb(x, scale: Scale, rounding: str = "nearest"):
     """x (float32, any shape) as a colour of an sRGB target stores it and gives it back, in [0, 1]; NaN is 0."""
     return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
 
@@ -110,18 +126,43 @@ def store_exactly(x):
     return optimization_barrier(x)
 
 
+@dataclass(frozen=True)
+class Fixed(Storage):
+    """A fixed-point format whose scales are arguments: a traced function of it serves every number of bits."""
+
+    scales: tuple[Scale, ...] = ()
+
+
+def scales_of(storage: Storage) -> tuple[Scale, ...]:
+    """The scales of a fixed-point format as float32, to be given to a traced function."""
+    scales = (scale_of(storage.scale(channel)) for channel in range(storage.channels))
+    return tuple(Scale(*map(np.float32, scale)) for scale in scales)
+
+
+def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:
+    """A format of the same kind with scales of its own, one for each channel in use."""
+    return Fixed(**vars(like), scales=scales)
+
+
+def _scale(storage: Storage, channel: int) -> Scale:
+    return storage.scales[channel] if isinstance(storage, Fixed) else scale_of(storage.scale(channel))
+
+
 def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
     """One number of a texel (float32, any shape), as the format is given it, through one channel and back."""
-    bits, scale = storage.bits[channel], storage.scale(channel)
     if storage.kind == "float":
-        if x.dtype != jnp.float32:
-            return store_float(x, bits, rounding)
-        if bits == 32:
-            return store_exactly(x)
-        return store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
+        return _store_float_texel(x, storage.bits[channel], rounding)
     if storage.kind == "snorm":
-        return store_snorm(x, scale, rounding)
-    return (store_srgb if channel < storage.curved else store_unorm)(x, scale, rounding)
+        return store_snorm(x, _scale(storage, channel), rounding)
+    return (store_srgb if channel < storage.curved else store_unorm)(x, _scale(storage, channel), rounding)
+
+
+def _store_float_texel(x, bits: int, rounding: str):
+    if x.dtype != jnp.float32:
+        return store_float(x, bits, rounding)
+    if bits == 32:
+        return store_exactly(x)
+    return store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
 
 
 def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
@@ -134,8 +175,8 @@ def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
 
 def numbers_around(c, storage: Storage, channel: int):
     """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
-    scale = storage.scale(channel)
+    scale = _scale(storage, channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
-    below = jnp.floor(x * float(scale))
-    texels = (step * (1.0 / scale) for step in (below, minimum(below + 1.0, float(scale))))
+    below = jnp.floor(x * scale.one)
+    texels = (step * scale.reciprocal for step in (below, minimum(below + 1.0, scale.one)))
     return tuple(texel * 2.0 - 1.0 if storage.is_biased else texel for texel in texels)

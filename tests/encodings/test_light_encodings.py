@@ -16,7 +16,7 @@ from normalbench.encodings.chromaticity import chromaticity, coloured, luminance
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.light_encoding import BLENDS
 from normalbench.encodings.light.nao32 import INVERSE, MATRIX
-from normalbench.encodings.storages.rounding import from_srgb, store_small_float, store_srgb, to_srgb
+from normalbench.encodings.storages.rounding import from_srgb, scale_of, store_small_float, store_srgb, to_srgb
 from normalbench.encodings.storages.storage import LIGHT_STORAGES, R11G11B10F, SRGB8_A8
 from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
 from normalbench.gbuffer.codecs.light_passes import exact_light, light_defines
@@ -313,7 +313,7 @@ def test_the_srgb_curve_is_the_standards():
     codes = jnp.asarray(np.arange(256), jnp.float32) * jnp.float32(1 / 255)
     linear = from_srgb(codes)
     assert float(linear[255]) == 1.0 and float(linear[0]) == 0.0
-    assert np.array_equal(np.asarray(store_srgb(linear, 255)), np.asarray(linear))
+    assert np.array_equal(np.asarray(store_srgb(linear, scale_of(255))), np.asarray(linear))
     assert SRGB8_A8.curved == 3
 
 

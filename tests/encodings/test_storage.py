@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from neighbours import around
 
-from normalbench.encodings.storages.rounding import store_half, store_number, store_texel, store_unorm
+from normalbench.encodings.storages.rounding import scale_of, store_half, store_number, store_texel, store_unorm
 from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.encodings.storages.words import words
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
@@ -125,7 +125,7 @@ def test_numbers_across_channels_come_back_as_the_emulation_says(gl, name, round
 def test_truncating_half_a_code_wider_is_floor_of_f_times_4095_and_a_half():
     """As engines write it: 12 bits of f in [0, 1] are floor(f 4095.5)."""
     f = np.random.default_rng(0).random(2**16, np.float32)
-    stored = np.asarray(store_unorm(jnp.asarray(f), 4095, "truncate_half")) * 4095
+    stored = np.asarray(store_unorm(jnp.asarray(f), scale_of(4095), "truncate_half")) * 4095
     assert np.array_equal(np.round(stored), np.floor(f * np.float32(4095.5)))
 
 
@@ -134,7 +134,7 @@ def test_the_two_bits_of_alpha_are_rounded_by_their_own_scale(gl, rounding):
     storage = STORAGES["rgb10a2"]
     values = np.concatenate([around(np.arange(4) / 3), around((np.arange(3) + 0.5) / 3), OUTSIDE])
     got = rounded_in_the_shader(gl, values, storage, rounding)[:, 3]
-    expected = np.asarray(store_unorm(jnp.asarray(values), storage.scale(3), rounding))
+    expected = np.asarray(store_unorm(jnp.asarray(values), scale_of(storage.scale(3)), rounding))
     assert_same_bits(values, expected, got.copy(), f"alpha, {rounding}")
 
 

@@ -80,9 +80,11 @@ def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[
     pool = ThreadPoolExecutor(1)
     try:
         questions = [Question(chosen, pool, costs) for chosen in asked]
+        # While a device draws in this thread, little Python runs in the other: what JAX traces comes first.
         for question in questions:
-            question.measure(pictures, tick)
+            question.measure(tick)
         for question in questions:
+            question.draw(pictures)
             yield question.rows()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
@@ -93,7 +95,7 @@ class Question:
 
     def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs):
         self._cases = {case.codec.encoding.name: case for case in chosen}
-        self._pool, self._costs = pool, costs
+        self._pool, self._costs, self._aim = pool, costs, chosen[0].said["aim"]
         self._suprema: dict[str, Future[float | None]] = {}
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
         # What has no twin is measured by GL, in the thread that draws.
@@ -101,20 +103,23 @@ class Question:
         self._angles = pool.submit(_angles, self._by_jax)
         self._rows: dict[str, Row] = {}
 
-    def measure(self, pictures: Pictures | None, tick: Callable[[str], None]) -> None:
-        """All but what is still computed in the other thread."""
+    def measure(self, tick: Callable[[str], None]) -> None:
+        """Angles and instructions; the suprema that they ask for are still computed in the other thread."""
         measured = zip([*self._by_gl, *self._by_jax], [*_angles(self._by_gl), *self._angles.result()], strict=True)
         angles = {case.codec.encoding.name: row for case, row in measured}
         for name, case in self._cases.items():
             self._rows[name] = _described(case) | angles[name] | self._costs.of(case.codec.encoding)
             tick(f"{case.codec.name} {case.normal_set.name}")
-        aim = next(iter(self._rows.values()))["aim"]
-        if aim == "worst":
-            self._find_suprema(self._qualified("angle"))
+        self._find_suprema(self._qualified("angle") if self._aim == "worst" else self.answered()[:1])
+
+    def draw(self, pictures: Pictures | None) -> None:
+        """Images, if there is what draws them, and the supremum of the best."""
+        if self._aim == "worst":
             self._take_suprema()
         if pictures:
             fit = self._qualified("angle")
-            drawn = fit if aim == "image" else [row for row in fit if not any(clearly_beats(one, row) for one in fit)]
+            better = [] if self._aim == "image" else fit
+            drawn = [row for row in fit if not any(clearly_beats(one, row) for one in better)]
             for row in drawn + [row for row in self._rows.values() if row["against"]]:
                 self._rows[row["encoding"]] |= pictures.of(self._cases[row["encoding"]])
         self._find_suprema(self.answered()[:1])
@@ -128,7 +133,9 @@ class Question:
 
     def _find_suprema(self, wanted: Iterable[Row]) -> None:
         for row in wanted:
-            self._suprema[row["encoding"]] = self._pool.submit(_supremum, self._cases[row["encoding"]])
+            if row["encoding"] not in self._suprema:
+                case = self._cases[row["encoding"]]
+                self._suprema[row["encoding"]] = self._pool.submit(_supremum, case)
 
     def _take_suprema(self) -> None:
         for name, found in self._suprema.items():

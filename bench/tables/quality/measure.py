@@ -16,6 +16,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.rounding import Scale, fixed, scales_of
+from ....encodings.storages.storage import STORAGES, Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
@@ -64,12 +67,27 @@ class Case:
 
 @cache
 def _meter(codec: Codec) -> Meter:
-    return Meter(lambda chunk: codec.round_trip(chunk.n, chunk.view))
+    storage, encoding = codec.storage, codec.encoding
+    if storage.kind == "float" or storage.curved:
+        return Meter(_program(encoding, storage, codec.rounding))
+    like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
+    return Meter(_program(encoding, like, codec.rounding), scales_of(storage)[: encoding.components])
+
+
+@cache
+def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
+    """What decodes a chunk. Fixed-point formats share it and give it their scales: it is compiled once for all."""
+
+    def decode(chunk: Chunk, *scales: Scale) -> Vec3:
+        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        return codec.round_trip(chunk.n, chunk.view)
+
+    return jax.jit(decode)
 
 
 @cache
 def _decoded_meter() -> Meter:
-    return Meter(lambda chunk: chunk.decoded)
+    return Meter(jax.jit(lambda chunk: chunk.decoded))
 
 
 def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:

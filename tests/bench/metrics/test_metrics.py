@@ -63,7 +63,7 @@ def test_the_angle_does_not_depend_on_the_decodes_length():
 def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
     n = random_directions(8)
     assert np.all(measured_angles(n, np.zeros_like(n)) == 180)
-    broken = measured(Meter(lambda block: block.n * jnp.nan), from_arrays("", "", n, n, np.ones(8, bool)))
+    broken = measured(Meter(jax.jit(lambda block: block.n * jnp.nan)), from_arrays("", "", n, n, np.ones(8, bool)))
     assert broken.angle_max_deg == pytest.approx(180) and broken.mse == pytest.approx(4 / 3)
 
 
@@ -87,7 +87,7 @@ def test_a_row_equals_numpys(count, degrees):
         assert got.angle_p99_deg == pytest.approx(p99, rel=1e-3)
 
 
-DECODED = Meter(lambda block: block.view)
+DECODED = Meter(jax.jit(lambda block: block.view))
 
 
 def test_the_background_counts_for_the_articles_measure_alone():
@@ -287,7 +287,7 @@ def test_any_count_is_constant_memory():
             yield load
             del load
 
-    Meter(lambda block: block.n).measure(loads(), CHUNK)
+    Meter(jax.jit(lambda block: block.n)).measure(loads(), CHUNK)
     gc.unfreeze()
     assert most <= 8
 
