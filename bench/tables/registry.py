@@ -13,6 +13,7 @@ FOLDERS = (
     "quality",
     "render",
     "cost",
+    "effects",
     "lights",
     "depth",
     "tangent_frames",

@@ -69,6 +69,7 @@ class Effect:
         result: the image that it computes of its own, which tables compare: a resource that one of its passes writes.
         passes: makes its passes; takes a value for each of `settings` by keyword.
         settings: what can be chosen, by name.
+        scene: the scene that shows it, where nobody asks for another.
         lacks: why a scene has nothing for it, such as "nothing here is skin"; None where it has.
     """
 
@@ -78,6 +79,7 @@ class Effect:
     result: Resource
     passes: Callable[..., tuple[Pass, ...]]
     settings: Mapping[str, Number | Choice] = field(default_factory=dict)
+    scene: str = "room"
     lacks: Callable[[Scene], str | None] = lambda _: None
 
 

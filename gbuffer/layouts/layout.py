@@ -19,6 +19,7 @@ from typing import Any
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.depth_codec import DepthCodec
 from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
@@ -242,6 +243,22 @@ class Layout:
         )
         rounding = {"packing" if storage.is_packed else "rounding": codec.rounding}
         return replace(self, targets=(*kept, home), encoding=codec.encoding, **rounding)
+
+    def with_depth(self, codec: DepthCodec) -> Layout:
+        """The layout with its depth in a target of its own, encoded and stored as `codec` does.
+
+        A depth buffer's number is stored by a shader: integers across channels of 8 bits, floats in a channel of 32.
+
+        Raises:
+            LayoutError: the code does not suit the encoding of the normal, or does not fit its storage.
+        """
+        if codec.misfit:
+            raise LayoutError(f"layout {self.name}: {codec.name}: {codec.misfit}")
+        kept = [replace(t, holds=" ".join(FREE if w == "depth" else w for w in t.holds.split())) for t in self.targets]
+        kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
+        channel = {16: "r16f", 32: "r32f"}[codec.bits] if codec.storage.format.kind == "float" else ""
+        home = Target(channel, "depth") if channel else Target("rgba8", f"depth:{codec.bits}")
+        return replace(self, targets=(*kept, home), depth=codec.encoding)
 
 
 def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> None:

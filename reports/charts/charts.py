@@ -112,6 +112,26 @@ def image_chart(rows: Sequence[Row]) -> Any:
     return axis.figure
 
 
+def effects_chart(rows: Sequence[Row]) -> Any:
+    """What an effect makes of an error in the normals: a point for each codec, a line of points for each effect.
+
+    Args:
+        rows: of the effects table: effect, encoding, storage, normal_mean_deg, effect_psnr_db.
+    """
+    _, axis = _figure((8.2, 5.0))
+    for at, effect in enumerate(dict.fromkeys(row["effect"] for row in rows)):
+        part = sorted((row for row in rows if row["effect"] == effect), key=lambda row: row["normal_mean_deg"])
+        places, levels = ([row[name] for row in part] for name in ("normal_mean_deg", "effect_psnr_db"))
+        axis.plot(places, levels, color=COLOURS[at % len(COLOURS)], marker="o", markersize=5, linewidth=1, label=effect)
+    axis.set_xscale("log")
+    axis.xaxis.set_major_formatter("{x:g}")
+    axis.set_xlabel("mean angle of the normals that it read, degrees")
+    axis.set_ylabel("PSNR of the effect's own image, dB")
+    axis.grid(alpha=0.3)
+    axis.figure.legend(loc="outside upper center", ncols=4, fontsize=8, frameon=False)
+    return axis.figure
+
+
 def passes_of(row: Row) -> dict[str, float]:
     """A frame's milliseconds by pass, without the frame's own."""
     names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]

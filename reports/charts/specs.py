@@ -160,6 +160,34 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
     return [_spec(found, said, encoding=encoding, layer=layers, height=22 * len(y["sort"]))]
 
 
+def effects_specs(rows: Sequence[Row]) -> list[Spec]:
+    """What an effect makes of an error in the normals: a point for each codec, a line for each effect.
+
+    Args:
+        rows: as `charts.effects_chart` takes them.
+    """
+    found = [
+        {
+            "codec": CodecKey.of(row).label,
+            "effect": " on ".join(str(row[name]) for name in ("effect", "scene")),
+            "x": _rounded(row["normal_mean_deg"]),
+            "y": _rounded(row["effect_psnr_db"]),
+        }
+        for row in rows
+        if row["normal_mean_deg"] > 0
+    ]
+    x = {"field": "x", "type": "quantitative", "scale": {"type": "log"}, "axis": {"format": "~g"}}
+    x |= {"title": "mean angle of the normals that it read, degrees"}
+    y = {"field": "y", "type": "quantitative", "title": "PSNR of the effect's own image, dB"}
+    y |= {"scale": {"zero": False, "padding": 8}}
+    tooltip = [*_tooltip(codec="codec", x="normals, degrees", y="the effect, dB"), {"field": "effect"}]
+    points: Spec = {"mark": {"type": "point", "filled": True, "size": 55}}
+    points["encoding"] = {"opacity": _if_lit(1, 0.2), "tooltip": tooltip}
+    encoding = {"x": x, "y": y, "color": _named("effect")}
+    said = "PSNR of each effect's own image over the mean angle of the normals, a line for each effect."
+    return [_spec(found, said, encoding=encoding, layer=[_line(strokeWidth=1, opacity=0.5), points], height=380)]
+
+
 def pareto_specs(panels: Sequence[Panel], error: Error) -> list[Spec]:
     """Cost against error, a chart for each panel: what no other codec beats is named and joined by steps."""
     return [_pareto(panel, error) for panel in panels]

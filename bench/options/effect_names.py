@@ -1,0 +1,37 @@
+"""Effects as they are named: `gtao`, or with settings `gtao:size=half:slices=4`."""
+
+from __future__ import annotations
+
+from ...gbuffer.effects.catalogue import EFFECTS
+from ...gbuffer.effects.effect import ChosenEffect, EffectError, chosen
+from ..output.errors import UsageError, pick
+
+
+def effects_named(names: str) -> list[ChosenEffect]:
+    """The effects that comma-separated names stand for, each with its settings.
+
+    Raises:
+        UsageError: an unknown effect or setting, or a value out of range.
+    """
+    made: dict[str, ChosenEffect] = {}
+    for word in (word.strip() for word in names.split(",") if word.strip() or not names.strip()):
+        name, *settings = word.split(":")
+        for effect in pick("effect", name, EFFECTS):
+            one = _chosen(effect.name, word, settings)
+            made[one.name] = one
+    return list(made.values())
+
+
+def _chosen(name: str, word: str, settings: list[str]) -> ChosenEffect:
+    given: dict[str, str] = {}
+    for setting in settings:
+        key, is_there, value = (part.strip() for part in setting.partition("="))
+        if not is_there or not key or not value:
+            raise UsageError(f"effect {word}: {setting!r} is not a setting; write it as name=value, after a colon")
+        if key in given:
+            raise UsageError(f"effect {word}: {key} is set twice")
+        given[key] = value
+    try:
+        return chosen(EFFECTS[name], given)
+    except EffectError as error:
+        raise UsageError(str(error)) from None

@@ -1,0 +1,199 @@
+"""The effects table: what a code of the G-buffer does to effects that read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ....gbuffer.display import Display, measured_exposure
+from ....gbuffer.effects.effect import ChosenEffect
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import Pipeline
+from ....gbuffer.render import Rendering, rendering
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
+from ....gbuffer.scenes.setting import Setting
+from ...metrics.angles import angles_deg
+from ...metrics.images import flip, squared_error
+from ...metrics.meter import psnr_db
+from ..render.measure import UNMEASURABLE
+from .table import TABLE
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure.
+
+    Attributes:
+        effect: what reads the G-buffer.
+        pipeline: with the effect in it.
+        plan: what renders it.
+        maker, setting: the scene and what it is made with.
+        depth: the depth code by name, where it is what the row is about.
+    """
+
+    effect: ChosenEffect
+    pipeline: Pipeline
+    plan: Plan
+    maker: SceneMaker
+    setting: Setting
+    depth: str | None = None
+
+    @property
+    def name(self) -> str:
+        code = self.depth or self.plan.layout.codec.name
+        return f"{self.effect.name} {self.maker.name} {self.plan.layout.name} {code}"
+
+    @property
+    def reference(self) -> Case:
+        """The same effect from a G-buffer in 32-bit floats."""
+        return replace(self, plan=replace(self.plan, layout=LAYOUTS["fp32"]), depth=None)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A frame.
+
+    Attributes:
+        linear: the image in linear light, (height, width, 3).
+        own: the effect's own image, (height, width, channels).
+        normals: what the G-buffer gives back, (height, width, 3).
+        covered: where there is a surface, or the effect has drawn one; bool of shape (height, width).
+        display: how the image is shown.
+        times: milliseconds by pass, and the clock.
+    """
+
+    linear: np.ndarray
+    own: np.ndarray
+    normals: np.ndarray
+    covered: np.ndarray
+    display: Display
+    times: Row
+
+    @property
+    def shown(self) -> np.ndarray:
+        """The image as displayed."""
+        return self.display.image(self.linear)
+
+
+class Bench:
+    """Measures cases, each reference once.
+
+    Args:
+        device: where.
+        repeats: frames that times are taken over; none are taken for 0.
+        rays: rays a point of the method's own error; 0 for none.
+        with_flip: whether FLIP is wanted.
+    """
+
+    def __init__(self, device: Device, repeats: int, rays: int, with_flip: bool):
+        self._device, self._repeats, self._rays, self._with_flip = device, repeats, rays, with_flip
+        self._references: dict[Case, Drawn] = {}
+        self._methods: dict[Case, float | None] = {}
+
+    def reference(self, case: Case) -> Drawn:
+        """The frame of a case's reference."""
+        case = case.reference
+        if case not in self._references:
+            drawn = self._drawn(case)
+            exposure = case.maker.exposure
+            if exposure is None:
+                exposure = measured_exposure(drawn.linear[drawn.covered])
+            self._references[case] = replace(drawn, display=Display(exposure))
+        return self._references[case]
+
+    def measure(self, case: Case) -> tuple[Row, Drawn | None]:
+        """One row of the table, and the frame; a row that the device cannot give has its reason in `skipped`."""
+        row = TABLE.empty(stage.name for stage in case.effect.passes()) | _described(case)
+        row["device"] = self._device.renderer
+        try:
+            exact, drawn = self.reference(case), self._drawn(case)
+        except UNMEASURABLE as error:
+            return row | {"skipped": str(error)}, None
+        drawn = replace(drawn, display=exact.display)
+        row |= _apart(drawn, exact) | _image(drawn, exact) | drawn.times
+        row["method_rms"] = self._method(case.reference)
+        if self._with_flip:
+            row["flip"] = float(np.mean(flip(drawn.shown, exact.shown)))
+        return row, drawn
+
+    def _drawn(self, case: Case) -> Drawn:
+        scene = case.maker.make(case.setting)
+        with rendering(self._device, case.pipeline, scene, case.plan) as made:
+            made.draw()
+            position, direction, *_ = made.gbuffer()
+            own = made.read(case.effect.effect.result)[0]
+            covered = (position[..., 2] != 0) | np.any(own > 0, axis=-1)
+            times = self._times(case, made) if self._repeats else {}
+            return Drawn(made.image(), own[..., :3], direction[..., :3], covered, Display(0.0), times)
+
+    def _times(self, case: Case, made: Rendering) -> Row:
+        timings, clock = made.timings(self._repeats)
+        names = [stage.name for stage in case.effect.passes()]
+        row: Row = {f"ms_{name}": timings[name].median for name in (*names, "frame")}
+        return row | {"ms_effect": sum(timings[name].median for name in names), "clock": clock}
+
+    def _method(self, case: Case) -> float | None:
+        """RMS of the effect from exact normals against rays; None where there is no oracle."""
+        oracle = case.effect.effect.name in ORACLES
+        if not oracle or not self._rays:
+            return None
+        if case not in self._methods:
+            self._methods[case] = None
+        return self._methods[case]
+
+
+ORACLES: dict[str, Any] = {}
+
+
+def _apart(drawn: Drawn, exact: Drawn) -> Row:
+    """How far the effect's own image is from the exact one's, and the normals from the exact ones."""
+    covered = exact.covered
+    if not np.any(covered):
+        return {}
+    one, other = (np.nan_to_num(frame.own[covered].astype(np.float64)) for frame in (drawn, exact))
+    apart, peak = np.abs(one - other), float(np.max(np.abs(other)))
+    mse, angles = float(np.mean(apart**2)), _angles(drawn, exact)
+    row: Row = {"effect_rms": mse**0.5, "effect_mean": float(np.mean(apart)), "effect_max": float(np.max(apart))}
+    row["effect_psnr_db"] = psnr_db(mse / peak**2) if peak > 0 else None
+    row |= {"normal_mean_deg": float(np.mean(angles)), "normal_max_deg": float(np.max(angles))}
+    if row["normal_mean_deg"] > 0:
+        row["slope"] = row["effect_mean"] / row["normal_mean_deg"]
+    return row | {"exact": mse == 0}
+
+
+def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
+    """Degrees between the normals of two frames, where both have one."""
+    one, other = drawn.normals[exact.covered], exact.normals[exact.covered]
+    there = np.any(other != 0, axis=-1)
+    return np.nan_to_num(angles_deg(other[there], one[there]), nan=180.0) if np.any(there) else np.zeros(1)
+
+
+def _image(drawn: Drawn, exact: Drawn) -> Row:
+    mse, broken = squared_error(drawn.shown, exact.shown)
+    return {"psnr_db": psnr_db(mse), "invalid": broken}
+
+
+def _described(case: Case) -> Row:
+    layout, setting, size = case.plan.layout, case.setting, case.plan.size
+    row: Row = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name}
+    row |= {"size": f"{size[0]}x{size[1]}", "lights": setting.lights, "objects": setting.objects, "seed": setting.seed}
+    row |= {"layout": layout.name, "depth": case.depth, "normal_bits": layout.normal_bits}
+    if case.depth:
+        return row
+    return row | {
+        "encoding": layout.codec.encoding.name,
+        "storage": layout.normal_storage,
+        "rounding": layout.rounding,
+    }
+
+
+def lacks(effect: ChosenEffect, scene: Scene) -> str | None:
+    """Why a scene has nothing for an effect; None where it has."""
+    return effect.effect.lacks(scene)

@@ -1,0 +1,79 @@
+"""Pictures of effects: written into a folder, and found there again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ....reports.charts import pictures
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
+from ...output.writing import files_of, whole_file
+from ..table import Row
+from .measure import Drawn
+
+REFERENCE = "reference"
+OWN, IMAGE = "effect", "final"
+
+
+def _stem(row: Row, of_reference: bool = False) -> str:
+    """What the files of a row are called, without what they show."""
+    start = [row["effect"].replace(":", "-").replace("=", ""), row["scene"], row["pipeline"]]
+    code = [row["depth"].replace("/", "-")] if row["depth"] else [row["encoding"], row["storage"], row["rounding"]]
+    return "-".join([*start, *([] if of_reference else [row["layout"], *code])])
+
+
+def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
+    """The effect's own image and the final one, and those of the reference, which rows of one effect share."""
+    peak = float(np.max(exact.own)) or 1.0
+    for stem, frame in ((_stem(row), drawn), (f"{_stem(row, True)}-{REFERENCE}", exact)):
+        for name, shown in ((OWN, own_picture(frame.own, peak)), (IMAGE, pictures.picture(frame.shown))):
+            with whole_file(folder / f"{stem}-{name}.png") as partial_file:
+                pictures.write_png(partial_file, shown)
+
+
+def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
+    """An effect's own image as people look at it, uint8 of shape (height, width, 3): sRGB, the peak white.
+
+    Visibility is shown as it is.
+    """
+    share = np.clip(np.nan_to_num(own) / peak, 0.0, 1.0)
+    if own.shape[-1] == 1:
+        return pictures.grey(share[..., 0])
+    return pictures.picture(share ** (1 / 2.2))
+
+
+def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
+    """What lies in a folder of rows. A name is looked up, so that none leads out of the folder."""
+    there = files_of(folder)
+    groups: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.get("effect") and row.get("scene") and row.get("pipeline") and "depth" in row and "encoding" in row:
+            groups.setdefault(_stem(row, True), []).append(row)
+    for name, part in groups.items():
+        original = there.get(f"{name}-{REFERENCE}-{OWN}.png")
+        found = [one for rank, row in enumerate(_in_order(part)) if (one := _pictured(there, row, rank))]
+        if original and found:
+            title = f"{part[0]['effect']} alone, on {part[0]['scene']}"
+            yield Subject(title, "image", partial(read_png, original), found)
+
+
+def _in_order(rows: Sequence[Row]) -> list[Row]:
+    return sorted(rows, key=lambda row: (row.get("normal_bits") or 0, -(row.get("effect_psnr_db") or 0.0)))
+
+
+def _pictured(there: Mapping[str, Path], row: Row, rank: int) -> Pictured | None:
+    own = there.get(f"{_stem(row)}-{OWN}.png")
+    if own is None:
+        return None
+    key = CodecKey.of(row)
+    label = f"depth {row['depth']}" if row["depth"] else key.label
+    return Pictured(key, label, "" if row["depth"] else key.label, partial(_read, own), rank)
+
+
+def _read(own: Path) -> ImagePixels | None:
+    image = read_png(own)
+    return None if image is None else ImagePixels(image, None)

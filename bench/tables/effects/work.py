@@ -1,0 +1,234 @@
+"""How the effects table is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
+from ....encodings.codecs.depth_codec import DepthCodec
+from ....encodings.storages.depth_storage import DEPTH_STORAGES
+from ....gbuffer.effects.effect import ChosenEffect
+from ....gbuffer.frame.contract import Pipeline, PipelineError
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import check
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.setting import Setting
+from ....reports.charts import charts, specs
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import check_twin, codecs_named
+from ...machine.devices import require_device, require_jax
+from ...metrics.images import require_flip
+from ...options.counts import MAX_REPEATS, in_range
+from ...options.effect_names import effects_named
+from ...options.layout_names import layouts_named
+from ...options.scene_names import scenes_named
+from ...options.targets import checked_setting, checked_target, what_is_left
+from ...output.errors import UsageError, by_reason, pick, pick_one
+from ...output.writing import check_folder
+from ..charts import drawing, having
+from ..table import Row, Sheet, Step, Tick, Work
+from . import pictures
+from .measure import Bench, Case
+from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
+
+MAX_RAYS = 2**16
+NO_DEPTH = "none"
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A case, what measures it, and the folder for its pictures, if any."""
+
+    bench: Bench
+    case: Case
+    images: Path | None
+
+
+def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
+    """What lies in the G-buffer of each row, and the depth code where the row is about one.
+
+    Raises:
+        UsageError: unknown names, or nothing left.
+    """
+    complaints: list[str] = []
+    layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
+    asked = (options.encoding, options.depth)
+    if options.layout and asked == (None, None):
+        return list(layouts)
+    normals = _with_normals(options, complaints) if options.encoding or not any(asked) else []
+    return what_is_left([*layouts, *normals, *_with_depths(options, complaints)], complaints)
+
+
+def _with_normals(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
+    codecs = codecs_named(options.encoding or "octahedral", options.storage, options.rounding)
+    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
+        check_twin(encoding)
+    complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
+    made: list[tuple[Layout, str | None]] = []
+    for codec in (codec for codec in codecs if codec.fits):
+        try:
+            made.append((LAYOUTS["fp32"].with_codec(codec), None))
+        except LayoutError as error:
+            complaints.append(str(error))
+    return made
+
+
+def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
+    names = DEPTHS if options.depth is None else options.depth
+    if names.strip().lower() == NO_DEPTH:
+        return []
+    made: list[tuple[Layout, str | None]] = []
+    for codec in (_depth_codec(name.strip()) for name in names.split(",") if name.strip()):
+        try:
+            made.append((LAYOUTS["fp32"].with_depth(codec), codec.name))
+        except LayoutError as error:
+            complaints.append(str(error))
+    return made
+
+
+def _depth_codec(name: str) -> DepthCodec:
+    code, is_there, storage = name.partition("/")
+    if not is_there:
+        raise UsageError(f"--depth {name}: write a code and its storage, such as linear/packed16, or none")
+    encoding = DEPTH_ENCODINGS[pick_one("depth", code, DEPTH_ENCODINGS)]
+    return DepthCodec(encoding, DEPTH_STORAGES[pick_one("depth storage", storage, DEPTH_STORAGES)])
+
+
+def cases(options: EffectsOptions, device: Device) -> list[Case]:
+    """A case for each effect, pipeline, scene and content of the G-buffer; what cannot be is named.
+
+    Raises:
+        UsageError: unknown names, counts and sizes beyond what is possible, or nothing left.
+    """
+    size, _ = checked_target(options.size, 1, 1, device)
+    setting = checked_setting(options.objects, options.lights, options.seed)
+    effects, pipelines = effects_named(options.effect), pick("pipeline", options.pipeline, PIPELINES)
+    exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
+    complaints: list[str] = []
+    made: list[Case] = []
+    for effect in effects:
+        makers = _suitable(effect, options.scene, setting, complaints)
+        for pipeline in pipelines if makers else ():
+            if with_effect := _with_effect(pipeline, effect, complaints):
+                one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
+                plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
+                chosen = [Case(effect, with_effect, plan, m, setting, depth) for m in makers for plan, depth in plans]
+                made += [case for case in chosen if _is_possible(device, case, complaints)]
+    return what_is_left(made, complaints)
+
+
+def _suitable(effect: ChosenEffect, names: str | None, setting: Setting, complaints: list[str]) -> list[SceneMaker]:
+    """The scenes asked for, or the effect's own, that have something for it."""
+    made: list[SceneMaker] = []
+    for maker in scenes_named(names or effect.effect.scene):
+        if why := effect.effect.lacks(maker.make(setting)):
+            complaints.append(f"{effect.name} on {maker.name}: {why}")
+        else:
+            made.append(maker)
+    return made
+
+
+def _with_effect(pipeline: Pipeline, effect: ChosenEffect, complaints: list[str]) -> Pipeline | None:
+    try:
+        return pipeline.with_effect(effect.passes())
+    except PipelineError as error:
+        complaints.append(f"{effect.name}: {error}")
+        return None
+
+
+def _is_possible(device: Device, case: Case, complaints: list[str]) -> bool:
+    try:
+        check(device, case.pipeline, case.plan)
+    except LayoutError as error:
+        complaints.append(str(error))
+        return False
+    return True
+
+
+def _steps(options: EffectsOptions, outputs: EffectsOutputs) -> list[Step]:
+    require_jax()
+    device = require_device()
+    in_range("--repeats", options.repeats, 0, MAX_REPEATS)
+    in_range("--rays", options.rays, 0, MAX_RAYS)
+    if options.flip:
+        require_flip()
+    made = cases(options, device)
+    if outputs.images:
+        check_folder(outputs.images)
+    bench = Bench(device, options.repeats, options.rays, options.flip)
+    return [Step(_key(case, options), Shot(bench, case, outputs.images), case.name) for case in made]
+
+
+def _key(case: Case, options: EffectsOptions) -> Row:
+    key = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name, "depth": case.depth}
+    key |= {"layout": case.plan.layout.name, "codec": case.plan.layout.codec.name, "size": options.size}
+    key |= {"lights": options.lights, "objects": options.objects, "seed": options.seed, "rays": options.rays}
+    return key | {"repeats": options.repeats, "flip": options.flip}
+
+
+def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+    for step in steps:
+        shot = step.case
+        row, drawn = shot.bench.measure(shot.case)
+        if shot.images and drawn:
+            pictures.write(shot.images, row, drawn, shot.bench.reference(shot.case))
+        tick(step.name)
+        yield [row]
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by effect, pipeline and scene as they come; normal codes by their bits, the best first, then depth codes."""
+    groups = list(dict.fromkeys(_group(row) for row in rows))
+
+    def place(row: Row) -> tuple[int, bool, int, bool, float]:
+        apart = row["effect_rms"]
+        bits = 0 if row["depth"] else row["normal_bits"]
+        return groups.index(_group(row)), row["depth"] is not None, bits, apart is None, apart or 0.0
+
+    return sorted(rows, key=place)
+
+
+def _group(row: Row) -> tuple[str, ...]:
+    return row["effect"], row["pipeline"], row["scene"]
+
+
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["invalid"]:
+            yield f"{TABLE.name_of(row)}: {row['invalid']} pixels of the image are NaN or infinite"
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "method_rms", "psnr_db")
+    for effect, pipeline, scene in dict.fromkeys(_group(row) for row in rows):
+        part = [row for row in in_order(rows) if _group(row) == (effect, pipeline, scene)]
+        shown = [{name: row[name] for name in names} for row in part if row["effect_rms"] is not None]
+        if shown:
+            yield Sheet(f"{effect} on {scene} by {pipeline}", shown, keys={"effect": effect, "scene": scene})
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = having([row for row in rows if not row["depth"]], "effect_psnr_db", "normal_mean_deg")
+    if usable:
+        said = "PSNR in dB of each effect's own image over the mean angle of the normals that it read. The figures are "
+        said += "in the table below."
+        title = "What effects make of an error in the normals"
+        yield drawing("effects", title, said, usable, charts.effects_chart, specs.effects_specs)
+
+
+WORK = Work(
+    steps=_steps,
+    measure=_measure,
+    finish=in_order,
+    summary=_summary,
+    warnings=_warnings,
+    drawings=_drawings,
+    subjects=pictures.subjects,
+)
