@@ -15,14 +15,14 @@ from .volumes import FORMATS, INDIRECT, Volumes
 SETTINGS = {
     "iterations": Number(8, 0, 8, "Steps of propagation; each carries light one cell further."),
     "cascades": Number(2, 1, 3, "Volumes, each with cells twice as wide as those of the one before."),
-    "cells": Number(32, 4, 64, "Cells along each axis of a volume."),
+    "cells": Number(16, 4, 64, "Cells along each axis of a volume."),
     "extent": Number(
         0.0, 0.0, 1000.0, "Metres along each axis of the finest volume; 0 makes the coarsest as large as the scene."
     ),
     "amplifier": Number(1.0, 0.0, 4.0, "Times what surfaces block of the light that passes; 0 blocks nothing."),
     "blend": Number(0.2, 0.0, 0.5, "The outer share of a volume over which the next coarser one takes over."),
     "format": Choice(tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."),
-    "texels": Number(256, 16, 1024, "Texels on a side of each reflective shadow map."),
+    "texels": Number(128, 16, 1024, "Texels on a side of each reflective shadow map."),
 }
 
 

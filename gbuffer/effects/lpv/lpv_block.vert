@@ -22,5 +22,5 @@ void main() {
     bool is_inside = all(greaterThanEqual(corner, ivec3(0))) && all(lessThan(corner, ivec3(CORNERS)));
     vec2 pixel = vec2(corner.x + CORNERS * corner.z, corner.y + CORNERS * cascade) + 0.5;
     bool counts = position.w > 0.0 && facing > 0.0 && is_inside;
-    gl_Position = counts ? vec4(pixel / target_size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(2.0);
+    gl_Position = counts ? vec4(pixel / target_size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(vec3(2.0), 1.0);
 }

@@ -18,5 +18,5 @@ void main() {
     ivec3 cell = ivec3(floor(in_cells(position.xyz, cascade) + SHIFT * n));
     bool is_inside = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(CELLS)));
     vec2 pixel = vec2(cell.x + CELLS * cell.z, cell.y + CELLS * cascade) + 0.5;
-    gl_Position = position.w > 0.0 && is_inside ? vec4(pixel / target_size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(2.0);
+    gl_Position = position.w > 0.0 && is_inside ? vec4(pixel / target_size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(vec3(2.0), 1.0);
 }
