@@ -19,6 +19,7 @@ from .effect import Effect
 
 NAMES: tuple[str, ...] = (
     # The name of an effect's module, in quotes.
+    "lpv",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -27,6 +27,8 @@ KEPT_PROGRAMS = 64
 # Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
 ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
+# What is drawn of vertices that are no triangles' corners.
+POINTS = moderngl.POINTS
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
 
 
@@ -73,6 +75,7 @@ class Device:
         self.version = str(self.context.info["GL_VERSION"])
         self.is_software = any(word in self.renderer.lower() for word in SOFTWARE)
         self.max_size = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
+        self.max_volume = int(self.context.info["GL_MAX_3D_TEXTURE_SIZE"])
         info = self.context.info
         self.max_targets = int(min(info["GL_MAX_DRAW_BUFFERS"], info["GL_MAX_COLOR_ATTACHMENTS"]))
         samples = ("GL_MAX_SAMPLES", "GL_MAX_COLOR_TEXTURE_SAMPLES", "GL_MAX_DEPTH_TEXTURE_SAMPLES")
@@ -151,7 +154,14 @@ class Device:
         return texture
 
     def volume(self, size: tuple[int, int, int], storage: Storage) -> moderngl.Texture3D:
-        """A texture of three dimensions, to render to by slices. moderngl chooses its format by type and channels."""
+        """A texture of three dimensions, to render to by slices. moderngl chooses its format by type and channels.
+
+        Raises:
+            FormatError: it is larger than the device's volumes.
+        """
+        if max(size) > self.max_volume:
+            asked = " x ".join(map(str, size))
+            raise FormatError(f"{self.renderer} has volumes of up to {self.max_volume} texels a side, not {asked}")
         volume = self.context.texture3d(size, storage.channels, dtype=_dtype(storage))
         volume.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return volume

@@ -1,0 +1,90 @@
+"""The volumes' sizes and resources, which the settings decide, and the macros that shaders know them by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ...frame.resource import DEPTH_STENCIL, SURFACES, Resource
+from .harmonics import CONSTANTS
+from .packed import PACKED_CONSTANTS
+
+CHANNELS = ("red", "green", "blue")
+# What a codec does to an image is compared here: light that arrives from other surfaces, times 1 / pi.
+INDIRECT = Resource("indirect", "rgba32f", follows=SURFACES)
+# Half a cell, less a thousandth: a wall right between two planes of the lattice would else fall to either side of it
+# by rounding, texel by texel. Walls at round numbers do lie there.
+SHIFT = 0.5 - 2.0**-10
+# Formats by the setting's words: of the volumes, and of what is added up by blending. Packed codes do not add.
+FORMATS: Mapping[str, tuple[str, str]] = {
+    "rgba32f": ("rgba32f", "rgba32f"),
+    "rgba16f": ("rgba16f", "rgba16f"),
+    "shared": ("rgba8", "rgba32f"),
+}
+
+
+@dataclass(frozen=True)
+class Volumes:
+    """The resources of `cascades` volumes of cells x cells x cells, one behind the other along z.
+
+    Attributes:
+        cells, cascades: their numbers.
+        format: a word of FORMATS.
+        texels: of a reflective shadow map, on a side.
+    """
+
+    cells: int
+    cascades: int
+    format: str
+    texels: int
+
+    @property
+    def corners(self) -> int:
+        """Of the cells along an axis: what blocks light is kept there."""
+        return self.cells + 1
+
+    @property
+    def injected(self) -> tuple[Resource, ...]:
+        """The light of the first step, slices side by side, so that one draw adds to all of them."""
+        return tuple(self._flat(f"lpv_injected_{channel}", self.cells) for channel in CHANNELS)
+
+    @property
+    def blockers(self) -> Resource:
+        """What blocks light at the cells' corners, slices side by side."""
+        return self._flat("lpv_blockers", self.corners)
+
+    @property
+    def wave(self) -> tuple[Resource, ...]:
+        """The light that travels, a volume for each channel."""
+        return tuple(self._volume(f"lpv_wave_{channel}") for channel in CHANNELS)
+
+    @property
+    def light(self) -> tuple[Resource, ...]:
+        """The sum over all steps, a volume for each channel."""
+        return tuple(self._volume(f"lpv_light_{channel}") for channel in CHANNELS)
+
+    @property
+    def reflective(self) -> tuple[Resource, ...]:
+        """A reflective shadow map: flux, normal and position; one is drawn after the other."""
+        return tuple(self._map(f"lpv_{what}", "rgba32f") for what in ("flux", "normal", "position"))
+
+    @property
+    def reflective_depth(self) -> Resource:
+        """What a reflective shadow map is drawn against."""
+        return self._map("lpv_depth", DEPTH_STENCIL)
+
+    def defines(self, cell: float) -> dict[str, object]:
+        """Macros; `cell` is the finest cascade's, in metres."""
+        own = {"CELLS": self.cells, "CORNERS": self.corners, "CASCADES": self.cascades, "TEXELS": self.texels}
+        packs = {"PACKS": int(self.format == "shared"), "SHIFT": SHIFT, "CELL": float(cell)}
+        return {**CONSTANTS, **PACKED_CONSTANTS, **own, **packs}
+
+    def _map(self, name: str, form: str) -> Resource:
+        return Resource(name, form, (self.texels, self.texels))
+
+    def _flat(self, name: str, side: int) -> Resource:
+        return Resource(name, FORMATS[self.format][1], (side * side, side * self.cascades))
+
+    def _volume(self, name: str) -> Resource:
+        size = (self.cells, self.cells)
+        return Resource(name, FORMATS[self.format][0], size, copies=2, depth=self.cells * self.cascades)
