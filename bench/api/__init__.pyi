@@ -23,6 +23,7 @@ def pick(
     normals: Names = ...,
     scene: Names = ...,
     power: Names = ...,
+    effects: Names | None = ...,
     family: Names = ...,
     aim: Names = ...,
     most_instructions: int | None = ...,
@@ -51,6 +52,7 @@ def pick(
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers that the scene is rendered with, comma-separated.
+        effects: Effects in the image, with settings: gtao:size=half,lpv. Default: none.
         family: The GPU family that instructions are counted for.
         aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
         most_instructions: The most instructions, encode and decode together.
@@ -128,6 +130,7 @@ def render(
     light_targets: Names = ...,
     scene: Names = ...,
     power: Names | None = ...,
+    effects: Names | None = ...,
     shadow: Names = ...,
     exposure: Names | None = ...,
     tone_mapping: Names = ...,
@@ -155,6 +158,7 @@ def render(
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
+        effects: Effects in the image, with settings: gtao:size=half,lpv. Default: none.
         shadow: on, off; comma-separated, or all.
         exposure: Stops, or auto: clip 1 % at most. Default: 0, and auto for files.
         tone_mapping: none, reinhard or aces.
@@ -207,6 +211,46 @@ def cost(
         seed: The random seed of uniform sets, points and scenes.
         normals: --plot: normal sets, comma-separated, or all; `normalbench list` shows them.
         error: --plot: psnr, mean or max, the largest angle.
+    """
+
+def effects(
+    *,
+    effect: Names = ...,
+    pipeline: Names = ...,
+    encoding: Names | None = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    depth: Names | None = ...,
+    layout: Names | None = ...,
+    scene: Names | None = ...,
+    size: Names = ...,
+    objects: int = ...,
+    lights: int = ...,
+    rays: int = ...,
+    repeats: int = ...,
+    seed: int = ...,
+    flip: bool = ...,
+) -> Rows:
+    """How much of a code's error arrives in effects that read the G-buffer: ambient occlusion and others.
+
+    Every normal code lies in an otherwise exact layout, and every depth code in one with exact normals. A layout is measured as it is.
+
+    Args:
+        effect: Effects with their settings, such as gtao:size=half; comma-separated, or all.
+        pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files, each in an exact layout; comma-separated, or all.
+        storage: And their storages.
+        rounding: And how those round.
+        depth: Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: linear/packed16,window/depth24,window/depth32f.
+        layout: Layouts: names or TOML files.
+        scene: Scenes or mesh files. Default: what shows the effect.
+        size: WIDTHxHEIGHT of the image.
+        objects: Objects in the scene `objects`.
+        lights: Point lights.
+        rays: Rays a point of the method's own error; 0 for none.
+        repeats: Frames that times are taken over; of render, 0 takes none.
+        seed: The random seed of uniform sets, points and scenes.
+        flip: FLIP as well, a perceptual difference; a second a row.
     """
 
 def lights(

@@ -66,13 +66,13 @@ def list_command(
     what: Annotated[
         str,
         typer.Argument(
-            help="encodings, storages, depths, frames, normals, layouts, pipelines, scenes, lights, or all."
+            help="encodings, storages, depths, frames, normals, layouts, pipelines, effects, scenes, lights, or all."
         ),
     ] = "all",
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> None:
-    """What there is: encodings, storages, codes of depth and frames, sets, layouts, pipelines, scenes, lights."""
+    """What there is: encodings, storages, depth codes, frames, sets, layouts, pipelines, effects, scenes, lights."""
     from ..options.listing import listing
 
     write(listing(what), format_of(format, output), output, SPARED, by="kind")

@@ -14,6 +14,8 @@ NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "normals": ("normals", "normals"),
         "layout": ("layouts", "layout"),
         "pipeline": ("pipelines", "pipeline"),
+        "effect": ("effects", "effect"),
+        "effects": ("effects", "effect"),
         "scene": ("scenes", "scene"),
         "light_buffer": ("lights", "light buffer"),
         "depth": ("depths", "depth"),

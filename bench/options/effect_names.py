@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ...gbuffer.effects.catalogue import EFFECTS
 from ...gbuffer.effects.effect import ChosenEffect, EffectError, chosen
+from ...gbuffer.frame.contract import Pipeline, PipelineError
+from ...gbuffer.scenes.scene import Scene
 from ..output.errors import UsageError, pick
 
 
@@ -20,6 +24,23 @@ def effects_named(names: str) -> list[ChosenEffect]:
             one = _chosen(effect.name, word, settings)
             made[one.name] = one
     return list(made.values())
+
+
+def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
+    """A pipeline with effects in it; None, and a line among the complaints, where they do not fit."""
+    for effect in effects:
+        try:
+            pipeline = pipeline.with_effect(effect.passes())
+        except PipelineError as error:
+            complaints.append(f"{effect.name}: {error}")
+            return None
+    return pipeline
+
+
+def lacking(effects: Iterable[ChosenEffect], name: str, scene: Scene) -> str | None:
+    """Why a scene has nothing for one of the effects; None where it has for all."""
+    found = ((effect.name, effect.effect.lacks(scene)) for effect in effects)
+    return next((f"{effect} on {name}: {why}" for effect, why in found if why), None)
 
 
 def _chosen(name: str, word: str, settings: list[str]) -> ChosenEffect:

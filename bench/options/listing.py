@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
 from ...encodings.storages.depth_storage import DEPTH_STORAGES
 from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
+from ...gbuffer.effects.catalogue import EFFECTS
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.pipelines import PIPELINES
 from ...gbuffer.scenes.catalogue import SCENES
@@ -88,6 +89,14 @@ def _pipelines() -> list[Row]:
     ]
 
 
+def _effects() -> list[Row]:
+    return [
+        _row("effect", e.name, e.title, holds=", ".join(f"{name}={s.usual}" for name, s in e.settings.items()))
+        | {"from": e.source}
+        for e in EFFECTS.values()
+    ]
+
+
 def _scenes() -> list[Row]:
     return [_row("scene", scene.name, scene.title) for scene in SCENES.values()]
 
@@ -108,6 +117,7 @@ KINDS = {
     "normals": _normal_sets,
     "layouts": _layouts,
     "pipelines": _pipelines,
+    "effects": _effects,
     "scenes": _scenes,
     "lights": _light_buffers,
 }

@@ -53,6 +53,9 @@ Powers = Annotated[
     Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),
 ]
 LightBuffers = Annotated[str, Option("--light-buffer", f"Light buffers, {Names}.", in_run=True)]
+Effects = Annotated[
+    str | None, Option("--effects", "Effects in the image, with settings: gtao:size=half,lpv. Default: none.")
+]
 LightTargets = Annotated[str, Option("--light-targets", "1, 2; comma-separated, or all.")]
 Shadow = Annotated[str, Option("--shadow", "on, off; comma-separated, or all.")]
 Size = Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")]

@@ -60,7 +60,7 @@ class Choice:
         return text
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Effect:
     """One effect.
 
@@ -69,8 +69,8 @@ class Effect:
         result: the image that it computes of its own, which tables compare: a resource that one of its passes writes.
         passes: makes its passes; takes a value for each of `settings` by keyword.
         settings: what can be chosen, by name.
-        scene: the scene that shows it, where nobody asks for another.
         lacks: why a scene has nothing for it, such as "nothing here is skin"; None where it has.
+        scene: the scene that shows it, where nobody asks for another.
     """
 
     name: str
@@ -79,8 +79,8 @@ class Effect:
     result: Resource
     passes: Callable[..., tuple[Pass, ...]]
     settings: Mapping[str, Number | Choice] = field(default_factory=dict)
-    scene: str = "room"
     lacks: Callable[[Scene], str | None] = lambda _: None
+    scene: str = "room"
 
 
 @dataclass(frozen=True)

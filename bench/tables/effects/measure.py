@@ -15,7 +15,6 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
-from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
@@ -184,7 +183,7 @@ def _described(case: Case) -> Row:
     layout, setting, size = case.plan.layout, case.setting, case.plan.size
     row: Row = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name}
     row |= {"size": f"{size[0]}x{size[1]}", "lights": setting.lights, "objects": setting.objects, "seed": setting.seed}
-    row |= {"layout": layout.name, "depth": case.depth, "normal_bits": layout.normal_bits}
+    row |= {"layout": layout.name, "depth": case.depth, "normal_bits": None if case.depth else layout.normal_bits}
     if case.depth:
         return row
     return row | {
@@ -192,8 +191,3 @@ def _described(case: Case) -> Row:
         "storage": layout.normal_storage,
         "rounding": layout.rounding,
     }
-
-
-def lacks(effect: ChosenEffect, scene: Scene) -> str | None:
-    """Why a scene has nothing for an effect; None where it has."""
-    return effect.effect.lacks(scene)

@@ -12,6 +12,7 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...output.writing import files_of, whole_file
+from ..render.pictures import name_of_file
 from ..table import Row
 from .measure import Drawn
 
@@ -21,7 +22,7 @@ OWN, IMAGE = "effect", "final"
 
 def _stem(row: Row, of_reference: bool = False) -> str:
     """What the files of a row are called, without what they show."""
-    start = [row["effect"].replace(":", "-").replace("=", ""), row["scene"], row["pipeline"]]
+    start = [name_of_file(row["effect"]), row["scene"], row["pipeline"]]
     code = [row["depth"].replace("/", "-")] if row["depth"] else [row["encoding"], row["storage"], row["rounding"]]
     return "-".join([*start, *([] if of_reference else [row["layout"], *code])])
 

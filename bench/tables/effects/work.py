@@ -11,7 +11,6 @@ from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import DepthCodec
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....gbuffer.effects.effect import ChosenEffect
-from ....gbuffer.frame.contract import Pipeline, PipelineError
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout, LayoutError
@@ -26,7 +25,7 @@ from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
-from ...options.effect_names import effects_named
+from ...options.effect_names import effects_named, lacking, pipeline_with
 from ...options.layout_names import layouts_named
 from ...options.scene_names import scenes_named
 from ...options.targets import checked_setting, checked_target, what_is_left
@@ -116,7 +115,7 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
     for effect in effects:
         makers = _suitable(effect, options.scene, setting, complaints)
         for pipeline in pipelines if makers else ():
-            if with_effect := _with_effect(pipeline, effect, complaints):
+            if with_effect := pipeline_with(pipeline, [effect], complaints):
                 one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
                 plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
                 chosen = [Case(effect, with_effect, plan, m, setting, depth) for m in makers for plan, depth in plans]
@@ -128,19 +127,11 @@ def _suitable(effect: ChosenEffect, names: str | None, setting: Setting, complai
     """The scenes asked for, or the effect's own, that have something for it."""
     made: list[SceneMaker] = []
     for maker in scenes_named(names or effect.effect.scene):
-        if why := effect.effect.lacks(maker.make(setting)):
-            complaints.append(f"{effect.name} on {maker.name}: {why}")
+        if why := lacking([effect], maker.name, maker.make(setting)):
+            complaints.append(why)
         else:
             made.append(maker)
     return made
-
-
-def _with_effect(pipeline: Pipeline, effect: ChosenEffect, complaints: list[str]) -> Pipeline | None:
-    try:
-        return pipeline.with_effect(effect.passes())
-    except PipelineError as error:
-        complaints.append(f"{effect.name}: {error}")
-        return None
 
 
 def _is_possible(device: Device, case: Case, complaints: list[str]) -> bool:
@@ -189,7 +180,7 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
     def place(row: Row) -> tuple[int, bool, int, bool, float]:
         apart = row["effect_rms"]
-        bits = 0 if row["depth"] else row["normal_bits"]
+        bits = row["normal_bits"] or 0
         return groups.index(_group(row)), row["depth"] is not None, bits, apart is None, apart or 0.0
 
     return sorted(rows, key=place)

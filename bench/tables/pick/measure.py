@@ -19,7 +19,7 @@ from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout, LayoutError
 from ....gbuffer.layouts.presets import LAYOUTS
-from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.setting import Setting
@@ -52,6 +52,7 @@ class Case:
         normal_set: what its angles are over.
         maker, setting, powers: what is rendered, and with which specular powers.
         said: what the row says of the question.
+        pipeline: what renders, with the effects that were asked for.
     """
 
     codec: Codec
@@ -60,6 +61,7 @@ class Case:
     setting: Setting
     powers: tuple[float, ...]
     said: Mapping[str, Any]
+    pipeline: Pipeline = PIPELINES["hybrid"]
 
 
 def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[[str], None]) -> Iterator[list[Row]]:
@@ -207,12 +209,13 @@ class Pictures:
 
     def __init__(self, device: Device):
         self._device = device
-        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...]], list[np.ndarray]] = {}
+        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...], Pipeline], list[np.ndarray]] = {}
 
     def of(self, case: Case) -> Row:
         """The PSNR of the displayed image at each power; none where the device or a layout has no room for the code."""
         known = case.maker.name if case.maker is SCENES.get(case.maker.name) else None
-        key = _key("image", case.codec, known, case.setting, case.powers, self._device.renderer)
+        asked = (case.setting, case.powers, case.said.get("effects") or "")
+        key = _key("image", case.codec, known, *asked, self._device.renderer)
         try:
             return kept.kept(key, lambda: self._measured(case))
         except (LayoutError, *render.UNMEASURABLE):
@@ -229,7 +232,7 @@ class Pictures:
             LayoutError, or one of render.UNMEASURABLE: there is no room for the code.
         """
         images = self._drawn(case, LAYOUTS["fp32"].with_codec(case.codec))
-        question = (case.maker, case.setting, case.powers)
+        question = (case.maker, case.setting, case.powers, case.pipeline)
         if question not in self._references:
             self._references[question] = self._drawn(case, LAYOUTS["fp32"])
         found: dict[float, tuple[np.ndarray, np.ndarray]] = {}
@@ -241,7 +244,7 @@ class Pictures:
     def _drawn(self, case: Case, layout: Layout) -> list[np.ndarray]:
         plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         scene, shown = case.maker.make(case.setting), []
-        with rendering(self._device, PIPELINES["hybrid"], scene, plan) as made:
+        with rendering(self._device, case.pipeline, scene, plan) as made:
             for power in case.powers:
                 made.draw(scene.with_power(power))
                 shown.append(made.image())

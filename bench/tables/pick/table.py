@@ -5,7 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Count, Encodings, Images, Names, Normals, Option, Reading, Scenes, Seed, StorageNames
+from ...options.option import (
+    Count,
+    Effects,
+    Encodings,
+    Images,
+    Names,
+    Normals,
+    Option,
+    Reading,
+    Scenes,
+    Seed,
+    StorageNames,
+)
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -29,6 +41,7 @@ class PickOptions(Reading):
     power: Annotated[
         str, Option("--power", "Specular powers that the scene is rendered with, comma-separated.", in_run=True)
     ] = "47,1024"
+    effects: Effects = None
     family: Annotated[str, Option("--family", "The GPU family that instructions are counted for.")] = "navi21"
     aim: Annotated[
         str,
@@ -97,6 +110,7 @@ COLUMNS = (
     Column("domain", "The normals that the encoding is made for: sphere, hemisphere (z >= 0) or view.", HOW, drops=1),
     Column("lost_percent", "The share of the normals that lie outside that domain.", unit="%", better="less", drops=5),
     Column("left_out", "Why the code does not qualify.", HOW),
+    Column("effects", "Effects in the image.", HOW),
     Column("family", "The GPU family that instructions were counted for.", HOW),
     Column("aim", "What decides.", HOW),
     Column("most_instructions", "The most instructions that were allowed.", HOW),

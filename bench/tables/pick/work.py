@@ -9,12 +9,15 @@ from fnmatch import fnmatchcase
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.gl.device import Device
+from ....gbuffer.pipelines import PIPELINES, Pipeline
+from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...codecs.names import check_twin, codecs_named
 from ...isa.isa import FAMILIES
 from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
+from ...options.effect_names import effects_named, lacking, pipeline_with
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick_one, tell
 from ...output.writing import check_folder
@@ -56,6 +59,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
+    pipeline = _pipeline(options, makers)
     for line in left_out if options.encoding.strip() != "all" else ():
         leave_out(line)
     return [
@@ -67,6 +71,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
                 Setting(seed=options.seed),
                 powers,
                 said | {"normals": normals.name, "scene": maker.name, "against": codec.encoding.name in named},
+                pipeline,
             )
             for codec in fit
             if codec.storage is storage
@@ -77,13 +82,26 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     ]
 
 
+def _pipeline(options: PickOptions, makers: Sequence[SceneMaker]) -> Pipeline:
+    """What renders the images. Raises UsageError for effects that are not there or have nothing to do."""
+    effects, complaints = effects_named(options.effects) if options.effects else [], []
+    found = (lacking(effects, maker.name, maker.make(Setting(seed=options.seed))) for maker in makers)
+    made = pipeline_with(PIPELINES["hybrid"], effects, complaints)
+    complaints += filter(None, found)
+    if not made or complaints:
+        raise UsageError(complaints[0])
+    return made
+
+
 def _question(options: PickOptions) -> Row:
     """What every row says of the question. Raises UsageError for what cannot be asked."""
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
     aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, FAMILIES)
-    return {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+    effects = ",".join(effect.name for effect in effects_named(options.effects)) if options.effects else None
+    asked = {"effects": effects, "aim": aim, "family": family}
+    return asked | {"needs": needs, "most_instructions": options.most_instructions}
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -29,7 +29,7 @@ STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for s
 # Why a device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
 # Codecs are ranked among rows that agree in these.
-SAME = ("scene", "power", "pipeline", "light_buffer", "light_targets", "shadow")
+SAME = ("scene", "power", "effects", "pipeline", "light_buffer", "light_targets", "shadow")
 Row = dict[str, Any]
 
 
@@ -45,6 +45,7 @@ class Case:
         power: specular power of all materials; None for each material's own.
         exposure: in stops; None to measure it of the reference.
         tone_mapping: one of TONE_MAPPINGS.
+        effects: which effects the pipeline has.
     """
 
     pipeline: Pipeline
@@ -56,6 +57,7 @@ class Case:
     power: float | None = None
     exposure: float | None = 0.0
     tone_mapping: str = "none"
+    effects: str | None = None
 
     @property
     def name(self) -> str:
@@ -73,7 +75,7 @@ class Case:
     def coverage(self) -> Case:
         """The same scene in a G-buffer in fp32 with one sample a pixel, which says what is covered."""
         plan = replace(self.reference.plan, samples=1, light_targets=2)
-        return replace(self.reference, pipeline=PIPELINES["hybrid"], plan=plan, asked=1)
+        return replace(self.reference, pipeline=PIPELINES["hybrid"], plan=plan, asked=1, effects=None)
 
     @property
     def reference(self) -> Case:
@@ -169,7 +171,8 @@ class Bench:
 
     def measure(self, case: Case) -> tuple[Row, Drawn | None]:
         """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`."""
-        row = TABLE.empty(STAGES) | _described(case) | {"device": self._device.renderer}
+        stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
+        row = TABLE.empty(stages) | _described(case) | {"device": self._device.renderer}
         times: Row = {}
         try:
             frames = self._frames(
@@ -280,6 +283,7 @@ def _described(case: Case) -> Row:
         "scene": case.maker.name,
         "power": case.power,
         "frames": case.frames,
+        "effects": case.effects,
         "tone_mapping": None if case.tone_mapping == "none" else case.tone_mapping,
         "bytes_per_pixel": None if _is_exact_but_for_normals(case) else bytes_per_pixel(pipeline, plan),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -25,7 +26,14 @@ REFERENCE = "reference"
 def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
     """What the files of a row's reference are called, without what they show."""
     power = [] if row["power"] is None else [f"power{row['power']:g}"]
-    return "-".join([row["scene"], *power, row["pipeline"], *content, *([] if row["shadow"] else ["unshadowed"])])
+    effects = [name_of_file(row["effects"])] if row.get("effects") else []
+    shadow = [] if row["shadow"] else ["unshadowed"]
+    return "-".join([row["scene"], *power, *effects, row["pipeline"], *content, *shadow])
+
+
+def name_of_file(effects: str) -> str:
+    """Names of effects as a part of a file's name."""
+    return re.sub(r"[^\w.]+", "_", effects)
 
 
 def stem(row: Row) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...options.option import (
+    Effects,
     Images,
     Layouts,
     LightBuffers,
@@ -46,6 +47,7 @@ class RenderOptions:
     light_targets: LightTargets = "2"
     scene: Scenes = "gloss"
     power: Powers = None
+    effects: Effects = None
     shadow: Shadow = "on"
     exposure: Annotated[
         str | None,
@@ -83,6 +85,7 @@ COLUMNS = (
     shared.LIGHT_TARGETS,
     shared.SCENE,
     Column("power", "Specular power of every material; empty: each material's own.", KEY, drops=7),
+    Column("effects", "Effects in the image, with the settings that are not as usual.", KEY, drops=16),
     Column("tone_mapping", "How light beyond 1 is shown; empty: it is clipped.", KEY, drops=15),
     shared.SHADOW,
     shared.SCALE,

@@ -22,6 +22,7 @@ from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
+from ...options.effect_names import effects_named, lacking, pipeline_with
 from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
@@ -88,12 +89,18 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     made: list[Case] = []
     complaints: list[str] = []
     powers = [None] if options.power is None else powers_named(options.power)
+    effects = effects_named(options.effects) if options.effects else []
+    named = ",".join(effect.name for effect in effects) or None
+    pipelines = [pipeline_with(one, effects, complaints) for one in pick("pipeline", options.pipeline, PIPELINES)]
     for maker in scenes_named(options.scene):
         exposure = _exposure(options.exposure, maker)
-        for pipeline in pick("pipeline", options.pipeline, PIPELINES):
+        if why := lacking(effects, maker.name, maker.make(setting)):
+            complaints.append(why)
+            continue
+        for pipeline in filter(None, pipelines):
             for plan in suited(device, pipeline, plans, complaints):
                 case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples)
-                case = replace(case, exposure=exposure, tone_mapping=tone_mapping)
+                case = replace(case, exposure=exposure, tone_mapping=tone_mapping, effects=named)
                 made += [replace(case, power=power) for power in powers]
     return what_is_left(made, complaints)
 
@@ -163,7 +170,7 @@ def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
 def _key(case: Case, options: RenderOptions) -> Row:
     key = described(case.pipeline, case.plan, case.setting, case.asked)
     key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
-    key |= {"exposure": case.exposure, "tone_mapping": case.tone_mapping}
+    key |= {"effects": case.effects, "exposure": case.exposure, "tone_mapping": case.tone_mapping}
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
