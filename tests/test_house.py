@@ -26,6 +26,7 @@ from normalbench.encodings.catalogue import (
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
 from normalbench.gbuffer.defines.packings import PACKINGS
+from normalbench.gbuffer.effects.catalogue import EFFECTS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -158,7 +159,7 @@ def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
     there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
-    there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS}
+    there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 

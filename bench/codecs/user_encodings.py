@@ -41,6 +41,7 @@ LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
+TAKEN = "there is an encoding named {} already; rename its two functions"
 
 
 class NoTwinError(Exception):
@@ -141,7 +142,8 @@ def examined(path: Path) -> Examined:
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
     encoding = replace(read_encoding(path, found.fault), domain=found.domain)
-    return Examined(encoding, [*broken, *found.wrong, *of_twin], found.notes, not broken)
+    notes = [*found.notes, *([TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else [])]
+    return Examined(encoding, [*broken, *found.wrong, *of_twin], notes, not broken)
 
 
 def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) -> Encoding:
@@ -149,7 +151,7 @@ def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) 
     if isinstance(encoding, UsageError):
         raise encoding
     if encoding.name in ENCODINGS:
-        raise UsageError(f"{path}: there is an encoding named {encoding.name} already; rename its two functions")
+        raise UsageError(f"{path}: {TAKEN.format(encoding.name)}")
     if encoding.name in taken:
         raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename its two functions")
     return encoding
