@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -191,3 +192,20 @@ def _described(case: Case) -> Row:
         "storage": layout.normal_storage,
         "rounding": layout.rounding,
     }
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by effect, pipeline and scene as they come; normal codes by their bits, the best first, then depth codes."""
+    groups = list(dict.fromkeys(group_of(row) for row in rows))
+
+    def place(row: Row) -> tuple[int, bool, int, bool, float]:
+        apart = row["effect_rms"]
+        bits = row.get("normal_bits") or 0
+        return groups.index(group_of(row)), row["depth"] is not None, bits, apart is None, apart or 0.0
+
+    return sorted(rows, key=place)
+
+
+def group_of(row: Row) -> tuple[str, ...]:
+    """What rows are of that are compared with each other."""
+    return row["effect"], row["pipeline"], row["scene"]

@@ -14,7 +14,7 @@ from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...output.writing import files_of, whole_file
 from ..render.pictures import name_of_file
 from ..table import Row
-from .measure import Drawn
+from .measure import Drawn, in_order
 
 REFERENCE = "reference"
 OWN, IMAGE = "effect", "final"
@@ -56,14 +56,10 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             groups.setdefault(_stem(row, True), []).append(row)
     for name, part in groups.items():
         original = there.get(f"{name}-{REFERENCE}-{OWN}.png")
-        found = [one for rank, row in enumerate(_in_order(part)) if (one := _pictured(there, row, rank))]
+        found = [one for rank, row in enumerate(in_order(part)) if (one := _pictured(there, row, rank))]
         if original and found:
             title = f"{part[0]['effect']} alone, on {part[0]['scene']}"
             yield Subject(title, "image", partial(read_png, original), found)
-
-
-def _in_order(rows: Sequence[Row]) -> list[Row]:
-    return sorted(rows, key=lambda row: (row.get("normal_bits") or 0, -(row.get("effect_psnr_db") or 0.0)))
 
 
 def _pictured(there: Mapping[str, Path], row: Row, rank: int) -> Pictured | None:

@@ -34,7 +34,7 @@ from ...output.writing import check_folder
 from ..charts import drawing, having
 from ..table import Row, Sheet, Step, Tick, Work
 from . import pictures
-from .measure import Bench, Case
+from .measure import Bench, Case, group_of, in_order
 from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
@@ -174,22 +174,6 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         yield [row]
 
 
-def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by effect, pipeline and scene as they come; normal codes by their bits, the best first, then depth codes."""
-    groups = list(dict.fromkeys(_group(row) for row in rows))
-
-    def place(row: Row) -> tuple[int, bool, int, bool, float]:
-        apart = row["effect_rms"]
-        bits = row["normal_bits"] or 0
-        return groups.index(_group(row)), row["depth"] is not None, bits, apart is None, apart or 0.0
-
-    return sorted(rows, key=place)
-
-
-def _group(row: Row) -> tuple[str, ...]:
-    return row["effect"], row["pipeline"], row["scene"]
-
-
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["invalid"]:
@@ -198,8 +182,8 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "method_rms", "psnr_db")
-    for effect, pipeline, scene in dict.fromkeys(_group(row) for row in rows):
-        part = [row for row in in_order(rows) if _group(row) == (effect, pipeline, scene)]
+    for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
+        part = [row for row in in_order(rows) if group_of(row) == (effect, pipeline, scene)]
         shown = [{name: row[name] for name in names} for row in part if row["effect_rms"] is not None]
         if shown:
             yield Sheet(f"{effect} on {scene} by {pipeline}", shown, keys={"effect": effect, "scene": scene})

@@ -1,0 +1,170 @@
+"""`normalbench effects`: rows, their order, pictures, effects in other tables, and what it says of bad input."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.metrics.angles import angles_deg
+from normalbench.bench.metrics.meter import psnr_db
+from normalbench.bench.options.effect_names import effects_named
+from normalbench.bench.results.measuring import Nothing, asked, measured
+from normalbench.bench.tables.effects.measure import in_order
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
+
+pytestmark = pytest.mark.usefixtures("gl")
+EFFECT = "lpv:iterations=2:cascades=1:cells=8:texels=32"
+SIZE = (96, 72)
+SMALL = ("--effect", EFFECT, "--size", "96x72", "--lights", "2")
+QUICK = ("effects", *SMALL, "--format", "json")
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    return tmp_path_factory.mktemp("pictures")
+
+
+@pytest.fixture(scope="module")
+def rows(pictures):
+    """Two normal codes, a depth code and a layout that is exact."""
+    table = TABLES["effects"]
+    options = {"effect": EFFECT, "size": "96x72", "lights": 2, "repeats": 1}
+    options |= {"encoding": "octahedral", "storage": "rg8,rgb10a2", "depth": "linear/packed16", "layout": "fp32"}
+    ask = asked(table, table.options(**options), table.outputs(images=pictures))
+    return measured(ask, Nothing()).rows
+
+
+def drawn(gl, layout):
+    """The effect's own image, the normals and where there is a surface, by the renderer alone."""
+    effect = effects_named(EFFECT)[0]
+    pipeline = PIPELINES["hybrid"].with_effect(effect.passes())
+    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+    with rendering(gl, pipeline, SCENES["room"].make(Setting(lights=2)), plan) as made:
+        made.draw()
+        position, direction, *_ = made.gbuffer()
+        return made.read(effect.effect.result)[0][..., :3], direction[..., :3], position[..., 2] != 0
+
+
+def test_figures_are_those_of_the_two_images(gl, rows):
+    """Computed anew from the renderer's buffers: PSNR by the brightest pixel, RMS, mean, maximum, slope and angles."""
+    row = next(row for row in rows if row["storage"] == "rg8")
+    own, normals, _ = drawn(gl, LAYOUTS["fp32"].with_codec(codecs_named("octahedral", "rg8", "nearest")[0]))
+    exact, right, covered = drawn(gl, LAYOUTS["fp32"])
+    apart = np.abs(own[covered].astype(np.float64) - exact[covered])
+    angles = angles_deg(right[covered], normals[covered])
+    expected = {
+        "effect_rms": np.sqrt(np.mean(apart**2)),
+        "effect_mean": apart.mean(),
+        "effect_max": apart.max(),
+        "effect_psnr_db": psnr_db(np.mean(apart**2) / exact[covered].max() ** 2),
+        "normal_mean_deg": angles.mean(),
+        "normal_max_deg": angles.max(),
+        "slope": apart.mean() / angles.mean(),
+    }
+    assert {name: row[name] for name in expected} == pytest.approx(expected, rel=1e-6)
+    assert covered.all() and 0.1 < angles.mean() < 1
+
+
+def test_an_exact_layout_loses_nothing_and_more_bits_lose_less(rows):
+    by = {row["depth"] or row["storage"]: row for row in rows}
+    exact = by["rgba32f"]
+    assert (exact["effect_rms"], exact["normal_max_deg"], exact["exact"]) == (0, 0, True), exact
+    assert exact["slope"] is None and exact["psnr_db"] == float("inf")
+    apart = by["rg8"]["effect_rms"] / by["rgb10a2"]["effect_rms"]
+    assert 3 < apart < 6, f"two more bits a number make an error {apart:.2f} times smaller; about 4 is expected"
+    depth = by["linear/packed16"]
+    assert depth["normal_max_deg"] == 0 and 0 < depth["effect_rms"] < by["rg8"]["effect_rms"]
+    assert (depth["encoding"], depth["storage"], depth["normal_bits"]) == (None, None, None)
+
+
+def test_times_are_of_the_effects_passes(rows):
+    names = [stage.name for stage in effects_named(EFFECT)[0].passes()]
+    for row in rows:
+        assert row["ms_effect"] == pytest.approx(sum(row[f"ms_{name}"] for name in names))
+        assert 0 < row["ms_effect"] < row["ms_frame"] and row["clock"]
+
+
+def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
+    def row(effect, bits, apart, depth=None):
+        about = {"effect": effect, "pipeline": "hybrid", "scene": "room", "depth": depth}
+        return about | {"normal_bits": bits, "effect_rms": apart}
+
+    made = [row("b", 20, 2), row("b", None, 1, "window/r32f"), row("b", 16, 4), row("a", 16, 1), row("b", 16, 3)]
+    assert in_order(made) == [made[4], made[2], made[0], made[1], made[3]]
+
+
+def test_pictures_show_the_effect_alone(pictures, rows):
+    """Bright and dark; those of a coarser code differ; the page finds all of them."""
+    files = {path.name: np.asarray(Image.open(path)) for path in pictures.glob("*.png")}
+    own = {name: pixels for name, pixels in files.items() if name.endswith("-effect.png")}
+    assert len(own) == 5 and len(files) == 10, sorted(files)
+    reference = next(pixels for name, pixels in own.items() if "reference" in name)
+    assert reference.max() > 200 and reference.min() < 60 and reference.shape == (72, 96, 3)
+    assert {name for name, pixels in own.items() if np.array_equal(pixels, reference)} >= {
+        name for name in own if "rgba32f" in name
+    }
+    (subject,) = TABLES["effects"].work.subjects(pictures, rows)
+    assert [one.label for one in subject.codecs][-1] == "depth linear/packed16" and len(subject.codecs) == 4
+    assert np.array_equal(subject.original(), reference)
+    assert all(one.load().final.shape == (72, 96, 3) for one in subject.codecs)
+
+
+def test_an_effect_lights_the_image_of_other_tables(run):
+    """`render` names it in its rows, and the image is another one."""
+    words = ("render", "--scene", "room", "--size", "96x72", "--lights", "2", "--repeats", "0", "--encoding", "xy")
+    images = []
+    for more in ((), ("--effects", EFFECT)):
+        status, out, _ = run(*words, *more, "--format", "json")
+        images.append(json.loads(out)[0])
+        assert status == 0
+    assert [row["effects"] for row in images] == [None, EFFECT]
+    assert images[0]["psnr_db"] != images[1]["psnr_db"]
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (("--effect", "lvp"), "unknown effect 'lvp'; known: all, "),
+        (("--effect", "lpv:steps=2"), "effect lpv has no setting 'steps'; known: iterations"),
+        (("--effect", "lpv:iterations=9"), "effect lpv: iterations=9 is not a whole number from 0 to 8"),
+        (
+            ("--effect", "lpv:iterations"),
+            "'iterations' is not a setting; write it as name=value",
+        ),
+        (("--effect", "lpv:cells=8:cells=16"), "effect lpv:cells=8:cells=16: cells is set twice"),
+        (("--effect", ""), "no effect named; known: all, "),
+        (("--pipeline", "forward"), "pipeline forward: pass "),
+        (("--depth", "linear"), "--depth linear: write a code and its storage, such as linear/packed16, or none"),
+        (("--depth", "linear/packed9"), "unknown depth storage 'packed9'"),
+        (("--depth", "metres/r32f"), "unknown depth 'metres'"),
+        (("--depth", "linear_sign/packed24"), "does not suit xyz"),
+        (("--encoding", "xyz", "--storage", "rg8", "--depth", "none"), "3 components, but RG8 has 2 channels"),
+        (("--layout", "normal_depth", "--depth", "none"), "hybrid needs albedo.b"),
+        (("--rays", "-1"), "--rays -1: from 0"),
+        (("--repeats", "-1"), "--repeats -1: from 0"),
+        (("--size", "0x5"), "WIDTHxHEIGHT"),
+        (("--scene", "sponza"), "unknown scene 'sponza'"),
+        (("--images", "/proc/none"), "cannot write to /proc/none"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    effect = () if "--effect" in words else ("--effect", "lpv")
+    status, out, err = run("effects", *effect, *words)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("table", ["render", "pick"])
+def test_other_tables_refuse_an_effect_that_is_not_there(run, table):
+    status, out, err = run(table, "--effects", "lpv,glow")
+    assert (status, out) == (2, "") and "unknown effect 'glow'; known: all, " in err and err.count("\n") == 1, err
