@@ -18,7 +18,10 @@ from types import MappingProxyType
 from .effect import Effect
 
 NAMES: tuple[str, ...] = (
-    # The name of an effect's module, in quotes.
+    "ssao",
+    "hbao",
+    "sao",
+    "gtao",
     "lpv",
 )
 

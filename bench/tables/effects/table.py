@@ -29,7 +29,7 @@ class EffectsOptions:
         str | None,
         Option("--encoding", "Encodings or files, each in an exact layout; comma-separated, or all.", True, True),
     ] = None
-    storage: Annotated[str, Option("--storage", "And their storages.", in_run=True)] = "rg8"
+    storage: Annotated[str, Option("--storage", "And their storages.", in_run=True)] = "rgba8"
     rounding: Annotated[str, Option("--rounding", "And how those round.", in_run=True)] = "nearest"
     depth: Annotated[
         str | None,

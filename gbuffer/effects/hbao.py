@@ -1,0 +1,37 @@
+"""Horizon-based ambient occlusion as shipped: every tap above the horizon occludes by its angle and distance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..frame.contract import Pass
+from .effect import Number
+from .occlusion.passes import RADIUS, SEED, SIZE, VISIBILITY, AmbientOcclusion, passes
+
+
+def _passes(size: str, radius: float, directions: int, steps: int, bias: float, seed: int) -> tuple[Pass, ...]:
+    macros = {"RADIUS": radius, "DIRECTIONS": directions, "STEPS": steps, "BIAS": bias, "SEED": seed}
+    return passes("hbao.frag", size, False, **macros)
+
+
+def _falls_off(distance: np.ndarray) -> np.ndarray:
+    return np.maximum(1 - distance**2, 0)
+
+
+SETTINGS = {
+    "size": SIZE,
+    "radius": RADIUS,
+    "directions": Number(8, 1, 64, "Directions on the screen."),
+    "steps": Number(4, 1, 64, "Taps in each direction."),
+    "bias": Number(0.1, 0.0, 0.9, "Sine of the angle over the tangent plane below which a tap does not occlude."),
+    "seed": SEED,
+}
+EFFECT = AmbientOcclusion(
+    "hbao",
+    "horizon-based ambient occlusion, as shipped in HBAO+",
+    "Bavoil and Sainz 2008; NVIDIA's gl_ssao sample",
+    VISIBILITY,
+    _passes,
+    SETTINGS,
+    falls_off=_falls_off,
+)

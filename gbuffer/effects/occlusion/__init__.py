@@ -1,0 +1,1 @@
+"""Ambient occlusion: what its methods share."""

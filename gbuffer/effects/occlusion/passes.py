@@ -1,0 +1,94 @@
+"""The passes of a method of ambient occlusion: depths for its taps, the method, and at half size the upsampling.
+
+All methods write the one resource VISIBILITY, and their passes have the same names, so that a pipeline takes one method
+and its times can be compared with another's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ...frame.canvas import Canvas
+from ...frame.contract import Pass, Run
+from ...frame.resource import SURFACES, Resource
+from ...frame.resources import DEPTH, SURFACE
+from ..effect import Choice, Effect, Number
+
+# The share of ambient light that arrives at a pixel of the G-buffer; 1 on the background. `indirect.glsl` reads it.
+VISIBILITY = Resource("visibility", "r32f", follows=SURFACES)
+HALF_VISIBILITY = Resource("half_visibility", "r32f", scale=0.5, follows=SURFACES)
+# The mean direction from which light arrives, view space, unit; zero on the background.
+BENT_NORMAL = Resource("bent_normal", "rgba32f", follows=SURFACES)
+HALF_BENT_NORMAL = Resource("half_bent_normal", "rgba32f", scale=0.5, follows=SURFACES)
+# Depth in metres whatever the layout keeps; 0 where nothing is covered. Many taps read it, few read a normal.
+OCCLUDERS = Resource("occluder_depth", "r32f", follows=SURFACES)
+
+SIZE = Choice(("full", "half"), "Size of the buffer that it is computed in, to the G-buffer's.")
+RADIUS = Number(1.0, 0.01, 100.0, "Metres from which on nothing occludes.")
+SEED = Number(0, 0, 65535, "What the noise of each pixel starts from.")
+
+CONSTANTS: Mapping[str, float] = {
+    "PI": math.pi,
+    "PCG_FACTOR": 1664525,  # of the linear congruential generator of pcg3d (Jarzynski and Olano 2020, listing 7)
+    "PCG_SUMMAND": 1013904223,
+    "NORMAL_POWER": 32.0,  # how alike normals must be for upsampling: half the weight at 12 degrees
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class AmbientOcclusion(Effect):
+    """A method of ambient occlusion.
+
+    Attributes:
+        falls_off: how much of the light from a direction is lost to a surface at a distance, both in units of the
+            radius: distances of any shape, 0 or more, to numbers from 0 to 1; 0 from 1 on. A ray caster that is to
+            judge the method weighs by it.
+    """
+
+    falls_off: Callable[[np.ndarray], np.ndarray]
+
+
+def passes(shader: str, size: str, bends: bool, **macros: float) -> tuple[Pass, ...]:
+    """The passes of one method.
+
+    Args:
+        shader: the method's, whose targets are visibility and, if it `bends`, the bent normal.
+        size: "full" or "half".
+        macros: what the shader is given on top of CONSTANTS.
+    """
+    whole = (VISIBILITY, BENT_NORMAL) if bends else (VISIBILITY,)
+    half = (HALF_VISIBILITY, HALF_BENT_NORMAL) if bends else (HALF_VISIBILITY,)
+    # What the passes behind may read once it is all there.
+    tells = {"HAS_VISIBILITY": 1, **({"HAS_BENT_NORMAL": 1} if bends else {})}
+    depths = _pass("occluder_depth", (*SURFACE, DEPTH), (OCCLUDERS,), "occluder_depth.frag", {})
+    reads = (*SURFACE, OCCLUDERS)
+    if size == SIZE.words[0]:
+        return depths, _pass("ambient_occlusion", reads, whole, shader, macros, tells)
+    upsampled = {"BENDS": int(bends)}
+    return (
+        depths,
+        _pass("ambient_occlusion", reads, half, shader, macros),
+        _pass("ambient_occlusion_upsampling", (*reads, *half), whole, "upsample.frag", upsampled, tells),
+    )
+
+
+def _pass(
+    name: str,
+    reads: tuple[Resource, ...],
+    writes: tuple[Resource, ...],
+    shader: str,
+    macros: Mapping[str, float],
+    tells: Mapping[str, int] | None = None,
+) -> Pass:
+    build = partial(_build, shader, writes, {**CONSTANTS, **macros})
+    return Pass(name, reads, writes, build, after=("linear_depth",), tells=tells or {})
+
+
+def _build(shader: str, writes: tuple[Resource, ...], macros: Mapping[str, Any], canvas: Canvas) -> Run:
+    return canvas.over(shader, *writes, **macros)
