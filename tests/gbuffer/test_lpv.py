@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import lpv_twin as twin
 import numpy as np
@@ -141,7 +142,7 @@ AMPLIFIER, STEPS = 1.0, 6
 
 def points_of(found: Lit, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of the last map: world positions and normals where a surface is, and which texels those are."""
-    flux, normal, position = found.last
+    _, normal, position = found.last
     there, to_world = position[:, 3] > 0, np.linalg.inv(matrix)
     world = position[there, :3] @ to_world[:3, :3].T + to_world[:3, 3]
     return world, normal[there, :3] @ to_world[:3, :3].T, there
@@ -172,7 +173,10 @@ def chain(gl):
     sights = [(sun_sight if light.kind == "sun" else lambda light, *_: spot_sight(light)) for light in SENDERS]
     sights = [make(light, cascade, box, TEXELS) for make, light in zip(sights, SENDERS, strict=True)]
     # The camera's map is left where no light has one of its own.
-    views = [(ROOM.view, only(ROOM, lamps(ROOM)[-1])), *((s, only(ROOM, x)) for s, x in zip(sights, SENDERS, strict=True))]
+    views = [
+        (ROOM.view, only(ROOM, lamps(ROOM)[-1])),
+        *((s, only(ROOM, x)) for s, x in zip(sights, SENDERS, strict=True)),
+    ]
     for sight, scene in views:
         found = draw(gl, scene, **settings)
         world, normals, there = points_of(found, sight.matrix())
@@ -219,7 +223,9 @@ def test_the_light_of_each_pixel_agrees_with_numpy(chain):
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid", "prepass"])
 def test_a_pipeline_adds_it_to_the_ambient_light(gl, pipeline):
     """The image is the one without, plus albedo x `indirect`, of what no glass covers: 100 dB."""
-    scene = replace(ROOM, parts=tuple(p for p in ROOM.parts if not any(ROOM.materials[i].alpha < 1 for i in p.materials)))
+    scene = replace(
+        ROOM, parts=tuple(p for p in ROOM.parts if not any(ROOM.materials[i].alpha < 1 for i in p.materials))
+    )
     with rendering(gl, PIPELINES[pipeline], scene, plan_of(pipeline)) as r:
         r.draw()
         without = r.image()
@@ -250,18 +256,20 @@ def test_less_than_a_cell_moves_nothing(gl):
         scene = moved(VIEWED, (quarter * CELL / 4, 0.0, 0.0))
         origins.append(cascades_of(scene.view, box, CELL, CELLS, 1)[0].origin)
         fields.append(draw(gl, scene, **STILL).light)
-    moves = [now[0] - before[0] for before, now in zip(origins, origins[1:], strict=False)]
+    moves = [now[0] - before[0] for before, now in pairwise(origins)]
     assert sorted(moves) == [0, 0, 0, 1], origins
     for number, move in enumerate(moves):
         if not move:
             differ = np.mean(fields[number] != fields[number + 1])
-            assert fields[number].max() > 0 and differ == 0, f"{differ:.1%} of the numbers differ after quarter {number + 1}"
+            assert fields[number].max() > 0 and differ == 0, (
+                f"{differ:.1%} of the numbers differ after quarter {number + 1}"
+            )
 
 
 @pytest.mark.parametrize("by", [(1, 0, 0), (-2, 0, 0), (1, 0, 1)], ids=str)
 def test_whole_cells_move_the_volumes_over_the_same_light(gl, by):
     """Cells that both volumes hold, farther from the ends that moved than light goes, have the same light in the world:
-    70 dB over the brightest. Texels of the sun's map stay where they are; rounding moves a VPL now and then."""
+    100 dB over the brightest. Texels of the sun's map stay where they are, and so no VPL changes its cell."""
     views = [moved(VIEWED, tuple(np.array(way) * CELL)) for way in ((0, 0, 0), by)]
     first, second = (draw(gl, scene, **STILL).light[0] for scene in views)
     ends = [STILL["iterations"] + abs(way) if way else 0 for way in by]
@@ -269,7 +277,27 @@ def test_whole_cells_move_the_volumes_over_the_same_light(gl, by):
     here, there = first[inner], np.roll(second, by, axis=(0, 1, 2))[inner]
     assert np.mean(here[..., 0, :] > 0) > 0.3, "hardly any light"
     found = psnr(here - there, np.abs(here).max())
-    assert found >= 70, f"{found:.1f} dB; {np.mean(here != there):.1%} of the numbers differ"
+    assert found >= 100, f"{found:.1f} dB; {np.mean(here != there):.1%} of the numbers differ"
+
+
+def test_half_a_cell_is_hardly_seen(gl):
+    """On surfaces that a volume holds before and after, with the camera's own surfels blocking light: light changes by
+    0.2 % of the brightest (RMS) and 2 % at most; measured 0.09 and 1.3, most of it at the ends of the volume."""
+    settings, to_world = STILL | {"amplifier": 1.0}, np.linalg.inv(VIEWED.view.matrix())
+    box, found = box_of(VIEWED), []
+    first = draw(gl, VIEWED, **settings)
+    points, normals = (data[..., :3].reshape(-1, 3) @ to_world[:3, :3].T for data in first.gbuffer[:2])
+    points = points + to_world[:3, 3]
+    inside = np.ones(len(points), bool)
+    for by in (0.0, CELL / 2):
+        scene = moved(VIEWED, (by, 0.0, 0.0))
+        place = points / CELL - cascades_of(scene.view, box, CELL, CELLS, 1)[0].origin
+        inside &= np.all((place > 1) & (place < CELLS - 1), axis=1)
+        found.append(twin.looked_up(draw(gl, scene, **settings).light[0], place, normals, CELL))
+    assert inside.mean() > 0.2, f"{inside.mean():.0%} of the pixels lie inside"
+    change = np.abs(found[0] - found[1])[inside] / found[0][inside].max()
+    rms, most = np.sqrt(np.mean(change**2)), change.max()
+    assert 0 < rms < 0.002 and most < 0.02, f"{rms:.3%} RMS, {most:.2%} at most"
 
 
 def test_a_scene_fits_into_the_coarsest_cascade():
@@ -285,7 +313,7 @@ def test_a_scene_fits_into_the_coarsest_cascade():
 @pytest.mark.parametrize("blend", [0.0, 0.2, 0.5])
 def test_cascades_meet_without_a_seam_where_their_light_is_the_same(gl, blend):
     """Volumes of the same radiance everywhere, each in its own cells, of 8 and 16 metres in a room of 12: one
-    brightness on all surfaces, I = c_0 Y_00 and L = I / (s / 2)^2, to 1e-5, whatever the share over which they blend."""
+    brightness on all surfaces, I = c_0 Y_00 and L = I / (s / 2)^2, to 1e-5, however wide they blend."""
     volumes = Volumes(CELLS, 2, "rgba32f", TEXELS)
     made = PIPELINES["deferred"].with_effect((uniform(volumes, (1.0, 4.0)), lookup(volumes, 8.0, blend)))
     scene = replace(VIEWED, materials=tuple(replace(m, kind="general") for m in VIEWED.materials))

@@ -21,7 +21,9 @@ SETTINGS = {
     ),
     "amplifier": Number(1.0, 0.0, 4.0, "Times what surfaces block of the light that passes; 0 blocks nothing."),
     "blend": Number(0.2, 0.0, 0.5, "The outer share of a volume over which the next coarser one takes over."),
-    "format": Choice(tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."),
+    "format": Choice(
+        tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."
+    ),
     "texels": Number(128, 16, 1024, "Texels on a side of each reflective shadow map."),
 }
 

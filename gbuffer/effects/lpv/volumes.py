@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...frame.resource import DEPTH_STENCIL, SURFACES, Resource
-from .harmonics import CONSTANTS
-from .packed import PACKED_CONSTANTS
+from .lpv_harmonics import CONSTANTS
+from .lpv_packed import PACKED_CONSTANTS
 
 CHANNELS = ("red", "green", "blue")
 # What a codec does to an image is compared here: light that arrives from other surfaces, times 1 / pi.
@@ -15,6 +15,8 @@ INDIRECT = Resource("indirect", "rgba32f", follows=SURFACES)
 # Half a cell, less a thousandth: a wall right between two planes of the lattice would else fall to either side of it
 # by rounding, texel by texel. Walls at round numbers do lie there.
 SHIFT = 0.5 - 2.0**-10
+# Farther than this part of the far plane is no surface; a stored depth is off by less.
+COVERED_SHARE = 0.999
 # Formats by the setting's words: of the volumes, and of what is added up by blending. Packed codes do not add.
 FORMATS: Mapping[str, tuple[str, str]] = {
     "rgba32f": ("rgba32f", "rgba32f"),
@@ -75,9 +77,10 @@ class Volumes:
 
     def defines(self, cell: float) -> dict[str, object]:
         """Macros; `cell` is the finest cascade's, in metres."""
+        marks = {"SHIFT": SHIFT, "COVERED_SHARE": COVERED_SHARE}
         own = {"CELLS": self.cells, "CORNERS": self.corners, "CASCADES": self.cascades, "TEXELS": self.texels}
-        packs = {"PACKS": int(self.format == "shared"), "SHIFT": SHIFT, "CELL": float(cell)}
-        return {**CONSTANTS, **PACKED_CONSTANTS, **own, **packs}
+        packs = {"PACKS": int(self.format == "shared"), "CELL": float(cell)}
+        return {**CONSTANTS, **PACKED_CONSTANTS, **marks, **own, **packs}
 
     def _map(self, name: str, form: str) -> Resource:
         return Resource(name, form, (self.texels, self.texels))
