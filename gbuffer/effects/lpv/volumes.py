@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from ...frame.resource import DEPTH_STENCIL, SURFACES, Resource
 from .lpv_harmonics import CONSTANTS
@@ -17,12 +18,10 @@ INDIRECT = Resource("indirect", "rgba32f", follows=SURFACES)
 SHIFT = 0.5 - 2.0**-10
 # Farther than this part of the far plane is no surface; a stored depth is off by less.
 COVERED_SHARE = 0.999
-# Formats by the setting's words: of the volumes, and of what is added up by blending. Packed codes do not add.
-FORMATS: Mapping[str, tuple[str, str]] = {
-    "rgba32f": ("rgba32f", "rgba32f"),
-    "rgba16f": ("rgba16f", "rgba16f"),
-    "shared": ("rgba8", "rgba32f"),
-}
+# What volumes can be kept in, and in which format of texels.
+FORMATS: Mapping[str, str] = MappingProxyType({"rgba32f": "rgba32f", "rgba16f": "rgba16f", "shared": "rgba8"})
+# What VPLs and surfels can be added up in by blending. Packed codes do not add.
+SUMS = ("rgba32f", "rgba16f")
 
 
 @dataclass(frozen=True)
@@ -31,13 +30,15 @@ class Volumes:
 
     Attributes:
         cells, cascades: their numbers.
-        format: a word of FORMATS.
+        format: of the volumes, a word of FORMATS.
+        sums: of what is added up before, one of SUMS.
         texels: of a reflective shadow map, on a side.
     """
 
     cells: int
     cascades: int
     format: str
+    sums: str
     texels: int
 
     @property
@@ -86,8 +87,8 @@ class Volumes:
         return Resource(name, form, (self.texels, self.texels))
 
     def _flat(self, name: str, side: int) -> Resource:
-        return Resource(name, FORMATS[self.format][1], (side * side, side * self.cascades))
+        return Resource(name, self.sums, (side * side, side * self.cascades))
 
     def _volume(self, name: str) -> Resource:
         size = (self.cells, self.cells)
-        return Resource(name, FORMATS[self.format][0], size, copies=2, depth=self.cells * self.cascades)
+        return Resource(name, FORMATS[self.format], size, copies=2, depth=self.cells * self.cascades)
