@@ -19,6 +19,7 @@ from normalbench.gbuffer.effects.lpv.volumes import INDIRECT, Volumes
 from normalbench.gbuffer.frame.contract import Pass
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.gl.device import FormatError
+from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
@@ -33,33 +34,37 @@ LPV = EFFECTS["lpv"]
 @dataclass(frozen=True)
 class Lit:
     """A frame with light from volumes, read back: images with row 0 on top; the light of each cascade as the twin has
-    it; what the last reflective shadow map held as flux, normal and position, (count, 4)."""
+    it, and what blocks it in the finest; the sum of all injected coefficients; what the last reflective shadow map held
+    as flux, normal and position, (count, 4)."""
 
     image: np.ndarray
     indirect: np.ndarray
     gbuffer: list[np.ndarray]
     light: np.ndarray
     injected: np.ndarray
+    blockers: np.ndarray
     last: tuple[np.ndarray, ...]
 
 
-def plan_of(pipeline: str) -> Plan:
+def plan_of(pipeline: str, layout=FP32) -> Plan:
     targets = max(PIPELINES[pipeline].light_targets)
-    return Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], targets, True, 1.0)
+    return Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, True, 1.0)
 
 
-def draw(gl, scene: Scene, pipeline="deferred", **given) -> Lit:
+def draw(gl, scene: Scene, pipeline="deferred", layout=FP32, **given) -> Lit:
     effect = chosen(LPV, {name: str(value) for name, value in {**SMALL, **given}.items()})
     values = dict(effect.values)
     volumes = Volumes(*(values[name] for name in ("cells", "cascades", "format", "sums", "texels")))
     made = PIPELINES[pipeline].with_effect(effect.passes())
-    with rendering(gl, made, scene, plan_of(pipeline)) as r:
+    with rendering(gl, made, scene, plan_of(pipeline, layout)) as r:
         r.draw()
         light = [read(r, resource).reshape(-1, *(volumes.cells,) * 3, 4) for resource in volumes.light]
         injected = np.stack([read(r, resource).reshape(-1, 4).sum(axis=0) for resource in volumes.injected], axis=-1)
+        side = volumes.corners
+        blockers = read(r, volumes.blockers).reshape(-1, side, side, side, 4)[0].transpose(2, 0, 1, 3)
         last = tuple(read(r, resource).reshape(-1, 4) for resource in volumes.reflective)
         found = np.stack(light, axis=-1).transpose(0, 3, 2, 1, 4, 5)
-        return Lit(r.image(), r.read(INDIRECT)[0][..., :3], r.gbuffer(), found, injected, last)
+        return Lit(r.image(), r.read(INDIRECT)[0][..., :3], r.gbuffer(), found, injected, blockers, last)
 
 
 def read(rendered, resource) -> np.ndarray:
@@ -113,6 +118,58 @@ def test_a_spot_sends_in_what_the_floor_reflects(gl):
     t = np.clip((cosine - outer) / (inner - outer), 0, 1)
     integral = np.sum(window / (distance2 + 1) * t * t * (3 - 2 * t) * cosine * 2 * np.pi * r) * ring
     check_flux(found, np.array(spot.colour) * FLOOR_ALBEDO * integral, 0.01)
+
+
+def test_each_cascade_has_the_suns_light(gl):
+    """Three volumes that hold the floor have its flux, each from a map of its own: to 2 %, as pixels cover it."""
+    scene = floor(Light("sun", (2.0, 1.0, 0.5), direction=(0.6, -0.8, 0.0)))
+    found = draw(gl, scene, cascades=3, extent=8.0, iterations=0, texels=256)
+    expected = np.array([2.0, 1.0, 0.5]) * FLOOR_ALBEDO * 24 * 0.8
+    ratios = [twin.flux(light) / expected for light in found.light]
+    assert np.abs(np.array(ratios) - 1).max() < 0.02, ratios
+
+
+def test_the_background_blocks_nothing(gl):
+    """A cleared G-buffer decodes to some normal at the far plane, 20 metres below the eye: no surfel lies there, nor
+    anywhere but at the floor's height."""
+    lamp = Light("point", (1.0, 1.0, 1.0), (0.0, 2.0, 0.0), 3.0)
+    found = draw(gl, floor(lamp), layout=LAYOUTS["hybrid"], cascades=1, extent=64.0, iterations=0)
+    height = found.blockers[..., 0].sum(axis=(0, 2))
+    assert np.count_nonzero(height) == 1, f"surfels in the layers {np.flatnonzero(height)}"
+
+
+def test_the_back_of_a_sheet_sends_in_nothing(gl):
+    """A floor with two sides, lit from below, is in the map; but the renderer lights no back: it reflects nothing."""
+    scene = floor(Light("sun", (1.0, 1.0, 1.0), direction=(0.0, 1.0, 0.0)))
+    found = draw(gl, replace(scene, parts=(replace(FLOOR, two_sided=True),)), cascades=1)
+    flux, _, position = found.last
+    assert np.mean(position[:, 3]) > 0.3 and np.all(flux[:, :3] == 0), f"{flux[:, :3].sum(axis=0)}"
+
+
+def test_hair_reflects_along_its_surface_and_not_its_strands(gl):
+    """What the G-buffer keeps of hair is the strand: the map has the normal, (0, 1, 0) all over a floor of hair."""
+    sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.6, -0.8, 0.0))
+    scene = floor(sun)
+    scene = replace(scene, materials=tuple(replace(material, kind="hair") for material in scene.materials))
+    found = draw(gl, scene, cascades=1)
+    box = box_of(scene)
+    cascade = cascades_of(scene.view, box, finest_cell(box, 0.0, CELLS, 1), CELLS, 1)[0]
+    _, normals, there = points_of(found, sun_sight(sun, cascade, box, TEXELS).matrix())
+    assert there.sum() > 500
+    worst = np.abs(normals - [0, 1, 0]).max()
+    assert worst < 1e-5, f"{worst:.3g}"
+
+
+def test_a_floor_between_two_planes_of_the_lattice_lies_on_one_side(gl):
+    """Half a cell up, where rounding could send each texel to either side: all light is in one layer of cells, and
+    all that blocks it at the corners below that layer."""
+    cell = 8.0 / CELLS
+    raised = replace(FLOOR, models=placed((0, cell / 2, 0)))
+    scene = replace(floor(Light("sun", (1.0, 1.0, 1.0), direction=(0.6, -0.8, 0.0))), parts=(raised,))
+    found = draw(gl, scene, cascades=1, extent=8.0, iterations=0)
+    layers = np.flatnonzero(found.light[0][..., 0, 0].sum(axis=(0, 2)))
+    corners = np.flatnonzero(found.blockers[..., 0].sum(axis=(0, 2)))
+    assert len(layers) == 1 and np.array_equal(layers, corners), f"light in {layers}, blockers at {corners}"
 
 
 def check_flux(found: Lit, expected: np.ndarray, share: float) -> None:
