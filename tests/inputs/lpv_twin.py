@@ -31,7 +31,7 @@ def lobe(n) -> np.ndarray:
 
 
 def square_angle(distance: float, half: float = 0.5) -> float:
-    """Of a square seen along its axis: the sum of its four quarters, each asin(sin a sin b) for the angles to its edges."""
+    """Of a square seen along its axis: four quarters, each asin(sin a sin b) for the angles to its edges."""
     sine = half / np.hypot(half, distance)
     return 4 * float(np.arcsin(sine * sine))
 

@@ -10,7 +10,7 @@ from ...frame.contract import Pass
 from ...scenes.scene import Scene
 from ..effect import Choice, Effect, Number
 from .passes import inject, lookup, propagate
-from .volumes import FORMATS, INDIRECT, Volumes
+from .volumes import FORMATS, INDIRECT, SUMS, Volumes
 
 SETTINGS = {
     "iterations": Number(8, 0, 8, "Steps of propagation; each carries light one cell further."),
@@ -21,7 +21,10 @@ SETTINGS = {
     ),
     "amplifier": Number(1.0, 0.0, 4.0, "Times what surfaces block of the light that passes; 0 blocks nothing."),
     "blend": Number(0.2, 0.0, 0.5, "The outer share of a volume over which the next coarser one takes over."),
-    "format": Choice(tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."),
+    "format": Choice(
+        tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."
+    ),
+    "sums": Choice(SUMS, "What light and blockers of a cell are added up in before."),
     "texels": Number(128, 16, 1024, "Texels on a side of each reflective shadow map."),
 }
 
@@ -34,9 +37,10 @@ def _passes(
     amplifier: float,
     blend: float,
     format: str,
+    sums: str,
     texels: int,
 ) -> tuple[Pass, ...]:
-    volumes = Volumes(cells, cascades, format, texels)
+    volumes = Volumes(cells, cascades, format, sums, texels)
     return (
         inject(volumes, extent, amplifier > 0),
         propagate(volumes, iterations, amplifier),

@@ -37,7 +37,8 @@ class Cascade:
     @property
     def box(self) -> np.ndarray:
         """Its low and its high corner in the world, (2, 3)."""
-        return (np.array(self.origin) + [[0], [self.cells]]) * self.cell
+        low = np.array(self.origin, float)
+        return np.stack([low, low + self.cells]) * self.cell
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 // A texel of what a light or the camera sees as a surfel that blocks light, at the nearest corner of the cells.
 #include "vec.glsl"
 #include "lpv_places.glsl"
-#include "lpv_texel.glsl"
 #include "lpv_harmonics.glsl"
 
 uniform sampler2D normal_texels, position_texels;

@@ -1,4 +1,4 @@
-// Two bands of spherical harmonics, in the order Y_00, Y_1-1, Y_10, Y_11. Constants come from harmonics.py.
+// Two bands of spherical harmonics, in the order Y_00, Y_1-1, Y_10, Y_11. Constants come from lpv_harmonics.py.
 
 vec4 harmonics(vec3 w) { return vec4(SH0, -SH1 * w.y, SH1 * w.z, -SH1 * w.x); }
 

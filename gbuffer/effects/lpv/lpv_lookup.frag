@@ -4,7 +4,6 @@
 #include "lpv_places.glsl"
 #include "lpv_harmonics.glsl"
 #include "lpv_packed.glsl"
-#include "lpv_covered.glsl"
 
 uniform sampler3D lpv_light_red, lpv_light_green, lpv_light_blue;
 out vec4 indirect;
@@ -36,7 +35,7 @@ void main() {
     // A strand is lit from all around alike: its sine is even, and the second band is odd.
     bool is_strand = HAS_KIND != 0 && s.kind == HAIR;
     vec4 basis = is_strand ? vec4(SH0, vec3(0.0)) : harmonics(-n);
-    float left = is_covered(s) ? 1.0 : 0.0;
+    float left = is_covered(-s.position.z) ? 1.0 : 0.0;
     for (int cascade = 0; cascade < CASCADES; ++cascade) {
         vec3 place = in_cells(s.position, cascade) + (is_strand ? vec3(0.0) : 0.5 * n);
         // The last one fades over its outermost cell alone: nothing lies behind it.

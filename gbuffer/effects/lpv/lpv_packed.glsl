@@ -1,4 +1,4 @@
-// Coefficients of a cell as the volumes keep them: as they are, or packed (packed.py).
+// Coefficients of a cell as the volumes keep them: as they are, or packed (lpv_packed.py).
 #include "vec.glsl"
 
 #if PACKS

@@ -12,3 +12,17 @@ vec3 in_cells(vec3 position, int cascade) {
     return world / cell_of(cascade) - vec3(origins[cascade]);
 }
 vec3 in_world(vec3 direction) { return mat3(view_to_world) * direction; }
+
+// Whether a depth of the G-buffer is a surface's, and not what was cleared: 0, or the far plane less what rounding takes.
+bool is_covered(float depth) { return depth >= eye_ray.z && depth < eye_ray.w * COVERED_SHARE; }
+
+// Of a picture of TEXELS x TEXELS, with parallel rays or those of a perspective.
+bool is_parallel() { return projection[3][3] != 0.0; }
+vec3 ray_to(vec3 position) { return is_parallel() ? vec3(0.0, 0.0, -1.0) : normalize(position); }
+
+// The area of a texel's bundle of rays at `position`, at right angles to them.
+float texel_area(vec3 position) {
+    float at_one = 4.0 * eye_ray.x * eye_ray.y / float(TEXELS * TEXELS), z = -position.z;
+    // At right angles to the line of sight z^2 as large; to the ray, cos = z / |p| of that.
+    return is_parallel() ? at_one : at_one * z * z * z / length(position);
+}

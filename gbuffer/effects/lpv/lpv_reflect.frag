@@ -2,7 +2,7 @@
 // A reflective shadow map (Dachsbacher and Stamminger 2005): what a light reaches first, in the light's view.
 #include "fragment.glsl"
 #include "light.glsl"
-#include "lpv_texel.glsl"
+#include "lpv_places.glsl"
 
 uniform int light;
 layout(location = 0) out vec4 flux_texel;

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-import numpy as np
-
 from ...frame.canvas import NEAREST, Canvas
 from ...frame.contract import Pass, Run
 from ...frame.resource import Resource
@@ -16,9 +14,6 @@ from ...gl.device import ADD, POINTS
 from ...gl.handles import Program
 from .cascades import Cascade, box_of, cascades_of, finest_cell, spot_sight, sun_sight
 from .volumes import INDIRECT, Volumes
-
-# Farther than this part of the far plane is no surface: a stored depth is off by less.
-COVERED_SHARE = 0.999
 
 
 class Lattice:
@@ -36,9 +31,9 @@ class Lattice:
 
     def place(self, *programs: Program) -> None:
         """Tell programs where the cascades lie."""
-        origins = np.array([cascade.origin for cascade in self.cascades], np.int32)
+        first, *others = (cascade.origin for cascade in self.cascades)
         for program in programs:
-            program["origins"].write(origins.tobytes())
+            program["origins"] = [first, *others] if others else first
 
 
 def inject(volumes: Volumes, extent: float, blocks: bool) -> Pass:
@@ -62,7 +57,7 @@ class Injection:
         self._seen, self._light = canvas.target(*seen), canvas.target(*volumes.injected)
         self._potential = canvas.target(volumes.blockers)
         self._surfaces = canvas.geometry("geometry.vert", "lpv_reflect.frag", **defines)
-        self._camera = canvas.fullscreen("lpv_seen.frag", COVERED_SHARE=COVERED_SHARE, **defines)
+        self._camera = canvas.fullscreen("lpv_seen.frag", **defines)
         points = (("lpv_inject.vert", "lpv_inject.frag"), ("lpv_block.vert", "lpv_block.frag"))
         self._vpls, self._surfels = (canvas.frame.array(canvas.program(*pair, **defines), []) for pair in points)
 
@@ -169,9 +164,9 @@ def lookup(volumes: Volumes, extent: float, blend: float) -> Pass:
 
 def _lookup(volumes: Volumes, extent: float, blend: float, canvas: Canvas) -> Run:
     lattice, target = Lattice(canvas, volumes, extent), canvas.target(INDIRECT)
-    # At least a thousandth of a cell, which is a hard edge.
-    own = {"BLEND_CELLS": max(blend * volumes.cells, 0.001), "COVERED_SHARE": COVERED_SHARE}
-    covers = canvas.fullscreen("lpv_lookup.frag", **volumes.defines(lattice.cell), **own)
+    # A thousandth of a cell is a hard edge.
+    border = max(blend * volumes.cells, 0.001)
+    covers = canvas.fullscreen("lpv_lookup.frag", BLEND_CELLS=border, **volumes.defines(lattice.cell))
 
     def run() -> None:
         target.use()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from ...frame.resource import DEPTH_STENCIL, SURFACES, Resource
-from .harmonics import CONSTANTS
-from .packed import PACKED_CONSTANTS
+from .lpv_harmonics import CONSTANTS
+from .lpv_packed import PACKED_CONSTANTS
 
 CHANNELS = ("red", "green", "blue")
 # What a codec does to an image is compared here: light that arrives from other surfaces, times 1 / pi.
@@ -15,12 +16,12 @@ INDIRECT = Resource("indirect", "rgba32f", follows=SURFACES)
 # Half a cell, less a thousandth: a wall right between two planes of the lattice would else fall to either side of it
 # by rounding, texel by texel. Walls at round numbers do lie there.
 SHIFT = 0.5 - 2.0**-10
-# Formats by the setting's words: of the volumes, and of what is added up by blending. Packed codes do not add.
-FORMATS: Mapping[str, tuple[str, str]] = {
-    "rgba32f": ("rgba32f", "rgba32f"),
-    "rgba16f": ("rgba16f", "rgba16f"),
-    "shared": ("rgba8", "rgba32f"),
-}
+# Farther than this part of the far plane is no surface; a stored depth is off by less.
+COVERED_SHARE = 0.999
+# What volumes can be kept in, and in which format of texels.
+FORMATS: Mapping[str, str] = MappingProxyType({"rgba32f": "rgba32f", "rgba16f": "rgba16f", "shared": "rgba8"})
+# What VPLs and surfels can be added up in by blending. Packed codes do not add.
+SUMS = ("rgba32f", "rgba16f")
 
 
 @dataclass(frozen=True)
@@ -29,13 +30,15 @@ class Volumes:
 
     Attributes:
         cells, cascades: their numbers.
-        format: a word of FORMATS.
+        format: of the volumes, a word of FORMATS.
+        sums: of what is added up before, one of SUMS.
         texels: of a reflective shadow map, on a side.
     """
 
     cells: int
     cascades: int
     format: str
+    sums: str
     texels: int
 
     @property
@@ -75,16 +78,17 @@ class Volumes:
 
     def defines(self, cell: float) -> dict[str, object]:
         """Macros; `cell` is the finest cascade's, in metres."""
+        marks = {"SHIFT": SHIFT, "COVERED_SHARE": COVERED_SHARE}
         own = {"CELLS": self.cells, "CORNERS": self.corners, "CASCADES": self.cascades, "TEXELS": self.texels}
-        packs = {"PACKS": int(self.format == "shared"), "SHIFT": SHIFT, "CELL": float(cell)}
-        return {**CONSTANTS, **PACKED_CONSTANTS, **own, **packs}
+        packs = {"PACKS": int(self.format == "shared"), "CELL": float(cell)}
+        return {**CONSTANTS, **PACKED_CONSTANTS, **marks, **own, **packs}
 
     def _map(self, name: str, form: str) -> Resource:
         return Resource(name, form, (self.texels, self.texels))
 
     def _flat(self, name: str, side: int) -> Resource:
-        return Resource(name, FORMATS[self.format][1], (side * side, side * self.cascades))
+        return Resource(name, self.sums, (side * side, side * self.cascades))
 
     def _volume(self, name: str) -> Resource:
         size = (self.cells, self.cells)
-        return Resource(name, FORMATS[self.format][0], size, copies=2, depth=self.cells * self.cascades)
+        return Resource(name, FORMATS[self.format], size, copies=2, depth=self.cells * self.cascades)
