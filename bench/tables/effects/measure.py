@@ -10,6 +10,7 @@ import numpy as np
 
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.effects.effect import ChosenEffect
+from ....gbuffer.effects.occlusion.passes import AmbientOcclusion
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
@@ -20,6 +21,7 @@ from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
 from ...metrics.meter import psnr_db
+from ...metrics.occlusion_error import method_error
 from ..render.measure import UNMEASURABLE
 from .table import TABLE
 
@@ -95,7 +97,7 @@ class Bench:
     def __init__(self, device: Device, repeats: int, rays: int, with_flip: bool):
         self._device, self._repeats, self._rays, self._with_flip = device, repeats, rays, with_flip
         self._references: dict[Case, Drawn] = {}
-        self._methods: dict[Case, float | None] = {}
+        self._methods: dict[Case, Row] = {}
 
     def reference(self, case: Case) -> Drawn:
         """The frame of a case's reference."""
@@ -117,8 +119,7 @@ class Bench:
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         drawn = replace(drawn, display=exact.display)
-        row |= _apart(drawn, exact) | _image(drawn, exact) | drawn.times
-        row["method_rms"] = self._method(case.reference)
+        row |= _apart(drawn, exact) | _image(drawn, exact) | drawn.times | self._method(case.reference)
         if self._with_flip:
             row["flip"] = float(np.mean(flip(drawn.shown, exact.shown)))
         return row, drawn
@@ -139,17 +140,15 @@ class Bench:
         row: Row = {f"ms_{name}": timings[name].median for name in (*names, "frame")}
         return row | {"ms_effect": sum(timings[name].median for name in names), "clock": clock}
 
-    def _method(self, case: Case) -> float | None:
-        """RMS of the effect from exact normals against rays; None where there is no oracle."""
-        oracle = case.effect.effect.name in ORACLES
-        if not oracle or not self._rays:
-            return None
+    def _method(self, case: Case) -> Row:
+        """How far the effect from exact normals is from rays; nothing where there is no oracle or no ray caster."""
+        if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
+            return {}
         if case not in self._methods:
-            self._methods[case] = None
+            scene = case.maker.make(case.setting)
+            found = method_error(self._device, case.effect, scene, case.plan.size, rays=self._rays)
+            self._methods[case] = {"method_rms": found.rms, "method_mean": found.mean}
         return self._methods[case]
-
-
-ORACLES: dict[str, Any] = {}
 
 
 def _apart(drawn: Drawn, exact: Drawn) -> Row:

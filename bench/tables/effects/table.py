@@ -84,6 +84,7 @@ COLUMNS = (
         "it does not matter. Empty where no rays can say.",
         better="less",
     ),
+    Column("method_mean", "The mean of that difference; above 0 the method is too bright.", HOW, drops=12),
     Column("slope", "Mean change of the effect for each degree that normals are off.", unit="1/degree", drops=8),
     Column("normal_mean_deg", "Mean angle of the G-buffer's normals to the exact ones.", HOW, "degrees", drops=7),
     Column("normal_max_deg", "The largest of those angles.", HOW, "degrees", drops=10),

@@ -41,7 +41,7 @@ CONSTANTS: Mapping[str, float] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class AmbientOcclusion(Effect):
     """A method of ambient occlusion.
 

@@ -26,7 +26,7 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     assert status == 1 and "1 of 2 limits do not hold" in err
     assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
     rows = json.loads(run("check", str(path), "--format", "json")[1])
-    assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.3018 degrees off"), rows
+    assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith("5.30185 degrees off"), rows
 
 
 @pytest.mark.usefixtures("gl")
