@@ -7,15 +7,15 @@
 layout(location = 0) out float visibility;
 layout(location = 1) out vec4 bent_normal;
 
-// The cosine of a tap's horizon, drawn to the open one as it gets farther; the open one where nothing is. What is not
-// above the tangent plane occludes nothing: rounded to a texel a tap lies a little out of the slice, where the horizon of
-// a tilted plane is another.
-float horizon(ivec2 pixel, vec3 p, vec3 n, vec3 v, float open) {
+// The cosine of a tap's horizon, drawn to the open one as it gets farther; the open one where nothing is, and where the
+// way into a slice that hardly meets the tangent plane leads to the other side of P. `side` is 1 where o points, else -1.
+float horizon(ivec2 pixel, vec3 p, Slice s, float side, vec3 v, float open) {
     float depth = depth_of(pixel);
     vec3 way = at_depth(pixel, depth) - p;
-    float far = length(way), w = clamp((RADIUS - far) / (FALL_OFF * RADIUS), 0.0, 1.0);
-    bool occludes = depth > 0.0 && dot(way, n) > 0.0;
-    return occludes ? max(open, mix(open, dot(way, v) / max(far, TINY), w)) : open;
+    float w = clamp((RADIUS - length(way)) / (FALL_OFF * RADIUS), 0.0, 1.0);
+    vec3 moved = into_slice(s, way);
+    bool there = depth > 0.0 && side * dot(moved, s.across) > 0.0;
+    return there ? max(open, mix(open, dot(unit(moved), v), w)) : open;
 }
 
 void main() {
@@ -31,8 +31,8 @@ void main() {
         for (int i = 0; i < STEPS; ++i) {
             float place = (float(i) + fract(noise.y + GOLDEN * float(k + i * STEPS))) / float(STEPS);
             ivec2 offset = ivec2(round((pow(place, STEP_POWER) + FIRST / radius) * along));
-            horizons.x = max(horizons.x, horizon(pixel - offset, p, n, v, open.x));
-            horizons.y = max(horizons.y, horizon(pixel + offset, p, n, v, open.y));
+            horizons.x = max(horizons.x, horizon(pixel - offset, p, s, -1.0, v, open.x));
+            horizons.y = max(horizons.y, horizon(pixel + offset, p, s, 1.0, v, open.y));
         }
         seen += slice_visibility(s, horizons);
         all += slice_visibility(s, open);

@@ -4,6 +4,7 @@
 
 struct Slice {
     vec3 across;         // o: unit, in the plane, at right angles to V
+    vec3 axis, slide;    // unit, at right angles to the plane; a step of 1 along it that stays in the tangent plane of n
     vec2 on_screen;      // unit: where the screen shows the plane, on the side that o points to
     float share;         // |m|, the length of the normal's projection m on the plane
     float cos_g, sin_g;  // of the angle from V to m
@@ -18,8 +19,14 @@ Slice slice_at(float phi, vec3 n, vec3 v) {
     // m = (n.o) o + (n.V) V; a surface that is seen has n.V > 0, a bumpy or smoothed normal may not
     vec2 m = vec2(dot(n, o), max(dot(n, v), TINY));
     float share = length(m);
-    return Slice(o, d, share, m.y / share, m.x / share);
+    // u = axis - (axis.n) n, over u.axis = |m|^2
+    vec3 axis = cross(o, v), slide = (axis - dot(axis, n) * n) / max(share * share, TINY);
+    return Slice(o, axis, slide, d, share, m.y / share, m.x / share);
 }
+
+// A way from P in the plane. Rounded to a texel a tap lies a little out of it: it is moved there at its height over the
+// tangent plane of n, so that a plane's taps stay on its open horizon and none depends on n by a threshold.
+vec3 into_slice(Slice s, vec3 way) { return way - dot(way, s.axis) * s.slide; }
 
 // The angle that has this cosine, from 0 to pi, by an arc tangent that keeps the digits of a float.
 float angle_of(float cosine) { return PI * atan2_pi(sqrt(max(1.0 - cosine * cosine, 0.0)), cosine); }

@@ -23,7 +23,9 @@ from occluded import (
     turned,
 )
 
+from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.metrics.visibility import RayCaster, triangles_of
+from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
 from normalbench.gbuffer.effects.effect import EffectError, chosen
 from normalbench.gbuffer.effects.gtao import CONSTANTS as GTAO
@@ -31,6 +33,7 @@ from normalbench.gbuffer.effects.occlusion.passes import BENT_NORMAL, CONSTANTS,
 from normalbench.gbuffer.effects.sao import turns
 from normalbench.gbuffer.frame.contract import Pass, Pipeline, PipelineError
 from normalbench.gbuffer.frame.resource import Resource
+from normalbench.gbuffer.layouts.layout import Target
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box, rotation
@@ -370,3 +373,25 @@ def test_a_seed_changes_the_noise_and_nothing_else(gl, text):
 
 def test_the_spirals_turns_share_no_factor_with_its_taps():
     assert [turns(taps) for taps in (1, 2, 3, 8, 9, 11, 64)] == [1, 1, 2, 5, 5, 7, 39]
+
+
+@pytest.mark.parametrize("text", ["gtao", "hbao", "gtao:slices=16:steps=16"])
+def test_what_a_finer_normal_changes_shrinks_with_its_error(gl, text):
+    """Octahedral codes of 10 bits against 6, in the room: the mean change for each degree of error stays within a
+    factor of 2. A threshold that open surfaces sit on would make it grow without end."""
+
+    def coded(bits: int):
+        words = Target("rgba8", f"normal.x:{bits} normal.y:{bits}")
+        return replace(
+            FP32, targets=(Target("r32f", "depth"), words, *FP32.targets[1:]), encoding=ENCODINGS["octahedral"]
+        )
+
+    exact, _, normal = drawn_effect(gl, scene_of("room"), text, SIZE)
+    slopes = []
+    for bits in (6, 10):
+        found, _, decoded = drawn_effect(gl, scene_of("room"), text, SIZE, layout=coded(bits))
+        here = normal[..., 3] != KINDS.index("hair")
+        angle = angles_deg(normal[here][:, :3], decoded[here][:, :3])
+        slopes.append(float(np.abs(found - exact)[here].mean() / angle.mean()))
+    assert 0.5 < slopes[1] / slopes[0] < 2, f"{slopes[0]:.5f} a degree, then {slopes[1]:.5f}"
+    assert 1e-4 < slopes[0] < 0.0079
