@@ -312,6 +312,20 @@ def test_a_pipeline_adds_it_to_the_ambient_light(gl, pipeline):
     assert apart(found.image, without) < 40, "it makes no difference"
 
 
+@pytest.mark.parametrize("pipeline, samples, scale, most", [("deferred", 4, 1.0, 0.04), ("inferred", 1, 0.5, 0.02)])
+def test_it_follows_the_g_buffer(gl, pipeline, samples, scale, most):
+    """With four samples a pixel, and at half the size: as large as the G-buffer, of the brightness that one sample at
+    full size has, to 2 %, where silhouettes differ. Of four samples the first is read as if it lay in the middle of the
+    pixel, up to half a pixel off: measured 2.1 % here, 0.6 and 0.3 in images of two and four times the size."""
+    plain = draw(gl, ROOM).indirect.mean()
+    made = PIPELINES[pipeline].with_effect(chosen(LPV, {name: str(value) for name, value in SMALL.items()}).passes())
+    with rendering(gl, made, ROOM, replace(plan_of(pipeline), samples=samples, scale=scale)) as r:
+        r.draw()
+        found = r.read(INDIRECT)[0][..., :3]
+    assert found.shape[:2] == (SIZE[1] * scale, SIZE[0] * scale)
+    assert found.mean() == pytest.approx(plain, rel=most), f"{found.mean():.4g}, not {plain:.4g}"
+
+
 # Where the volumes lie
 
 

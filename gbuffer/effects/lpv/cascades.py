@@ -14,6 +14,8 @@ AHEAD = 0.25
 # Cells kept free around the scene: surfaces lie off the border, however the snapping falls, and those at one end of the
 # scene are a whole cell inside.
 MARGIN = 1.25
+# Metres of the smallest scene.
+LEAST = 0.001
 # Half the angle of the widest spot whose light is taken whole; the picture of a wider one would be mostly rim.
 WIDEST = 80.0
 # A spot's near plane, in parts of its radius.
@@ -92,7 +94,8 @@ def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> fl
     """The side of the finest cascade's cells in metres: extent / cells, or so that the coarsest holds the box if 0."""
     if extent > 0:
         return extent / cells
-    return float((box[1] - box[0]).max() / (cells - 2 * MARGIN) / 2 ** (cascades - 1))
+    longest = max(float((box[1] - box[0]).max()), LEAST)
+    return longest / (cells - 2 * MARGIN) / 2 ** (cascades - 1)
 
 
 def cascades_of(view: View, box: np.ndarray, cell: float, cells: int, cascades: int) -> tuple[Cascade, ...]:
