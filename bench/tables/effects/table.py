@@ -122,6 +122,7 @@ TABLE = Table(
     usual=({"encoding": ",".join(COMMON)},),
     single={"effect": "gtao", "encoding": "octahedral", "depth": "none"},
     files={"images": "effects"},
+    by="effect",
     section=Section(
         title="What reads the G-buffer",
         short="Effects",
@@ -130,5 +131,6 @@ TABLE = Table(
         method="Each effect's own image from a G-buffer with one code against the same effect from a G-buffer in "
         "32-bit floats, with the same noise and the same taps. The method's own error is measured against rays "
         "through the scene, where there is an oracle.",
+        parts="effect",
     ),
 )

@@ -41,7 +41,7 @@ void main() {
         // The last one fades over its outermost cell alone: nothing lies behind it.
         float share = left * weight(place, cascade + 1 < CASCADES ? BLEND_CELLS : 1.0);
         if (share <= 0.0) continue;
-        // L = I / (s / 2)^2: the light of a cell is taken to come from half a cell away (the same, section 4.4)
+        // L = I / (s / 2)^2: the light of a cell is taken to come from half a cell away
         float near = 0.5 * cell_of(cascade);
         sum += share * max(intensity(place, basis, cascade), 0.0) / (near * near);
         left -= share;

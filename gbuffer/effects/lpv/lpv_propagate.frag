@@ -1,5 +1,5 @@
 #version 430
-// One step of propagation (Kaplanyan and Dachsbacher 2010, section 4.3): a cell gathers from its six neighbours. What
+// One step of propagation (Kaplanyan and Dachsbacher 2010): a cell gathers from its six neighbours. What
 // passes the face towards it meets five other faces of this cell, and each emits it as a cosine lobe. Intensity is not
 // clamped at 0: so no flux is made, and light of many sources is the sum of each one's.
 #include "lpv_packed.glsl"
