@@ -28,7 +28,12 @@ def effects_named(names: str) -> list[ChosenEffect]:
 
 def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
     """A pipeline with effects in it; None, and a line among the complaints, where they do not fit."""
+    made: dict[str, str] = {}
     for effect in effects:
+        twin = made.setdefault(effect.effect.result.name, effect.name)
+        if twin != effect.name:
+            complaints.append(f"{twin} and {effect.name} both make {effect.effect.result.name}; name one of them")
+            return None
         try:
             pipeline = pipeline.with_effect(effect.passes())
         except PipelineError as error:

@@ -164,6 +164,12 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
+def test_two_effects_of_one_kind_are_refused(run):
+    status, out, err = run("render", "--effects", "gtao,lpv,sao", "--encoding", "xy")
+    assert (status, out) == (2, "") and "gtao and sao both make visibility; name one of them" in err, err
+    assert err.count("\n") == 1
+
+
 @pytest.mark.parametrize("table", ["render", "pick"])
 def test_other_tables_refuse_an_effect_that_is_not_there(run, table):
     status, out, err = run(table, "--effects", "lpv,glow")
