@@ -47,6 +47,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
+    "normalbench effects",
 }
 
 
@@ -100,7 +101,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|render|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|render|effects|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -271,6 +272,25 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
         assert float(image) == pytest.approx(row["psnr_db"], abs=0.1), name
         assert float(normals) == pytest.approx(row["normal_psnr_db"], abs=0.1), name
         assert (int(rank), int(normal_rank)) == (row["rank"], row["normal_rank"]), name
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_the_effects_table_is_what_is_measured(run):
+    """And what it concludes: the error of octahedral 8:8 is a seventeenth of the method's own, or less."""
+    lines = [re.findall(r"[\w.]+", line) for line in table("normalbench effects").splitlines()[3:]]
+    assert len(lines) == 5
+    words = ("--encoding", "octahedral,spheremap", "--storage", "rg8,rgb10a2", "--depth", "linear/packed16")
+    status, out, _ = run("effects", "--effect", ",".join(line[0] for line in lines), *words, "--format", "json")
+    assert status == 0
+    rows = {(row["effect"], row["encoding"], row["storage"]): row for row in json.loads(out)}
+    codes = (("octahedral", "rg8"), ("octahedral", "rgb10a2"), ("spheremap", "rg8"), (None, None))
+    for name, *figures in lines:
+        found = [1e3 * rows[name, *code]["effect_rms"] for code in codes]
+        assert [float(text) for text in figures[:4]] == pytest.approx(found, rel=0.02, abs=0.01), name
+        method = rows[name, *codes[0]]["method_rms"]
+        assert [float(text) for text in figures[4:]] == pytest.approx([1e3 * method] if method else [], rel=0.05), name
+        assert method is None or method > 16 * rows[name, *codes[0]]["effect_rms"], name
 
 
 def test_the_light_table_is_what_is_measured():

@@ -48,6 +48,14 @@ def triangles_of(scene: Scene) -> np.ndarray:
     return np.concatenate(there) if there else np.zeros((0, 3, 3))
 
 
+def require_rays() -> None:
+    """Raises MissingError where there is no ray caster."""
+    try:
+        import embreex.mesh_construction  # noqa: F401 # asked for, not used
+    except ImportError as error:
+        raise MissingError(f"rays need embreex ({error}); pip install embreex") from error
+
+
 class RayCaster:
     """Triangles that rays can meet, by Embree in float32.
 
@@ -59,11 +67,10 @@ class RayCaster:
     """
 
     def __init__(self, triangles: np.ndarray):
-        try:
-            from embreex.mesh_construction import TriangleMesh
-            from embreex.rtcore_scene import EmbreeScene
-        except ImportError as error:
-            raise MissingError(f"rays need embreex ({error}); pip install embreex") from error
+        require_rays()
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene
+
         self._scene = EmbreeScene(robust=True)
         TriangleMesh(self._scene, np.ascontiguousarray(triangles, np.float32))
 

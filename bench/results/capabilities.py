@@ -8,6 +8,7 @@ from types import MappingProxyType
 from ...reports import tables
 from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
+from ..metrics.visibility import require_rays
 from ..output.errors import MissingError
 from .machine import require_compilers
 
@@ -21,9 +22,10 @@ def _require_parquet() -> None:
 CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
     {
         "quality, depth, frames by JAX": require_jax,
-        "quality by GLSL, render, lights, sweep": require_device,
+        "quality by GLSL, render, effects, lights, sweep": require_device,
         "instructions (cost --isa, pick)": require_compilers,
         "render --flip": require_flip,
+        "rays (method_rms of effects)": require_rays,
         "-o FILE.parquet": _require_parquet,
     }
 )

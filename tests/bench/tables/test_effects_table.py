@@ -1,6 +1,7 @@
 """`normalbench effects`: rows, their order, pictures, effects in other tables, and what it says of bad input."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -162,6 +163,20 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
     status, out, err = run("effects", *effect, *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
+    """The same for every code; without a ray caster the row has the rest, and a line says what to install."""
+    words = ("effects", "--effect", "gtao", "--size", "96x72", "--encoding", "octahedral,xy", "--depth", "none")
+    status, out, err = run(*words, "--rays", "64", "--format", "json")
+    first, second = json.loads(out)
+    assert (status, err) == (0, "") and 0.02 < first["method_rms"] == second["method_rms"] < 0.2
+    assert first["effect_rms"] < second["effect_rms"]
+    for name in ("embreex", "embreex.mesh_construction"):
+        monkeypatch.setitem(sys.modules, name, None)
+    status, out, err = run(*words, "--format", "json")
+    assert status == 0 and [row["method_rms"] for row in json.loads(out)] == [None, None]
+    assert "method_rms stays empty: rays need embreex" in err and err.count("\n") == 1, err
 
 
 def test_two_effects_of_one_kind_are_refused(run):
