@@ -7,10 +7,11 @@ from typing import Annotated
 
 from ...options.option import Images, Layouts, Lights, Objects, Option, Pipelines, Repeats, Seed, Size
 from .. import shared_columns as shared
-from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
+# What a run measures: the best of each kind, and the worst of those that ship.
+USUAL = ("octahedral", "octahedral_precise", "spheremap", "spherical", "per_pixel_view", "xyz", "best_fit")
 DEPTHS = "linear/packed16,window/depth24,window/depth32f"
 
 
@@ -119,7 +120,7 @@ TABLE = Table(
     options=EffectsOptions,
     outputs=EffectsOutputs,
     columns=COLUMNS,
-    usual=({"encoding": ",".join(COMMON)},),
+    usual=({"effect": "gtao,lpv", "encoding": ",".join(USUAL)},),
     single={"effect": "gtao", "encoding": "octahedral", "depth": "none"},
     files={"images": "effects"},
     by="effect",
