@@ -14,13 +14,16 @@ from .frame.contract import Pass, Pipeline, Run
 from .frame.frame import Frame
 from .frame.plan import Plan
 from .frame.resource import Resource
-from .frame.resources import FINAL
+from .frame.resources import FINAL, GBUFFER
 from .gl.device import Device, read_pixels
 from .layouts.layout import LayoutError
 from .readback.resolve import RESOLVE, RESOLVED
 from .readback.unpack import UNPACK, UNPACKED
 from .scenes.scene import Scene
 
+# From view positions and unit normals, (pixels, 3), to other normals.
+Keeps = Callable[[np.ndarray, np.ndarray], np.ndarray]
+GEOMETRY = "geometry"
 WALL, QUERY = "wall clock after each pass", "GL timer query"
 
 
@@ -71,14 +74,33 @@ class Rendering:
         self._more: dict[Pass, Run] = {}
         self._is_warm = False
 
-    def draw(self, scene: Scene | None = None) -> None:
-        """One frame, all passes in order; of the scene at another moment, if one is given."""
+    def draw(self, scene: Scene | None = None, keeps: Keeps | None = None) -> None:
+        """One frame, all passes in order.
+
+        Args:
+            scene: the scene at another moment, if one is given.
+            keeps: what the G-buffer keeps in place of the normals; of layout fp32 at one sample a pixel alone.
+        """
         if scene:
             self.frame.show(scene)
         self.frame.advance()
-        for run in self.passes.values():
+        for name, run in self.passes.items():
             run()
+            if keeps and name == GEOMETRY:
+                self._exchange(keeps)
         self._is_warm = True
+
+    def _exchange(self, keeps: Keeps) -> None:
+        texture = self.frame.textures(GBUFFER)[0]
+        texels = read_pixels(texture).copy()
+        height, width, _ = texels.shape
+        rays, depth = self.frame.scene.view.rays((width, height)), texels[..., 3]
+        # (x + 1/2) 2 / width - 1 at the middle of pixel x
+        x, y = ((np.arange(size, dtype=np.float32) + 0.5) * 2 / size - 1 for size in (width, height))
+        position = np.stack([x * rays[0] * depth, y[:, None] * rays[1] * depth, -depth], axis=-1).astype(np.float32)
+        covered = depth > 0
+        texels[covered, :3] = keeps(position[covered], texels[covered, :3])
+        texture.write(texels.tobytes())
 
     def image(self) -> np.ndarray:
         """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""

@@ -309,11 +309,15 @@ class Meter:
     def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
         self._decode, self._given = decode, given
 
+    def decoded(self, block: Any) -> Vec3:
+        """What a block is decoded as."""
+        return self._decode(block, *self._given)
+
     def one(self, load: Callable[[], Any]) -> Part:
         """One chunk's part of the statistics."""
         with jax.enable_x64(True):
             chunk = jax.tree.map(jnp.asarray, load())
-            decoded = self._decode(chunk, *self._given)
+            decoded = self.decoded(chunk)
             sums, largest, keys = _scan(Decoded(chunk.n, decoded, chunk.covered))
             keys = np.asarray(keys)
             histogram = np.bincount(keys, minlength=BINS + 1)

@@ -26,7 +26,7 @@ from ....gbuffer.gl.shader import ShaderError
 from ...codecs.user_encodings import NoTwinError
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
-from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet
+from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ...worst_case import exact_figures
 from .table import TABLE
 
@@ -83,6 +83,19 @@ def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
         return codec.round_trip(chunk.n, chunk.view)
 
     return jax.jit(decode)
+
+
+def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
+    """What unit normals come back as by JAX, (count, 3) as they are, not renormalised; by the program that measures.
+
+    Args:
+        n, view: unit normals and view positions, float32 of shape (count, 3).
+    """
+    meter, found = _meter(codec), []
+    with jax.enable_x64(True):
+        for load in from_arrays("", "", n, view, np.ones(len(n), bool)).loads():
+            found.append(np.stack([np.asarray(plane).ravel() for plane in meter.decoded(load())], axis=1))
+    return np.concatenate(found)[: len(n)]
 
 
 @cache
