@@ -6,7 +6,7 @@ what one writes others read by its name, where the macro that it tells is define
 What the pipelines' own passes read of effects, where the macro next to it is told:
     visibility      HAS_VISIBILITY    the share of ambient light that arrives at a pixel, in x
     indirect        HAS_INDIRECT      light that arrives from other surfaces, times 1 / pi
-    scattered       HAS_SCATTERED     diffuse light of skin after it went through it
+    scattered       HAS_SCATTERED     diffuse light of skin after it went through it, and its depth; 0 elsewhere
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ NAMES: tuple[str, ...] = (
     "sao",
     "gtao",
     "lpv",
+    "subsurface",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -12,7 +12,8 @@ import numpy as np
 from ...encodings import elementary
 from ..frame.contract import Pass
 from .effect import Number
-from .occlusion.passes import RADIUS, SEED, SIZE, VISIBILITY, AmbientOcclusion, passes
+from .noise import SEED
+from .occlusion.passes import RADIUS, SIZE, VISIBILITY, AmbientOcclusion, passes
 
 CONSTANTS = {
     **elementary.CONSTANTS,

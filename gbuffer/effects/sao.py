@@ -8,7 +8,8 @@ import numpy as np
 
 from ..frame.contract import Pass
 from .effect import Number
-from .occlusion.passes import RADIUS, SEED, SIZE, VISIBILITY, AmbientOcclusion, passes
+from .noise import SEED
+from .occlusion.passes import RADIUS, SIZE, VISIBILITY, AmbientOcclusion, passes
 
 GOLDEN = (5**0.5 - 1) / 2
 EPSILON = 0.01  # square metres, which keep near taps from weighing too much

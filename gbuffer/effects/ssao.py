@@ -6,7 +6,8 @@ import numpy as np
 
 from ..frame.contract import Pass
 from .effect import Number
-from .occlusion.passes import RADIUS, SEED, SIZE, VISIBILITY, AmbientOcclusion, passes
+from .noise import SEED
+from .occlusion.passes import RADIUS, SIZE, VISIBILITY, AmbientOcclusion, passes
 
 
 def _passes(size: str, radius: float, taps: int, bias: float, seed: int) -> tuple[Pass, ...]:

@@ -23,7 +23,9 @@ void main() {
     // The pixel of the G-buffer, which may have a size of its own.
     ivec2 pixel = ivec2(gl_FragCoord.xy / target_size.xy * size.xy);
 #ifdef HAS_SCATTERED
-    if (s.kind == SKIN) diffuse = texelFetch(scattered, pixel, 0).rgb;
+    // It comes with a depth. Where it has none the pixel of the G-buffer is another surface's.
+    vec4 spread = texelFetch(scattered, pixel, 0);
+    if (s.kind == SKIN && spread.w > 0.0) diffuse = spread.rgb;
 #endif
     vec3 own = LIGHT_HOLDS == BY_KIND ? s.emissive : unlit(s, light_from_everywhere(pixel));
     colour = vec4(compose(s, diffuse, specular) + own, s.alpha);

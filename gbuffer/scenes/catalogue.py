@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from . import gloss, objects, playground, room
+from . import gloss, head, objects, playground, room
 from .scene import Scene
 from .setting import Setting
 
@@ -35,5 +35,6 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "objects": SceneMaker("objects", objects.TITLE, objects.objects, objects.FRAMES),
         "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
+        "head": SceneMaker("head", head.TITLE, head.head, head.FRAMES),
     }
 )

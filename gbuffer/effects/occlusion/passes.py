@@ -19,6 +19,7 @@ from ...frame.contract import Pass, Run
 from ...frame.resource import SURFACES, Resource
 from ...frame.resources import DEPTH, SURFACE
 from ..effect import Choice, Effect, Number
+from ..noise import NOISE
 
 # The share of ambient light that arrives at a pixel of the G-buffer; 1 on the background. `indirect.glsl` reads it.
 VISIBILITY = Resource("visibility", "r32f", follows=SURFACES)
@@ -31,12 +32,10 @@ OCCLUDERS = Resource("occluder_depth", "r32f", follows=SURFACES)
 
 SIZE = Choice(("full", "half"), "Size of the buffer that it is computed in, to the G-buffer's.")
 RADIUS = Number(1.0, 0.01, 100.0, "Metres from which on nothing occludes.")
-SEED = Number(0, 0, 65535, "What the noise of each pixel starts from.")
 
 CONSTANTS: Mapping[str, float] = {
     "PI": math.pi,
-    "PCG_FACTOR": 1664525,  # of the linear congruential generator of pcg3d (Jarzynski and Olano 2020, listing 7)
-    "PCG_SUMMAND": 1013904223,
+    **NOISE,
     "NORMAL_POWER": 32.0,  # how alike normals must be for upsampling: half the weight at 12 degrees
 }
 

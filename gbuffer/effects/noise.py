@@ -1,0 +1,16 @@
+"""Noise that is fixed for each texel: the numbers of noise.glsl."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from .effect import Number
+
+SEED = Number(0, 0, 65535, "What the noise of each pixel starts from.")
+NOISE: Mapping[str, int] = MappingProxyType(
+    {
+        "PCG_FACTOR": 1664525,  # of the linear congruential generator of pcg3d (Jarzynski and Olano 2020, listing 7)
+        "PCG_SUMMAND": 1013904223,
+    }
+)

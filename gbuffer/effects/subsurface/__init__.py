@@ -1,0 +1,73 @@
+"""Subsurface scattering in screen space: light of skin, blurred before albedo as it spreads under the surface.
+
+Jimenez, Sundstedt and Gutierrez, Screen-Space Perceptual Rendering of Human Skin, 2009; Jimenez and Gutierrez,
+SeparableSSS, 2012; Christensen and Burley 2015; Jo Kyeong-jun, Advanced Rendering with Vision Engine: the pairs of
+Gaussians, the stencil, and light that is scattered before textures.
+"""
+
+from __future__ import annotations
+
+from ...frame.contract import Pass
+from ...scenes.scene import Scene
+from ..effect import Choice, Effect, Number
+from ..noise import SEED
+from .passes import SCATTERED, Scatter, burley, gaussians, separable, skin_light, sun_entry
+from .profile import GAUSSIANS
+
+SETTINGS = {
+    "method": Choice(
+        ("separable", "gaussians", "burley"),
+        "Jimenez' kernel in two steps, a sum of Gaussians, or Christensen and Burley's profile on a disc.",
+    ),
+    "samples": Choice(("17", "11", "25", "33", "65", "97"), "Taps of each step; kernels from 25 on reach 3 mm, not 2."),
+    "width": Number(0.01, 0.0001, 10.0, "Metres on the surface that 3 mm of the profile take; skin's own is 0.003."),
+    "follow": Number(
+        0.5,
+        0.0,
+        100.0,
+        "Share of light that a step of one width in depth keeps out; 0 ignores depth. Burley: on or off.",
+    ),
+    "pairs": Choice(tuple(map(str, GAUSSIANS)), "Of the method gaussians: blurs along rows and columns."),
+    "transmittance": Number(1, 0, 1, "Whether sunlight comes through thin parts; only where it has a shadow map."),
+    "translucency": Number(
+        0.83, 0.0, 0.999, "How far: skin as clear as this keeps a share of 1 less it of its thickness."
+    ),
+    "seed": SEED,
+}
+
+
+def _passes(
+    method: str,
+    samples: str,
+    width: float,
+    follow: float,
+    pairs: str,
+    transmittance: int,
+    translucency: float,
+    seed: int,
+) -> tuple[Pass, ...]:
+    scatter = Scatter(width, follow, int(samples))
+    blurs = {
+        "separable": lambda: separable(scatter),
+        "gaussians": lambda: gaussians(scatter, int(pairs)),
+        "burley": lambda: burley(scatter, seed),
+    }
+    entry = (sun_entry(),) if transmittance else ()
+    return *entry, skin_light(width, translucency, bool(transmittance)), *blurs[method]()
+
+
+def _lacks(scene: Scene) -> str | None:
+    kinds = {scene.materials[i].kind for part in scene.parts for i in part.materials if scene.materials[i].alpha == 1}
+    return None if "skin" in kinds else "nothing here is skin"
+
+
+EFFECT = Effect(
+    "subsurface",
+    "subsurface scattering in screen space, of skin",
+    "Jimenez and Gutierrez 2012; Jo Kyeong-jun 2011; Christensen and Burley 2015",
+    SCATTERED,
+    _passes,
+    SETTINGS,
+    _lacks,
+    scene="head",
+)
