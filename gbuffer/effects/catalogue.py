@@ -23,6 +23,7 @@ NAMES: tuple[str, ...] = (
     "sao",
     "gtao",
     "lpv",
+    "water",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from . import gloss, objects, playground, room
+from . import gloss, lake, objects, playground, room
 from .scene import Scene
 from .setting import Setting
 
@@ -34,6 +34,7 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "playground": SceneMaker("playground", playground.TITLE, playground.lit_playground, playground.FRAMES),
         "objects": SceneMaker("objects", objects.TITLE, objects.objects, objects.FRAMES),
         "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
+        "lake": SceneMaker("lake", lake.TITLE, lake.lake, lake.FRAMES),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
     }
 )
