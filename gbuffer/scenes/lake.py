@@ -45,7 +45,7 @@ def lake(setting: Setting) -> Scene:
     """The lake; `setting.lights` counts lanterns on its shore, the sun comes on top; waves move with the time."""
     rng = np.random.default_rng(setting.seed)
     none = placed((0, 0, 0))
-    water = Water(time=setting.time * Water.period)
+    water = Water(patch=16.0, time=setting.time * Water.period)
     view = View((1.5, 2.4, 15.5), (-1.0, 0.6, 0.0), 52.0, 0.3, 260.0)
     first = len(MATERIALS)
     sky = [Part(_sky_band(i), none, np.array([first + i]), casts=False, two_sided=True) for i in range(BANDS)]
@@ -62,17 +62,17 @@ def lake(setting: Setting) -> Scene:
 
 def _ground() -> Mesh:
     uv = grid_uv(CELLS, CELLS)
-    x, z = (GROUND * (uv - 0.5)).T
-    positions, triangles = np.stack([x, height(x, z), -z], axis=1), grid_triangles(CELLS, CELLS)
-    positions[:, 1] = height(positions[:, 0], positions[:, 2])
+    # Rows go from front to back: so their corners lie counter-clockwise from above.
+    x, z = GROUND * (uv[:, 0] - 0.5), GROUND * (0.5 - uv[:, 1])
+    positions, triangles = np.stack([x, height(x, z), z], axis=1), grid_triangles(CELLS, CELLS)
     return Mesh(positions, smooth_normals(positions, triangles), triangles, uv)
 
 
 def _sky_band(index: int, slices: int = 48) -> Mesh:
     """A ring of the dome, seen from inside."""
-    low, high = (
-        np.pi / 2 * (np.array([index, index + 1]) / BANDS) ** 1.5 - 0.06 * (index == 0) * np.array([1, 0])
-    ).tolist()
+    # Bands are narrow near the horizon; the first reaches below it.
+    low, high = (np.pi / 2 * ((index + step) / BANDS) ** 1.5 for step in (0, 1))
+    low = low if index else -0.06
     around = 2 * np.pi * (np.arange(slices + 1) % slices) / slices
     rows = [
         np.stack([np.cos(a) * np.cos(around), np.full_like(around, np.sin(a)), np.cos(a) * np.sin(around)], axis=1)
@@ -102,9 +102,13 @@ def _things(rng: np.random.Generator) -> tuple[Part, ...]:
         Part(ball, floats, np.array([RED, WHITE, SKIN])),
         Part(ball, placed(stones, sizes), np.full(40, STONE)),
         Part(_tree(), placed(trees, tall, rng.uniform(0, 6, 46)), np.full(46, LEAVES)),
-        Part(teapot(6).placed(0.3 * UP, (0, 0, 0)), placed((1.1, -1.95, 9.6), 1.0, 0.7), np.array([POT])),
+        Part(teapot(6).placed(0.3 * UP, (0, 0, 0)), placed(_on_ground(0.6, 7.0), 1.0, 0.7), np.array([POT])),
         Part(box(1.1, 1.5, 0.06), placed((-3.6, 0.9, 9.0)), np.array([GLASS]), casts=False),
     )
+
+
+def _on_ground(x: float, z: float) -> np.ndarray:
+    return np.array([x, float(height(np.array(x), np.array(z))), z])
 
 
 def _scattered(rng: np.random.Generator, count: int, least: float, most: float) -> np.ndarray:

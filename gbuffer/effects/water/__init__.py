@@ -1,8 +1,8 @@
 """Water: a radial grid moved by waves, that mirrors, refracts and scatters.
 
 Jo Kyeong-jun's talk on hybrid deferred rendering; Kryachko, Using Vertex Texture Displacement for Realistic Water
-Rendering, GPU Gems 2, chapter 18; the look-ups' guard and light in crests after NVIDIA's sample Island 11. Surfaces under
-water are lit as if it were not there, but for caustics: the sun's way down through the water costs no light.
+Rendering, GPU Gems 2, chapter 18; the look-ups' guard and light in crests after NVIDIA's sample Island 11. Surfaces
+under water are lit as if it were not there, but for caustics: the sun's way down through the water costs no light.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ SETTINGS = {
     "fresnel": Choice(FRESNEL, "Fresnel's formula, or Schlick's approximation of it."),
     "refraction": Choice(
         REFRACTION,
-        "What keeps things above the water out of what is seen in it: a look-up that meets one stays in place, or it has "
-        "no weight; or nothing.",
+        "What keeps things above the water out of what is seen in it: a look-up that meets one stays in place, or the "
+        "thing has no weight; or nothing does.",
     ),
     "caustics": Number(1.0, 0.0, 1.0, "Share of the caustics in the sun's light on the ground."),
     "blur": Number(

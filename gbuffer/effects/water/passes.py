@@ -74,7 +74,7 @@ def passes(look: Look) -> tuple[Pass, ...]:
     return (
         Pass("water_waves", (), sheets, partial(WaveMaps, look), AFTER),
         Pass("water_caustics", sheets, (maps.caustics,), partial(_caustics, look), AFTER),
-        Pass("water_mirror", (SHADOW_MAP,), (MIRROR, MIRROR_DEPTH), partial(_mirror, look), AFTER),
+        Pass("water_mirror", (SHADOW_MAP,), (MIRROR, MIRROR_DEPTH), _mirror, AFTER),
         Pass("water_behind", (DEPTH,), (BEHIND,), lambda canvas: canvas.over("water_behind.frag", BEHIND), AFTER),
         Pass("water_surface", reads, (WATER, DEPTH), partial(Surface, look), AFTER),
         Pass("water_over", (WATER, FINAL), (FINAL,), lambda canvas: canvas.over("water_over.frag", FINAL), AFTER),
@@ -92,7 +92,7 @@ class WaveMaps:
     def __call__(self) -> None:
         waves, program, octaves = self._look.waves(self._canvas), self._sum.program, self._look.maps.octaves
         self._canvas.device.state(None)
-        program["waves"].write(waves.table.tobytes())
+        tell(program, waves=[tuple(row) for row in waves.table.tolist()])
         self._look.place(self._canvas, program)
         for slice_ in range(octaves):
             self._target.use(at=slice_)
@@ -130,7 +130,7 @@ def _sight(canvas: Canvas) -> MirrorSight:
     return MirrorSight(mirrored_view(canvas.frame.scene.view, level), level)
 
 
-def _mirror(look: Look, canvas: Canvas) -> Run:
+def _mirror(canvas: Canvas) -> Run:
     """All opaque surfaces above the water under all lights, seen from below."""
     target = canvas.target(MIRROR, depth=MIRROR_DEPTH)
     surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))

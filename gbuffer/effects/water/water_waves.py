@@ -1,7 +1,7 @@
 """The waves of a sheet of water: a sum of cosines that repeats in space and in time, beside water_waves.frag.
 
-Tessendorf, Simulating Ocean Water, 2001: deep water's dispersion w^2 = g k, frequencies rounded so that all waves repeat
-together. The spectrum is none that was measured: every octave has nearly the same slope.
+Tessendorf, Simulating Ocean Water, 2001: deep water's dispersion w^2 = g k, frequencies rounded so that all waves
+repeat together. The spectrum was not measured anywhere: every octave has nearly the same slope.
 """
 
 from __future__ import annotations
