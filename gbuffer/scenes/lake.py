@@ -14,6 +14,7 @@ FRAMES = 3
 # Metres: the ground's side, the lake's radius and its depth, the sky's radius.
 GROUND, SHORE, DEEP, SKY = 90.0, 17.0, 2.6, 110.0
 CELLS, BANDS = 96, 24
+STONES, TREES = 40, 46
 UP = np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)])
 SUN = np.array([0.25, -0.42, 0.8])
 
@@ -93,15 +94,15 @@ def _things(rng: np.random.Generator) -> tuple[Part, ...]:
     ball, post = sphere(1.0, 24, 16).placed(UP, (0, 0, 0)), box(0.22, 3.2, 0.22)
     x, z = np.meshgrid([-1.0, 1.0], [-1.4, -4.2, -7.0], indexing="ij")
     legs = np.stack([-6.2 + x.ravel(), np.full(6, -0.7), 6.0 + z.ravel()], axis=1)
-    stones, sizes = _scattered(rng, 40, 0.0, 1.15), rng.uniform(0.12, 0.5, 40)
-    trees, tall = _scattered(rng, 46, 1.25, 2.3), rng.uniform(1.4, 2.6, 46)
+    stones, sizes = _scattered(rng, STONES, 0.0, 1.15), rng.uniform(0.12, 0.5, STONES)
+    trees, tall = _scattered(rng, TREES, 1.25, 2.3), rng.uniform(1.4, 2.6, TREES)
     floats = placed([(2.6, 0.12, 7.2), (-1.6, 0.1, 4.6), (4.6, 0.08, 2.4)], [0.42, 0.36, 0.34])
     return (
         Part(box(2.4, 0.14, 7.6), placed((-6.2, 0.85, 1.8)), np.array([WOOD])),
         Part(post, placed(legs), np.full(6, WOOD)),
         Part(ball, floats, np.array([RED, WHITE, SKIN])),
-        Part(ball, placed(stones, sizes), np.full(40, STONE)),
-        Part(_tree(), placed(trees, tall, rng.uniform(0, 6, 46)), np.full(46, LEAVES)),
+        Part(ball, placed(stones, sizes), np.full(STONES, STONE)),
+        Part(_tree(), placed(trees, tall, rng.uniform(0, 6, TREES)), np.full(TREES, LEAVES)),
         Part(teapot(6).placed(0.3 * UP, (0, 0, 0)), placed(_on_ground(0.6, 7.0), 1.0, 0.7), np.array([POT])),
         Part(box(1.1, 1.5, 0.06), placed((-3.6, 0.9, 9.0)), np.array([GLASS]), casts=False),
     )
