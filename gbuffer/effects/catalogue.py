@@ -24,6 +24,7 @@ NAMES: tuple[str, ...] = (
     "gtao",
     "lpv",
     "subsurface",
+    "water",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from . import gloss, head, objects, playground, room
+from . import gloss, head, lake, objects, playground, room
 from .scene import Scene
 from .setting import Setting
 
@@ -36,5 +36,6 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
         "head": SceneMaker("head", head.TITLE, head.head, head.FRAMES),
+        "lake": SceneMaker("lake", lake.TITLE, lake.lake, lake.FRAMES),
     }
 )

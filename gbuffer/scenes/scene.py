@@ -125,6 +125,33 @@ class View:
 
 
 @dataclass(frozen=True)
+class Water:
+    """A level sheet of water without end, wherever no ground rises above it. Only the effect of that name draws it.
+
+    Attributes:
+        level: its height where it is still, in metres.
+        deep: what it looks like where no ground is seen through it, as an albedo.
+        extinction: of red, green and blue light that goes through it, 1 / m.
+        crests: what light looks like that comes through a crest, as an albedo.
+        patch: metres after which the waves repeat along x and z.
+        slope: root mean square slope of the waves.
+        heading: where the waves go, in degrees from x towards z.
+        period: seconds after which every wave is where it was.
+        time: seconds.
+    """
+
+    level: float = 0.0
+    deep: Colour = (0.02, 0.07, 0.08)
+    extinction: Colour = (0.6, 0.22, 0.17)
+    crests: Colour = (0.1, 0.3, 0.25)
+    patch: float = 24.0
+    slope: float = 0.1
+    heading: float = 30.0
+    period: float = 20.0
+    time: float = 0.0
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything a frame is drawn from.
 
@@ -133,6 +160,7 @@ class Scene:
         ambient: linear colour, times the albedo.
         view: the camera.
         previous: where the camera stood a frame ago; the motion that a G-buffer may keep is between the two.
+        water: if there is any.
     """
 
     parts: tuple[Part, ...]
@@ -141,6 +169,7 @@ class Scene:
     ambient: Colour
     view: View
     previous: View
+    water: Water | None = None
 
     @property
     def sun(self) -> Light | None:

@@ -143,8 +143,8 @@ TABLE = Table(
         "equal the one with fewer instructions is taken. `cheaper` is the best of those with at most half the "
         "instructions. Angles are over the named normals, the largest is a supremum found in float64. Images are one "
         "frame of 320 x 240 of the hybrid pipeline, all else in 32-bit floats, lit by the normals that the emulated "
-        "code gives back; `render` writes codes in shaders, and agrees to 0.02 dB. Instructions are counted in fragment "
-        "shaders as Mesa compiles them, without the conversion that the render target does.",
+        "code gives back; `render` writes codes in shaders, and agrees to 0.02 dB. Instructions are counted in "
+        "fragment shaders as Mesa compiles them, without the conversion that the render target does.",
         leads=True,
     ),
 )

@@ -1,0 +1,82 @@
+"""Water: a radial grid moved by waves, that mirrors, refracts and scatters.
+
+Jo Kyeong-jun's talk on hybrid deferred rendering; Kryachko, Using Vertex Texture Displacement for Realistic Water
+Rendering, GPU Gems 2, chapter 18; the look-ups' guard and light in crests after NVIDIA's sample Island 11. Surfaces
+under water are lit as if it were not there, but for caustics: the sun's way down through the water costs no light.
+"""
+
+from __future__ import annotations
+
+from ...frame.contract import Pass
+from ...scenes.scene import Scene
+from ..effect import Choice, Effect, Number
+from .grid import Grid
+from .passes import Look, passes
+from .resources import WATER, Maps
+from .water_waves import OCTAVES
+
+FRESNEL, REFRACTION = ("exact", "schlick"), ("two_depth", "alpha", "unguarded")
+SETTINGS = {
+    "waves": Number(1.0, 0.0, 4.0, "Times the slope of the scene's waves; 0 is still water."),
+    "octaves": Number(OCTAVES, 1, OCTAVES, "Octaves of waves; the longest stay."),
+    "chop": Number(0.2, 0.0, 1.0, "Metres times the slope by which points move up the slope; sharpens crests."),
+    "texels": Choice(("256", "128", "512"), "Texels on a side of the wave maps."),
+    "rings": Number(256, 16, 1024, "Rings of the grid."),
+    "spokes": Number(256, 16, 1024, "Vertices of a ring."),
+    "fresnel": Choice(FRESNEL, "Fresnel's formula, or Schlick's approximation of it."),
+    "refraction": Choice(
+        REFRACTION,
+        "What keeps things above the water out of what is seen in it: a look-up that meets one stays in place, or the "
+        "thing has no weight; or nothing does.",
+    ),
+    "caustics": Number(1.0, 0.0, 1.0, "Share of the caustics in the sun's light on the ground."),
+    "blur": Number(
+        1.0, 0.0, 4.0, "Times the tilt of waves too short to be seen, which blurs the mirror image in height."
+    ),
+    "power": Number(1000.0, 16.0, 4096.0, "Blinn-Phong power of the sun's highlight."),
+    "seed": Number(0, 0, 2**31 - 1, "What the waves' random numbers start from."),
+}
+
+
+def _passes(
+    waves: float,
+    octaves: int,
+    chop: float,
+    texels: str,
+    rings: int,
+    spokes: int,
+    fresnel: str,
+    refraction: str,
+    caustics: float,
+    blur: float,
+    power: float,
+    seed: int,
+) -> tuple[Pass, ...]:
+    maps = Maps(octaves, int(texels))
+    chosen = {
+        "EXACT_FRESNEL": int(fresnel == FRESNEL[0]),
+        "BY_ALPHA": int(refraction == REFRACTION[1]),
+        "GUARDED": int(refraction != REFRACTION[2]),
+        "CAUSTICS": float(caustics),
+        "BLUR": float(blur),
+        "SUN_POWER": float(power),
+    }
+    return passes(Look(maps, seed, waves, Grid(rings, spokes), maps.defines(chop) | chosen))
+
+
+def _lacks(scene: Scene) -> str | None:
+    if scene.water is None:
+        return "there is no water here"
+    return None if scene.view.eye[1] > scene.water.level else "the eye is under water"
+
+
+EFFECT = Effect(
+    "water",
+    "water: waves that mirror, refract and scatter",
+    "Jo Kyeong-jun; Kryachko 2005; NVIDIA Island 11",
+    WATER,
+    _passes,
+    SETTINGS,
+    _lacks,
+    scene="lake",
+)

@@ -1,0 +1,68 @@
+"""The radial grid under the eye (GPU Gems 2, chapter 18): rings ever wider apart, vertices as many on each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...scenes.scene import View
+
+# Metres between the first rings.
+FIRST_GAP = 0.1
+# The centre stays where it is until the eye has gone this far, in metres, and then moves by as much.
+STEP = 0.5
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A disc of `rings` rings around its centre, each of `spokes` vertices.
+
+    Ring i has the radius r = FIRST_GAP i + curve i^4. GPU Gems 2 has r = a0 + a1 i^4, whose first rings are 9 um apart
+    where 256 of them reach 40 km: less than float32 tells apart 100 m from the origin. The linear term keeps them
+    apart, and the middle is closed.
+    """
+
+    rings: int
+    spokes: int
+
+    @cached_property
+    def vertices(self) -> np.ndarray:
+        """Cosine and sine of the spoke, number of the ring, (1 + rings spokes, 3), float32; the first is the centre."""
+        angle = 2 * np.pi * np.arange(self.spokes) / self.spokes
+        ring, spoke = np.divmod(np.arange(self.rings * self.spokes), self.spokes)
+        rows = np.stack([np.cos(angle)[spoke], np.sin(angle)[spoke], ring + 1.0], axis=1)
+        return np.concatenate([np.zeros((1, 3)), rows]).astype(np.float32)
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Vertex indices, (triangles, 3), int32: a fan, and two for each cell between rings."""
+        here = np.arange(self.spokes)
+        after = (here + 1) % self.spokes
+        fan = np.stack([np.zeros_like(here), 1 + after, 1 + here], axis=1)
+        inner = 1 + self.spokes * np.arange(self.rings - 1)[:, None]
+        a, b = inner + here, inner + after
+        c, d = a + self.spokes, b + self.spokes
+        cells = np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
+        return np.concatenate([fan, cells]).astype(np.int32)
+
+    def curve(self, outer: float) -> float:
+        """The factor of i^4 with which the last ring has a radius of `outer` metres; 0 where it is larger without."""
+        return max(outer - FIRST_GAP * self.rings, 0.0) / self.rings**4
+
+    def radii(self, outer: float) -> np.ndarray:
+        """Of the rings, (rings,), in metres."""
+        i = np.arange(1, self.rings + 1)
+        return FIRST_GAP * i + self.curve(outer) * i.astype(float) ** 4
+
+
+def centre_under(view: View) -> tuple[float, float]:
+    """Where the grid's centre lies in the world, x and z: under the eye, at whole steps."""
+    return round(view.eye[0] / STEP) * STEP, round(view.eye[2] / STEP) * STEP
+
+
+def reach(view: View, aspect: float) -> float:
+    """Metres from the centre to beyond the farthest point that can be seen: a corner of the far plane."""
+    up = np.tan(np.radians(view.fov) / 2)
+    return float(view.far * np.sqrt(1 + up**2 + (up * aspect) ** 2)) + STEP

@@ -1,0 +1,193 @@
+"""The passes of water: wave maps, caustics, the mirror image, what lies behind, the surface, and it over the image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from ...frame.canvas import NEAREST, Canvas
+from ...frame.contract import Pass, Run
+from ...frame.resources import DEPTH, FINAL, SHADOW_MAP
+from ...gl.device import ADD
+from ...gl.handles import Program, VertexArray
+from ...passes.forward_surfaces import ForwardSurfaces
+from ...scenes.scene import Water
+from .grid import Grid, centre_under, reach
+from .mirror import MirrorSight, mirrored_view
+from .resources import BEHIND, CELLS, CONSTANTS, MARGIN, MIRROR, MIRROR_DEPTH, WATER, Maps
+from .water_waves import WAVES, Waves, shortest, waves_of
+
+# Where the image of opaque surfaces is finished: the last of these that a pipeline has.
+AFTER = ("screen", "material", "forward", "lights")
+
+
+@dataclass(frozen=True)
+class Look:
+    """What the passes share of the settings.
+
+    Attributes:
+        maps: of the waves.
+        seed: of their random numbers.
+        strength: times their slope.
+        grid: what is drawn.
+        defines: macros.
+    """
+
+    maps: Maps
+    seed: int
+    strength: float
+    grid: Grid
+    defines: dict[str, object] = field(default_factory=dict)
+
+    def waves(self, canvas: Canvas) -> Waves:
+        """The waves of the moment."""
+        return waves_of(self.water(canvas), self.maps.octaves, self.seed, self.strength)
+
+    @staticmethod
+    def water(canvas: Canvas) -> Water:
+        """The scene's. Raises ValueError where it has none."""
+        if canvas.frame.scene.water is None:
+            raise ValueError("there is no water here")
+        return canvas.frame.scene.water
+
+    def place(self, canvas: Canvas, program: Program) -> None:
+        """Tell a program what `water_map.glsl` asks of the scene."""
+        water = self.water(canvas)
+        least = shortest(water.patch, self.maps.octaves)
+        tell(program, patch_size=water.patch, shortest=least, level=water.level)
+
+
+def tell(program: Program, **values: object) -> None:
+    """Uniforms by name; those the compiler dropped are left out."""
+    for name, value in values.items():
+        if name in program:
+            program[name] = value
+
+
+def passes(look: Look) -> tuple[Pass, ...]:
+    """All of them, in order."""
+    maps = look.maps
+    sheets = (maps.heights, maps.bends)
+    reads = (*sheets, maps.caustics, MIRROR, MIRROR_DEPTH, BEHIND, FINAL, DEPTH, SHADOW_MAP)
+    return (
+        Pass("water_waves", (), sheets, partial(WaveMaps, look), AFTER),
+        Pass("water_caustics", sheets, (maps.caustics,), partial(_caustics, look), AFTER),
+        Pass("water_mirror", (SHADOW_MAP,), (MIRROR, MIRROR_DEPTH), _mirror, AFTER),
+        Pass("water_behind", (DEPTH,), (BEHIND,), lambda canvas: canvas.over("water_behind.frag", BEHIND), AFTER),
+        Pass("water_surface", reads, (WATER, DEPTH), partial(Surface, look), AFTER),
+        Pass("water_over", (WATER, FINAL), (FINAL,), lambda canvas: canvas.over("water_over.frag", FINAL), AFTER),
+    )
+
+
+class WaveMaps:
+    """The sum of waves, slice by slice: each leaves out one more octave of the shortest."""
+
+    def __init__(self, look: Look, canvas: Canvas):
+        self._look, self._canvas = look, canvas
+        self._target = canvas.target(look.maps.heights, look.maps.bends)
+        self._sum = canvas.fullscreen("water_waves.frag", **look.defines)
+
+    def __call__(self) -> None:
+        waves, program, octaves = self._look.waves(self._canvas), self._sum.program, self._look.maps.octaves
+        self._canvas.device.state(None)
+        tell(program, waves=[tuple(row) for row in waves.table.tolist()])
+        self._look.place(self._canvas, program)
+        for slice_ in range(octaves):
+            self._target.use(at=slice_)
+            if slice_ == 0:
+                self._canvas.prepare(program)
+            program["count"] = WAVES * (octaves - slice_)
+            self._sum.render(vertices=3)
+
+
+def _caustics(look: Look, canvas: Canvas) -> Run:
+    """Sunlight on each slice's depth, added up triangle by triangle; nothing without a sun."""
+    target = canvas.target(look.maps.caustics)
+    program = canvas.program("water_caustics.vert", "water_caustics.frag", **look.defines)
+    lattice, corners = canvas.frame.array(program, []), 6 * (CELLS + 2 * MARGIN) ** 2
+
+    def run() -> None:
+        sun = canvas.frame.scene.sun
+        if sun is None:
+            return
+        canvas.device.state(None, ADD)
+        look.place(canvas, program)
+        tell(program, sun=sun.direction)
+        for slice_ in range(CONSTANTS["CAUSTIC_SLICES"]):
+            target.use(at=slice_)
+            if slice_ == 0:
+                canvas.prepare(program)
+            program["depth"] = slice_ * CONSTANTS["CAUSTIC_STEP"]
+            lattice.render(vertices=corners)
+
+    return run
+
+
+def _sight(canvas: Canvas) -> MirrorSight:
+    level = Look.water(canvas).level
+    return MirrorSight(mirrored_view(canvas.frame.scene.view, level), level)
+
+
+def _mirror(canvas: Canvas) -> Run:
+    """All opaque surfaces above the water under all lights, seen from below."""
+    target = canvas.target(MIRROR, depth=MIRROR_DEPTH)
+    surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))
+
+    def run() -> None:
+        target.use(view=_sight(canvas))
+        canvas.device.state(NEAREST)
+        surfaces.prepare(base=1.0)
+        surfaces.draw("opaque", *surfaces.lamps)
+
+    return run
+
+
+class Surface:
+    """The grid, drawn with depth, so that waves hide waves."""
+
+    def __init__(self, look: Look, canvas: Canvas):
+        self._look, self._canvas, frame = look, canvas, canvas.frame
+        self._target = canvas.target(WATER, depth=DEPTH)
+        by_sun = {"LIT_BY_SUN": int(bool(frame.scene_buffers.first_lamp)), "SPOKES": look.grid.spokes}
+        self._program = canvas.program("water_surface.vert", "water_surface.frag", **look.defines, **by_sun)
+        self._grid = self._upload(look.grid)
+
+    def _upload(self, grid: Grid) -> VertexArray:
+        frame = self._canvas.frame
+        own = (
+            frame.device.owned(frame.stack, frame.context.buffer(d.tobytes())) for d in (grid.vertices, grid.triangles)
+        )
+        vertices, triangles = own
+        return frame.array(self._program, [(vertices, "3f", "in_ring")], triangles)
+
+    def __call__(self) -> None:
+        self._target.use()
+        self._canvas.device.state(NEAREST)
+        self._canvas.prepare(self._program)
+        self._look.place(self._canvas, self._program)
+        self._tell_scene()
+        self._grid.render()
+
+    def _tell_scene(self) -> None:
+        canvas, program = self._canvas, self._program
+        scene, water, waves = canvas.frame.scene, self._look.water(canvas), self._look.waves(canvas)
+        aspect = canvas.plan.size[0] / canvas.plan.size[1]
+        outer, to_view = reach(scene.view, aspect), np.linalg.inv(_sight(canvas).projection(aspect))
+        tell(program, centre=centre_under(scene.view), curve=self._look.grid.curve(outer))
+        tell(program, deep=water.deep, crests=water.crests, extinction=water.extinction)
+        tell(
+            program,
+            deviation=waves.deviation,
+            sun_drift=sun_drift(scene.sun.direction) if scene.sun else (0.0, 0.0, 0.0),
+        )
+        tell(program, mirror_to_view=tuple(to_view.T.ravel()), slopes=tuple(waves.slopes.tolist()))
+
+
+def sun_drift(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    """How far refracted sunlight goes aside in the world, for each metre of depth under still water."""
+    # Snell: the part along the surface shrinks by the index.
+    x, z = direction[0] / CONSTANTS["INDEX"], direction[2] / CONSTANTS["INDEX"]
+    down = float(np.sqrt(1 - x * x - z * z))
+    return x / down, 0.0, z / down

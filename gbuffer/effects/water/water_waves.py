@@ -1,0 +1,89 @@
+"""The waves of a sheet of water: a sum of cosines that repeats in space and in time, beside water_waves.frag.
+
+Tessendorf, Simulating Ocean Water, 2001: deep water's dispersion w^2 = g k, frequencies rounded so that all waves
+repeat together. The spectrum was not measured anywhere: every octave has nearly the same slope.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...scenes.scene import Water
+
+# The longest waves: how many of them are in a patch. Each octave's are up to half as long as those of the one before.
+FIRST = 1.5
+OCTAVES = 5
+# Of each octave.
+WAVES = 8
+# Directions scatter around the heading by this many radians, by a normal distribution.
+SPREAD = 0.7
+# The slope of a wave falls with this power of its number in a patch.
+FALL = 0.25
+GRAVITY = 9.80665
+# Points of a lattice that the shortest wave of a level has at least: fewer would not show it.
+POINTS_A_WAVE = 4.0
+
+
+@dataclass(frozen=True)
+class Waves:
+    """eta(x, z) = sum of a cos(2 pi (n . (x, z) / patch - phase)), the longest waves first.
+
+    Attributes:
+        numbers: (waves, 2), whole: waves along x and z in a patch.
+        heights: (waves,), a in metres.
+        phases: (waves,), in turns, of the moment.
+        patch: in metres.
+    """
+
+    numbers: np.ndarray
+    heights: np.ndarray
+    phases: np.ndarray
+    patch: float
+
+    @property
+    def wave_numbers(self) -> np.ndarray:
+        """k, (waves, 2), in radians a metre."""
+        return 2 * np.pi * self.numbers / self.patch
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of the height, in metres."""
+        # The mean of (a cos)^2 is a^2 / 2.
+        return float(np.sqrt(np.sum(self.heights**2) / 2))
+
+    @property
+    def slopes(self) -> np.ndarray:
+        """The mean square slope of each level that leaves out one more octave of the shortest waves, the last of all;
+        (octaves + 1,)."""
+        each = (self.heights**2 * np.sum(self.wave_numbers**2, axis=1) / 2).reshape(-1, WAVES).sum(axis=1)
+        return np.append(np.cumsum(each)[::-1], 0.0)
+
+    @property
+    def table(self) -> np.ndarray:
+        """What the shader is given, (waves, 4), float32: n, a, phase from 0 to 1."""
+        return np.column_stack([self.numbers, self.heights, self.phases % 1.0]).astype(np.float32)
+
+
+def waves_of(water: Water, octaves: int, seed: int, strength: float) -> Waves:
+    """The waves of a sheet of water at its moment, their slope times `strength`."""
+    rng = np.random.default_rng(seed)
+    octave = np.repeat(np.arange(OCTAVES), WAVES)
+    size = FIRST * 2.0 ** (octave + rng.uniform(0, 1, len(octave)))
+    way = np.radians(water.heading) + SPREAD * rng.standard_normal(len(octave))
+    phases, used = rng.uniform(0, 1, len(octave)), octave < octaves
+    numbers = np.round(size[:, None] * np.stack([np.cos(way), np.sin(way)], axis=1))[used]
+    count = np.linalg.norm(numbers, axis=1)
+    k = 2 * np.pi * count / water.patch
+    # Of the root mean square slope the given one: sum of (a k)^2 / 2 = slope^2
+    steep = count**-FALL
+    steep *= strength * water.slope * np.sqrt(2 / np.sum(steep**2))
+    # w = sqrt(g k), in whole turns a period
+    turns = np.maximum(np.round(np.sqrt(GRAVITY * k) * water.period / (2 * np.pi)), 1)
+    return Waves(numbers, steep / k, phases[used] + turns * (water.time / water.period), water.patch)
+
+
+def shortest(patch: float, octaves: int) -> float:
+    """The length of the shortest waves, in metres, but for the rounding of their numbers."""
+    return patch / (FIRST * 2**octaves)
