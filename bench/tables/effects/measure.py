@@ -67,7 +67,7 @@ class Drawn:
         linear: the image in linear light, (height, width, 3).
         own: the effect's own image, (height, width, channels).
         normals: what the G-buffer gives back, (height, width, 3).
-        covered: where there is a surface, or the effect has drawn one; bool of shape (height, width).
+        covered: where the effect is; bool of shape (height, width).
         display: how the image is shown.
         times: milliseconds by pass, and the clock.
     """
@@ -131,7 +131,7 @@ class Bench:
             made.draw()
             position, direction, *_ = made.gbuffer()
             own = made.read(case.effect.effect.result)[0]
-            covered = (position[..., 2] != 0) | np.any(own > 0, axis=-1)
+            covered = drawn_at(own, position[..., 2] != 0)
             times = self._times(case, made) if self._repeats else {}
             return Drawn(made.image(), own[..., :3], direction[..., :3], covered, Display(0.0), times)
 
@@ -157,6 +157,12 @@ class Bench:
             tell(f"method_rms stays empty: {error}")
             return {}
         return {"method_rms": found.rms, "method_mean": found.mean}
+
+
+def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
+    """Where an effect is, bool of shape (height, width): where its alpha says so, else on all surfaces."""
+    says = own.shape[-1] == 4 and np.any(own[..., 3] > 0)
+    return own[..., 3] > 0 if says else surfaces
 
 
 def _apart(drawn: Drawn, exact: Drawn) -> Row:

@@ -72,7 +72,7 @@ COLUMNS = (
     Column(
         "effect_psnr_db",
         "The effect's own image against that from a G-buffer in 32-bit floats, with the same noise and the same taps; "
-        "covered pixels, peak the brightest of them.",
+        "where the effect is (skin, water, else every surface), peak the brightest pixel there.",
         unit="dB",
         better="more",
     ),
@@ -120,7 +120,7 @@ TABLE = Table(
     options=EffectsOptions,
     outputs=EffectsOutputs,
     columns=COLUMNS,
-    usual=({"effect": "gtao,lpv", "encoding": ",".join(USUAL)},),
+    usual=({"effect": "gtao,lpv,subsurface,water", "encoding": ",".join(USUAL)},),
     single={"effect": "gtao", "encoding": "octahedral", "depth": "none"},
     files={"images": "effects"},
     by="effect",

@@ -12,7 +12,7 @@ from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.metrics.meter import psnr_db
 from normalbench.bench.options.effect_names import effects_named
 from normalbench.bench.results.measuring import Nothing, asked, measured
-from normalbench.bench.tables.effects.measure import in_order
+from normalbench.bench.tables.effects.measure import drawn_at, in_order
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
@@ -177,6 +177,15 @@ def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
     status, out, err = run(*words, "--format", "json")
     assert status == 0 and [row["method_rms"] for row in json.loads(out)] == [None, None]
     assert "method_rms stays empty: rays need embreex" in err and err.count("\n") == 1, err
+
+
+def test_an_effect_is_where_its_alpha_says():
+    own, surfaces = np.zeros((1, 3, 4), np.float32), np.array([[True, True, False]])
+    assert np.array_equal(drawn_at(own, surfaces), surfaces) and np.array_equal(
+        drawn_at(own[..., :1], surfaces), surfaces
+    )
+    own[0, 1:, 3] = 1
+    assert np.array_equal(drawn_at(own, surfaces), [[False, True, True]])
 
 
 def test_two_effects_of_one_kind_are_refused(run):
