@@ -279,7 +279,7 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
 def test_the_effects_table_is_what_is_measured(run):
     """And what it concludes: the error of octahedral 8:8 is a seventeenth of the method's own, or less."""
     lines = [re.findall(r"[\w.]+", line) for line in table("normalbench effects").splitlines()[3:]]
-    assert len(lines) == 5
+    assert len(lines) == 7
     words = ("--encoding", "octahedral,spheremap", "--storage", "rg8,rgb10a2", "--depth", "linear/packed16")
     status, out, _ = run("effects", "--effect", ",".join(line[0] for line in lines), *words, "--format", "json")
     assert status == 0
