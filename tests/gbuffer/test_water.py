@@ -110,7 +110,7 @@ def test_schlicks_form_is_as_far_off_as_it_is_known_to_be(gl, tmp_path):
 
 
 def test_two_layers_let_through_what_one_twice_as_deep_does(gl, tmp_path):
-    """Their product, to 1e-6 of it; each is exp(-k d)."""
+    """Their product, to 2e-6 of it; each is exp(-k d)."""
     metres = np.linspace(0, 8, 400)
     one = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), x), 1.0", metres)[:, :3]
     two = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), 2.0 * x), 1.0", metres)[:, :3]
