@@ -29,9 +29,7 @@ SETTINGS = {
     ),
     "pairs": Choice(tuple(map(str, GAUSSIANS)), "Of the method gaussians: blurs along rows and columns."),
     "transmittance": Number(1, 0, 1, "Whether sunlight comes through thin parts; only where it has a shadow map."),
-    "translucency": Number(
-        0.83, 0.0, 0.999, "How far: skin as clear as this keeps a share of 1 less it of its thickness."
-    ),
+    "translucency": Number(0.83, 0.0, 0.999, "How clear skin is: its thickness counts 1 - translucency times."),
     "seed": SEED,
 }
 
