@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from ...gbuffer.effects.catalogue import EFFECTS
 from ...gbuffer.effects.effect import ChosenEffect, EffectError, chosen
 from ...gbuffer.frame.contract import Pipeline, PipelineError
+from ...gbuffer.pipelines import PIPELINES
 from ...gbuffer.scenes.scene import Scene
 from ..output.errors import UsageError, pick
 
@@ -36,10 +37,19 @@ def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaint
             return None
         try:
             pipeline = pipeline.with_effect(effect.passes())
-        except PipelineError as error:
-            complaints.append(f"{effect.name}: {error}")
+        except PipelineError:
+            others = ", ".join(name for name, other in PIPELINES.items() if _fits(other, effect))
+            complaints.append(f"{effect.name} does not go into pipeline {pipeline.name}, but into {others}")
             return None
     return pipeline
+
+
+def _fits(pipeline: Pipeline, effect: ChosenEffect) -> bool:
+    try:
+        pipeline.with_effect(effect.passes())
+    except PipelineError:
+        return False
+    return True
 
 
 def lacking(effects: Iterable[ChosenEffect], name: str, scene: Scene) -> str | None:

@@ -143,7 +143,10 @@ def test_an_effect_lights_the_image_of_other_tables(run):
         ),
         (("--effect", "lpv:cells=8:cells=16"), "effect lpv:cells=8:cells=16: cells is set twice"),
         (("--effect", ""), "no effect named; known: all, "),
-        (("--pipeline", "forward"), "pipeline forward: pass "),
+        (
+            ("--pipeline", "forward"),
+            "lpv does not go into pipeline forward, but into deferred, prepass, inferred, hybrid",
+        ),
         (("--depth", "linear"), "--depth linear: write a code and its storage, such as linear/packed16, or none"),
         (("--depth", "linear/packed9"), "unknown depth storage 'packed9'"),
         (("--depth", "metres/r32f"), "unknown depth 'metres'"),
