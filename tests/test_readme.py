@@ -277,7 +277,7 @@ def test_the_image_table_is_what_is_measured(monkeypatch, capsys):
 @pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_the_effects_table_is_what_is_measured(run):
-    """And what it concludes: the error of octahedral 8:8 is a seventeenth of the method's own, or less."""
+    """And what it concludes: the error of octahedral 8:8 is a fifteenth of the method's own, or less."""
     lines = [re.findall(r"[\w.]+", line) for line in table("normalbench effects").splitlines()[3:]]
     assert len(lines) == 7
     words = ("--encoding", "octahedral,spheremap", "--storage", "rg8,rgb10a2", "--depth", "linear/packed16")
@@ -290,7 +290,7 @@ def test_the_effects_table_is_what_is_measured(run):
         assert [float(text) for text in figures[:4]] == pytest.approx(found, rel=0.02, abs=0.01), name
         method = rows[name, *codes[0]]["method_rms"]
         assert [float(text) for text in figures[4:]] == pytest.approx([1e3 * method] if method else [], rel=0.05), name
-        assert method is None or method > 16 * rows[name, *codes[0]]["effect_rms"], name
+        assert method is None or method > 15 * rows[name, *codes[0]]["effect_rms"], name
 
 
 def test_the_light_table_is_what_is_measured():

@@ -52,7 +52,7 @@ def pick(
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers that the scene is rendered with, comma-separated.
-        effects: Effects in the image, with settings: gtao:size=half,lpv. Default: none.
+        effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
         family: The GPU family that instructions are counted for.
         aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
         most_instructions: The most instructions, encode and decode together.
@@ -158,7 +158,7 @@ def render(
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
-        effects: Effects in the image, with settings: gtao:size=half,lpv. Default: none.
+        effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
         shadow: on, off; comma-separated, or all.
         exposure: Stops, or auto: clip 1 % at most. Default: 0, and auto for files.
         tone_mapping: none, reinhard or aces.
@@ -236,7 +236,7 @@ def effects(
     Every normal code lies in an otherwise exact layout, and every depth code in one with exact normals. A layout is measured as it is.
 
     Args:
-        effect: Effects with their settings, such as gtao:size=half; comma-separated, or all.
+        effect: Effects to measure, each alone, with settings: gtao:size=half; comma-separated, or all.
         pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
         encoding: Encodings or files, each in an exact layout; comma-separated, or all.
         storage: And their storages.
@@ -247,7 +247,7 @@ def effects(
         size: WIDTHxHEIGHT of the image.
         objects: Objects in the scene `objects`.
         lights: Point lights.
-        rays: Rays a point of the method's own error; 0 for none.
+        rays: Rays for each of 4096 pixels, for the method's own error; 0 for none.
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.

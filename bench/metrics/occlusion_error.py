@@ -17,7 +17,7 @@ from ...gbuffer.render import rendering
 from ...gbuffer.scenes.scene import KINDS, Scene
 from .visibility import NEARER, RayCaster, triangles_of
 
-PIXELS, RAYS = 1024, 1024
+PIXELS, RAYS = 4096, 1024
 HAIR = KINDS.index("hair")
 
 
@@ -87,7 +87,7 @@ def compared(found: np.ndarray, exact: np.ndarray, error: np.ndarray) -> Occlusi
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
     # rms = sqrt(mean of squares): its error is that of the mean over 2 rms
-    scatter = float(square.std(ddof=1) / np.sqrt(len(square)))
+    scatter = float(square.std(ddof=1) / np.sqrt(len(square))) if len(square) > 1 else np.inf
     return OcclusionError(
         rms=rms,
         mean=float(difference.mean()),

@@ -6,6 +6,7 @@ from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, 
 from ...encodings.storages.depth_storage import DEPTH_STORAGES
 from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
 from ...gbuffer.effects.catalogue import EFFECTS
+from ...gbuffer.effects.effect import Choice, Number
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.pipelines import PIPELINES
 from ...gbuffer.scenes.catalogue import SCENES
@@ -89,9 +90,16 @@ def _pipelines() -> list[Row]:
     ]
 
 
+def said(setting: Number | Choice) -> str:
+    """What a setting is usually, and what else it may be."""
+    if isinstance(setting, Choice):
+        return "|".join(setting.words)
+    return f"{setting.usual:g} ({setting.least:g} to {setting.most:g})"
+
+
 def _effects() -> list[Row]:
     return [
-        _row("effect", e.name, e.title, holds=", ".join(f"{name}={s.usual}" for name, s in e.settings.items()))
+        _row("effect", e.name, e.title, holds=", ".join(f"{name}={said(s)}" for name, s in e.settings.items()))
         | {"from": e.source}
         for e in EFFECTS.values()
     ]

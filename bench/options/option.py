@@ -54,7 +54,7 @@ Powers = Annotated[
 ]
 LightBuffers = Annotated[str, Option("--light-buffer", f"Light buffers, {Names}.", in_run=True)]
 Effects = Annotated[
-    str | None, Option("--effects", "Effects in the image, with settings: gtao:size=half,lpv. Default: none.")
+    str | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")
 ]
 LightTargets = Annotated[str, Option("--light-targets", "1, 2; comma-separated, or all.")]
 Shadow = Annotated[str, Option("--shadow", "on, off; comma-separated, or all.")]

@@ -119,6 +119,8 @@ class Bench:
             exact, drawn = self.reference(case), self._drawn(case)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
+        if not np.any(exact.covered):
+            return row | {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}, None
         drawn = replace(drawn, display=exact.display)
         row |= _apart(drawn, exact) | _image(drawn, exact) | drawn.times | self._method(case.reference)
         if self._with_flip:
@@ -160,21 +162,20 @@ class Bench:
 
 
 def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
-    """Where an effect is, bool of shape (height, width): where its alpha says so, else on all surfaces."""
-    says = own.shape[-1] == 4 and np.any(own[..., 3] > 0)
-    return own[..., 3] > 0 if says else surfaces
+    """Where an effect is, bool of shape (height, width): where its alpha says so; of one without, on all surfaces."""
+    return own[..., 3] > 0 if own.shape[-1] == 4 else surfaces
 
 
 def _apart(drawn: Drawn, exact: Drawn) -> Row:
     """How far the effect's own image is from the exact one's, and the normals from the exact ones."""
     covered = exact.covered
-    if not np.any(covered):
-        return {}
-    one, other = (np.nan_to_num(frame.own[covered].astype(np.float64)) for frame in (drawn, exact))
-    apart, peak = np.abs(one - other), float(np.max(np.abs(other)))
+    one, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
+    peak = float(np.max(np.abs(np.nan_to_num(other))))
+    # What is no number is as far off as the brightest pixel is from none.
+    apart = np.where(np.isfinite(one - other), np.abs(one - other), peak)
     mse, angles = float(np.mean(apart**2)), _angles(drawn, exact)
     row: Row = {"effect_rms": mse**0.5, "effect_mean": float(np.mean(apart)), "effect_max": float(np.max(apart))}
-    row["effect_psnr_db"] = psnr_db(mse / peak**2) if peak > 0 else None
+    row["effect_psnr_db"] = psnr_db(mse)
     row |= {"normal_mean_deg": float(np.mean(angles)), "normal_max_deg": float(np.max(angles))}
     if row["normal_mean_deg"] > 0:
         row["slope"] = row["effect_mean"] / row["normal_mean_deg"]
@@ -190,7 +191,8 @@ def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
 
 def _image(drawn: Drawn, exact: Drawn) -> Row:
     mse, broken = squared_error(drawn.shown, exact.shown)
-    return {"psnr_db": psnr_db(mse), "invalid": broken}
+    lost = np.count_nonzero(~np.isfinite(drawn.own[exact.covered]).all(axis=-1))
+    return {"psnr_db": psnr_db(mse), "invalid": max(broken, int(lost))}
 
 
 def _described(case: Case) -> Row:

@@ -22,7 +22,9 @@ class EffectsOptions:
     effect: Annotated[
         str,
         Option(
-            "--effect", "Effects with their settings, such as gtao:size=half; comma-separated, or all.", in_run=True
+            "--effect",
+            "Effects to measure, each alone, with settings: gtao:size=half; comma-separated, or all.",
+            in_run=True,
         ),
     ] = "all"
     pipeline: Pipelines = "hybrid"
@@ -44,7 +46,9 @@ class EffectsOptions:
     size: Size = "320x240"
     objects: Objects = 200
     lights: Lights = 16
-    rays: Annotated[int, Option("--rays", "Rays a point of the method's own error; 0 for none.")] = 256
+    rays: Annotated[int, Option("--rays", "Rays for each of 4096 pixels, for the method's own error; 0 for none.")] = (
+        256
+    )
     repeats: Repeats = 0
     seed: Seed = 0
     flip: Annotated[bool, Option("--flip", "FLIP as well, a perceptual difference; a second a row.", in_run=True)] = (
@@ -72,7 +76,7 @@ COLUMNS = (
     Column(
         "effect_psnr_db",
         "The effect's own image against that from a G-buffer in 32-bit floats, with the same noise and the same taps; "
-        "where the effect is (skin, water, else every surface), peak the brightest pixel there.",
+        "where the effect is (skin, water, else every surface). Peak 1: full visibility, or the display's white.",
         unit="dB",
         better="more",
     ),

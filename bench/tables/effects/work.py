@@ -59,6 +59,8 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
     complaints: list[str] = []
     layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
     asked = (options.encoding, options.depth)
+    if asked[0] is None and (asked[1] or "").strip().lower() == NO_DEPTH and not options.layout:
+        raise UsageError("--depth none leaves nothing to measure: name --encoding or --layout")
     if options.layout and asked == (None, None):
         return list(layouts)
     normals = _with_normals(options, complaints) if options.encoding or not any(asked) else []
@@ -112,6 +114,9 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
     exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
     complaints: list[str] = []
     made: list[Case] = []
+    for pipeline in [one for one in pipelines if not one.has_gbuffer]:
+        pipelines.remove(pipeline)
+        complaints.append(f"pipeline {pipeline.name} has no G-buffer that an effect could read a code from")
     for effect in effects:
         makers = _suitable(effect, options.scene, setting, complaints)
         for pipeline in pipelines if makers else ():

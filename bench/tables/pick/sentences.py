@@ -57,7 +57,8 @@ def images(row: Row) -> str:
 def _figures(row: Row) -> str:
     met = " (of those measured)" if row["angle_sup_deg"] is None else ""
     angles = f"Its mean error is {degrees(row['angle_mean_deg'])}, its largest {degrees(largest(row))}{met}."
-    return angles + (f" The image of {row['scene']} has {images(row)}." if images(row) else "")
+    scene = row["scene"] + (f" with {row['effects']}" if row.get("effects") else "")
+    return angles + (f" The image of {scene} has {images(row)}." if images(row) else "")
 
 
 def _price(row: Row) -> str:

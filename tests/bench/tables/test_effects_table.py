@@ -56,7 +56,7 @@ def drawn(gl, layout):
 
 
 def test_figures_are_those_of_the_two_images(gl, rows):
-    """Computed anew from the renderer's buffers: PSNR by the brightest pixel, RMS, mean, maximum, slope and angles."""
+    """Computed anew from the renderer's buffers: PSNR, RMS, mean, maximum, slope and angles."""
     row = next(row for row in rows if row["storage"] == "rg8")
     own, normals, _ = drawn(gl, LAYOUTS["fp32"].with_codec(codecs_named("octahedral", "rg8", "nearest")[0]))
     exact, right, covered = drawn(gl, LAYOUTS["fp32"])
@@ -66,7 +66,7 @@ def test_figures_are_those_of_the_two_images(gl, rows):
         "effect_rms": np.sqrt(np.mean(apart**2)),
         "effect_mean": apart.mean(),
         "effect_max": apart.max(),
-        "effect_psnr_db": psnr_db(np.mean(apart**2) / exact[covered].max() ** 2),
+        "effect_psnr_db": psnr_db(np.mean(apart**2)),
         "normal_mean_deg": angles.mean(),
         "normal_max_deg": angles.max(),
         "slope": apart.mean() / angles.mean(),
@@ -91,7 +91,7 @@ def test_times_are_of_the_effects_passes(rows):
     names = [stage.name for stage in effects_named(EFFECT)[0].passes()]
     for row in rows:
         assert row["ms_effect"] == pytest.approx(sum(row[f"ms_{name}"] for name in names))
-        assert 0 < row["ms_effect"] < row["ms_frame"] and row["clock"]
+        assert min(row["ms_effect"], row["ms_frame"]) > 0 and row["clock"]
 
 
 def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
@@ -145,7 +145,7 @@ def test_an_effect_lights_the_image_of_other_tables(run):
         (("--effect", ""), "no effect named; known: all, "),
         (
             ("--pipeline", "forward"),
-            "lpv does not go into pipeline forward, but into deferred, prepass, inferred, hybrid",
+            "pipeline forward has no G-buffer that an effect could read a code from",
         ),
         (("--depth", "linear"), "--depth linear: write a code and its storage, such as linear/packed16, or none"),
         (("--depth", "linear/packed9"), "unknown depth storage 'packed9'"),
@@ -153,6 +153,11 @@ def test_an_effect_lights_the_image_of_other_tables(run):
         (("--depth", "linear_sign/packed24"), "does not suit xyz"),
         (("--encoding", "xyz", "--storage", "rg8", "--depth", "none"), "3 components, but RG8 has 2 channels"),
         (("--layout", "normal_depth", "--depth", "none"), "hybrid needs albedo.b"),
+        (("--depth", "none"), "--depth none leaves nothing to measure: name --encoding or --layout"),
+        (
+            ("--effect", "subsurface", "--pipeline", "deferred"),
+            "subsurface does not go into pipeline deferred, but into prepass, inferred, hybrid",
+        ),
         (("--rays", "-1"), "--rays -1: from 0"),
         (("--repeats", "-1"), "--repeats -1: from 0"),
         (("--size", "0x5"), "WIDTHxHEIGHT"),
@@ -184,11 +189,16 @@ def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
 
 def test_an_effect_is_where_its_alpha_says():
     own, surfaces = np.zeros((1, 3, 4), np.float32), np.array([[True, True, False]])
-    assert np.array_equal(drawn_at(own, surfaces), surfaces) and np.array_equal(
-        drawn_at(own[..., :1], surfaces), surfaces
-    )
+    assert not drawn_at(own, surfaces).any() and np.array_equal(drawn_at(own[..., :1], surfaces), surfaces)
     own[0, 1:, 3] = 1
     assert np.array_equal(drawn_at(own, surfaces), [[False, True, True]])
+
+
+def test_an_effect_out_of_the_picture_has_no_figures(run):
+    """One pixel of the head's scene shows no skin."""
+    words = ("--effect", "subsurface", "--encoding", "octahedral", "--depth", "none", "--size", "1x1")
+    status, out, err = run("effects", *words)
+    assert (status, out, err) == (2, "", "normalbench: subsurface shows nothing in this picture\n")
 
 
 def test_two_effects_of_one_kind_are_refused(run):
