@@ -87,8 +87,8 @@ def unshadowed(gl, name: str):
 
 
 def test_hardly_any_shadow_is_undecided(gl):
-    """float32 is in doubt about the shadow of fewer than one pixel in a thousand that the sun can light at all; and there
-    are shadows to speak of. The playground's upper slab keeps nearly all of the sun out."""
+    """Of those that the sun can light at all, float32 is in doubt about fewer than one pixel in a thousand; and there are
+    shadows to speak of. The playground's upper slab keeps nearly all of the sun out."""
     for name in SCENES:
         (seen, _), scene = lit(gl, name), scene_of(name)
         low, high = relighting.sunlit(scene, seen.position, drawn(gl, "prepass", name, True).shadow_map)
