@@ -87,7 +87,7 @@ def unshadowed(gl, name: str):
 
 
 def test_hardly_any_shadow_is_undecided(gl):
-    """Of those that the sun can light at all, float32 is in doubt about fewer than one pixel in a thousand; and there are
+    """Of the pixels that the sun can light, float32 is in doubt about fewer than one in a thousand; and there are
     shadows to speak of. The playground's upper slab keeps nearly all of the sun out."""
     for name in SCENES:
         (seen, _), scene = lit(gl, name), scene_of(name)
