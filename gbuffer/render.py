@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..encodings.position import position_from_linear_depth
+from ..encodings.vec import Vec2
 from .frame.canvas import built
 from .frame.contract import Pass, Pipeline, Run
 from .frame.frame import Frame
@@ -97,7 +99,8 @@ class Rendering:
         rays, depth = self.frame.scene.view.rays((width, height)), texels[..., 3]
         # (x + 1/2) 2 / width - 1 at the middle of pixel x
         x, y = ((np.arange(size, dtype=np.float32) + 0.5) * 2 / size - 1 for size in (width, height))
-        position = np.stack([x * rays[0] * depth, y[:, None] * rays[1] * depth, -depth], axis=-1).astype(np.float32)
+        planes = position_from_linear_depth(Vec2(x, y[:, None]), depth, Vec2(*rays[:2]))
+        position = np.stack(planes, axis=-1).astype(np.float32)
         covered = depth > 0
         texels[covered, :3] = keeps(position[covered], texels[covered, :3])
         texture.write(texels.tobytes())

@@ -27,6 +27,11 @@ def effects_named(names: str) -> list[ChosenEffect]:
     return list(made.values())
 
 
+def name_of(effects: Iterable[ChosenEffect]) -> str | None:
+    """What rows call effects that are in one image; None where there are none."""
+    return ",".join(effect.name for effect in effects) or None
+
+
 def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
     """A pipeline with effects in it; None, and a line among the complaints, where they do not fit."""
     made: dict[str, str] = {}

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..gl.handles import Program, VertexArray
+from ..gl.handles import Program, Query, VertexArray
 from .contract import Pass, PipelineError, Run
 from .frame import Frame
 from .meshes import Geometry
@@ -121,6 +123,17 @@ def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict
     """The samplers that resources are read by, each with its resource and copy."""
     found = {resource.name: (resource, 0) for resource in reads}
     return found | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
+
+
+@contextmanager
+def counted(context: Any, queries: list[Query] | None) -> Iterator[None]:
+    """A query of samples around what is drawn, added to the queries; none where nobody counts."""
+    if queries is None:
+        yield
+        return
+    queries.append(context.query(samples=True))
+    with queries[-1]:
+        yield
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 
 from ..codecs.light_passes import BLEND_OF
 from ..defines.materials import CONSTANTS
-from ..frame.canvas import AGAIN, COVERED, Canvas
+from ..frame.canvas import AGAIN, COVERED, Canvas, counted
 from ..frame.contract import Pass
 from ..frame.resource import Resource
 from ..frame.resources import BY_KIND, DEPTH, LIGHT, NEXT_LIGHT, SHADING, SHADOW_MAP, SURFACE, TERMS
@@ -105,17 +102,8 @@ class LightVolumes:
         # Back faces only: they cover the volume once, and the eye may be inside.
         self._canvas.device.state(None, self._blend, "front")
         raw.shade_marked(again=self._reads)
-        with self._counted():
+        with counted(self._canvas.device.context, self.queries):
             self._draw(shade, LIGHT)
         for drawn in back:
             raw.shade_marked()
             self._bring_back(drawn)
-
-    @contextmanager
-    def _counted(self) -> Iterator[None]:
-        if self.queries is None:
-            yield
-            return
-        self.queries.append(self._canvas.device.context.query(samples=True))
-        with self.queries[-1]:
-            yield

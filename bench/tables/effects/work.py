@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
@@ -21,7 +20,7 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import check_twin, codecs_named
+from ...codecs.names import codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
@@ -29,25 +28,19 @@ from ...options.effect_names import effects_named, lacking, pipeline_with
 from ...options.layout_names import layouts_named
 from ...options.scene_names import scenes_named
 from ...options.targets import checked_setting, checked_target, what_is_left
-from ...output.errors import UsageError, by_reason, pick, pick_one
+from ...output.errors import UsageError, pick, pick_one
 from ...output.writing import check_folder
 from ..charts import drawing, having
-from ..table import Row, Sheet, Step, Tick, Work
+from ..render.work import attempt, with_codecs
+from ..shots import Shot, by_shots
+from ..table import Row, Sheet, Step, Work
 from . import pictures
 from .measure import Bench, Case, group_of, in_order
 from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
 NO_DEPTH = "none"
-
-
-@dataclass(frozen=True)
-class Shot:
-    """A case, what measures it, and the folder for its pictures, if any."""
-
-    bench: Bench
-    case: Case
-    images: Path | None
+NO_GBUFFER = "has no G-buffer that an effect could read a code from"
 
 
 def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
@@ -69,16 +62,7 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
 
 def _with_normals(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
     codecs = codecs_named(options.encoding or "octahedral", options.storage, options.rounding)
-    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
-        check_twin(encoding)
-    complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
-    made: list[tuple[Layout, str | None]] = []
-    for codec in (codec for codec in codecs if codec.fits):
-        try:
-            made.append((LAYOUTS["fp32"].with_codec(codec), None))
-        except LayoutError as error:
-            complaints.append(str(error))
-    return made
+    return [(layout, None) for layout in with_codecs([LAYOUTS["fp32"]], codecs, complaints)]
 
 
 def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
@@ -87,10 +71,7 @@ def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[L
         return []
     made: list[tuple[Layout, str | None]] = []
     for codec in (_depth_codec(name.strip()) for name in names.split(",") if name.strip()):
-        try:
-            made.append((LAYOUTS["fp32"].with_depth(codec), codec.name))
-        except LayoutError as error:
-            complaints.append(str(error))
+        attempt(lambda codec=codec: (LAYOUTS["fp32"].with_depth(codec), codec.name), made, complaints)
     return made
 
 
@@ -114,12 +95,10 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
     exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
     complaints: list[str] = []
     made: list[Case] = []
-    for pipeline in [one for one in pipelines if not one.has_gbuffer]:
-        pipelines.remove(pipeline)
-        complaints.append(f"pipeline {pipeline.name} has no G-buffer that an effect could read a code from")
+    complaints += [f"pipeline {p.name} {NO_GBUFFER}" for p in pipelines if not p.has_gbuffer]
     for effect in effects:
         makers = _suitable(effect, options.scene, setting, complaints)
-        for pipeline in pipelines if makers else ():
+        for pipeline in filter(lambda p: p.has_gbuffer, pipelines) if makers else ():
             if with_effect := pipeline_with(pipeline, [effect], complaints):
                 one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
                 plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
@@ -169,16 +148,6 @@ def _key(case: Case, options: EffectsOptions) -> Row:
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
-def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
-    for step in steps:
-        shot = step.case
-        row, drawn = shot.bench.measure(shot.case)
-        if shot.images and drawn:
-            pictures.write(shot.images, row, drawn, shot.bench.reference(shot.case))
-        tick(step.name)
-        yield [row]
-
-
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["invalid"]:
@@ -205,7 +174,7 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
 
 WORK = Work(
     steps=_steps,
-    measure=_measure,
+    measure=by_shots(pictures.write),
     finish=in_order,
     summary=_summary,
     warnings=_warnings,

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
+from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
@@ -17,7 +18,7 @@ from ...isa.isa import FAMILIES
 from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
-from ...options.effect_names import effects_named, lacking, pipeline_with
+from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick_one, tell
 from ...output.writing import check_folder
@@ -59,7 +60,9 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
     powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
-    pipeline = _pipeline(options, makers)
+    effects = effects_named(options.effects) if options.effects else []
+    pipeline = _pipeline(effects, makers, Setting(seed=options.seed))
+    said |= {"effects": name_of(effects)}
     for line in left_out if options.encoding.strip() != "all" else ():
         leave_out(line)
     return [
@@ -82,12 +85,11 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     ]
 
 
-def _pipeline(options: PickOptions, makers: Sequence[SceneMaker]) -> Pipeline:
-    """What renders the images. Raises UsageError for effects that are not there or have nothing to do."""
-    effects, complaints = effects_named(options.effects) if options.effects else [], []
-    found = (lacking(effects, maker.name, maker.make(Setting(seed=options.seed))) for maker in makers)
+def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
+    """What renders the images. Raises UsageError for effects that do not go together or have nothing to do."""
+    complaints: list[str] = []
     made = pipeline_with(PIPELINES["hybrid"], effects, complaints)
-    complaints += filter(None, found)
+    complaints += filter(None, (lacking(effects, maker.name, maker.make(setting)) for maker in makers))
     if not made or complaints:
         raise UsageError(complaints[0])
     return made
@@ -99,9 +101,7 @@ def _question(options: PickOptions) -> Row:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
     aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, FAMILIES)
-    effects = ",".join(effect.name for effect in effects_named(options.effects)) if options.effects else None
-    asked = {"effects": effects, "aim": aim, "family": family}
-    return asked | {"needs": needs, "most_instructions": options.most_instructions}
+    return {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.codecs.codec import Codec
 from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -22,7 +22,7 @@ from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
-from ...options.effect_names import effects_named, lacking, pipeline_with
+from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
@@ -30,7 +30,8 @@ from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, c
 from ...output.errors import UsageError, by_reason, pick, pick_one
 from ...output.writing import check_folder, without
 from ..charts import drawing, having
-from ..table import Measured, Row, Sheet, Step, Tick, Work
+from ..shots import Shot, by_shots
+from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
 from .measure import Bench, Case, described, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
@@ -57,14 +58,20 @@ def layouts(options: RenderOptions) -> list[Layout]:
         "rgba8" if options.storage is None else options.storage,
         "nearest" if options.rounding is None else options.rounding,
     )
+    complaints: list[str] = []
+    return what_is_left(with_codecs(chosen, codecs, complaints), complaints)
+
+
+def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: list[str]) -> list[Layout]:
+    """Each layout with every codec that fits in it; why others do not is appended to `complaints`."""
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
+    complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
     made: list[Layout] = []
-    complaints = by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
     for layout in chosen:
         for codec in (codec for codec in codecs if codec.fits):
-            _attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
-    return what_is_left(made, complaints)
+            attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
+    return made
 
 
 def cases(options: RenderOptions, device: Device) -> list[Case]:
@@ -90,7 +97,6 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     complaints: list[str] = []
     powers = [None] if options.power is None else powers_named(options.power)
     effects = effects_named(options.effects) if options.effects else []
-    named = ",".join(effect.name for effect in effects) or None
     pipelines = [pipeline_with(one, effects, complaints) for one in pick("pipeline", options.pipeline, PIPELINES)]
     for maker in scenes_named(options.scene):
         exposure = _exposure(options.exposure, maker)
@@ -100,7 +106,7 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         for pipeline in filter(None, pipelines):
             for plan in suited(device, pipeline, plans, complaints):
                 case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples)
-                case = replace(case, exposure=exposure, tone_mapping=tone_mapping, effects=named)
+                case = replace(case, exposure=exposure, tone_mapping=tone_mapping, effects=name_of(effects))
                 made += [replace(case, power=power) for power in powers]
     return what_is_left(made, complaints)
 
@@ -139,20 +145,12 @@ def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: li
     return list(made)
 
 
-def _attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
+def attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
+    """Append what can be made; why it cannot is appended to `complaints`."""
     try:
         made.append(make())
     except LayoutError as error:
         complaints.append(str(error))
-
-
-@dataclass(frozen=True)
-class Shot:
-    """A case, what measures it, and the folder for its pictures, if any."""
-
-    bench: Bench
-    case: Case
-    images: Path | None
 
 
 def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
@@ -172,16 +170,6 @@ def _key(case: Case, options: RenderOptions) -> Row:
     key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
     key |= {"effects": case.effects, "exposure": case.exposure, "tone_mapping": case.tone_mapping}
     return key | {"repeats": options.repeats, "flip": options.flip}
-
-
-def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
-    for step in steps:
-        shot = step.case
-        row, drawn = shot.bench.measure(shot.case)
-        if shot.images and drawn:
-            pictures.write(shot.images, row, drawn, shot.bench.reference(shot.case)[0])
-        tick(step.name)
-        yield [row]
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
@@ -252,7 +240,7 @@ def _worst(step: Step) -> Any:
 
 WORK = Work(
     steps=_steps,
-    measure=_measure,
+    measure=by_shots(lambda folder, row, drawn, reference: pictures.write(folder, row, drawn, reference[0])),
     finish=_finish,
     shown=_shown,
     summary=_summary,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import pi
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...frame.canvas import NEAREST, Canvas
+from ...frame.canvas import NEAREST, Canvas, counted
 from ...frame.contract import Pass, Run
 from ...frame.resource import DEPTH_STENCIL, SURFACES, Resource
 from ...frame.resources import BY_KIND, LIGHT, SHADOW_SIZE, SURFACE, TERMS
@@ -145,18 +144,9 @@ class Blur:
         # The mark stays for the next blur.
         raw.shade_marked(again=True)
         self._canvas.prepare(self._covers.program)
-        with self._counted():
+        with counted(self._canvas.device.context, self.queries):
             self._covers.render(vertices=3)
         context.disable_direct(raw.STENCIL_TEST)
-
-    @contextmanager
-    def _counted(self) -> Iterator[None]:
-        if self.queries is None:
-            yield
-            return
-        self.queries.append(self._canvas.device.context.query(samples=True))
-        with self.queries[-1]:
-            yield
 
 
 def separable(scatter: Scatter) -> tuple[Pass, ...]:

@@ -1,0 +1,44 @@
+"""Steps that draw a frame each: a row of figures, and pictures of it where somebody asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .table import Row, Step, Tick
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A case, what measures it, and the folder for its pictures, if any.
+
+    Attributes:
+        bench: has `measure`, from a case to its row and what was drawn (None where nothing was), and `reference`.
+        case: what is measured.
+        images: the folder.
+    """
+
+    bench: Any
+    case: Any
+    images: Path | None
+
+
+def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
+    """A Work's `measure` for steps whose cases are shots.
+
+    Args:
+        write: the pictures: from the folder, the row, what was drawn and its reference.
+    """
+
+    def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
+        for step in steps:
+            shot: Shot = step.case
+            row, drawn = shot.bench.measure(shot.case)
+            if shot.images and drawn:
+                write(shot.images, row, drawn, shot.bench.reference(shot.case))
+            tick(step.name)
+            yield [row]
+
+    return measure
