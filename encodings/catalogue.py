@@ -23,6 +23,7 @@ from .storages.storage import LIGHT_STORAGES
 PAIRS = (
     "xyz",
     "xyz_renormalised",
+    "xyz_largest",
     "xy",
     "xy_sign",
     "spherical",

@@ -18,7 +18,7 @@ from .frame.plan import Plan
 from .frame.resource import Resource
 from .frame.resources import FINAL, GBUFFER
 from .gl.device import Device, read_pixels
-from .layouts.layout import LayoutError
+from .layouts.words import LayoutError
 from .readback.resolve import RESOLVE, RESOLVED
 from .readback.unpack import UNPACK, UNPACKED
 from .scenes.scene import Scene

@@ -36,7 +36,7 @@ app = typer.Typer(
 )
 
 # What `list` leaves out where the terminal is narrow.
-SPARED = ("from", "holds", "bytes_per_pixel", "components", "domain")
+SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "engine")
 INTERRUPTED, TERMINATED = 130, 143
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02

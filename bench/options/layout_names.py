@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...gbuffer.layouts.layout import Layout, LayoutError, read_layout
+from ...gbuffer.layouts.layout import Layout, read_layout
 from ...gbuffer.layouts.presets import LAYOUTS
+from ...gbuffer.layouts.words import LayoutError
 from ..output.errors import UsageError, pick
 
 

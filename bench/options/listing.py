@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.variants import known_settings
 from ...encodings.storages.depth_storage import DEPTH_STORAGES
 from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
 from ...gbuffer.effects.catalogue import EFFECTS
@@ -23,7 +25,7 @@ NORMAL_SETS = {
 FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
-COLUMNS = ("kind", "name", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
+COLUMNS = ("kind", "name", "engine", "year", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
 Row = dict[str, object]
 
 
@@ -33,10 +35,16 @@ def _row(kind: str, name: str, title: str, **more: object) -> Row:
 
 def _encodings() -> list[Row]:
     return [
-        _row("encoding", e.name, e.title, domain=e.domain)
+        _row("encoding", e.name, e.title, domain=e.domain, holds=_settings_of(e))
         | {"components": f"{e.components}" + (" + sign" if e.sign_bits else ""), "from": e.citation}
         for e in ENCODINGS.values()
     ]
+
+
+def _settings_of(encoding: Encoding) -> str | None:
+    """What may be said of an encoding by name, after a colon."""
+    found = ", ".join(known_settings(encoding))
+    return f"settings: {found}" if found else None
 
 
 def _storages() -> list[Row]:
@@ -78,8 +86,9 @@ def _normal_sets() -> list[Row]:
 def _layouts() -> list[Row]:
     return [
         _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
-        | {"holds": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets), "from": layout.source}
-        for layout in LAYOUTS.values()
+        | {"engine": layout.engine or None, "year": layout.year or None, "from": layout.source}
+        | {"holds": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets)}
+        for layout in sorted(LAYOUTS.values(), key=lambda layout: (layout.engine.lower(), layout.year))
     ]
 
 

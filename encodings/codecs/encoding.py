@@ -6,12 +6,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ..vec import Vec2, Vec3
 from .fingerprint import fingerprint
 
 Code = Vec2 | Vec3
+
+# The pole of an encoding is its z. For another axis there: the components in another order, and the order back.
+AXES: Mapping[str, tuple[str, str]] = MappingProxyType({"x": ("yzx", "zxy"), "y": ("zxy", "yzx"), "z": ("xyz", "xyz")})
 
 
 @dataclass(frozen=True)
@@ -76,6 +80,8 @@ class Encoding:
         functions: what the names of its GLSL functions begin with, of a variant that shares another's file.
         parameters: those of its constants that may have other values.
         look_up: that one of its tables that may be another one.
+        axis: which axis of a normal is its z, a key of AXES.
+        sign: 1, or -1 where the opposite of a normal is encoded.
     """
 
     name: str
@@ -97,6 +103,8 @@ class Encoding:
     functions: str = ""
     parameters: tuple[Parameter, ...] = ()
     look_up: LookUp | None = None
+    axis: str = "z"
+    sign: int = 1
 
     @property
     def prefix(self) -> str:
@@ -115,7 +123,7 @@ class Encoding:
     @cached_property
     def fingerprint(self) -> str:
         """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
-        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
+        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise, self.axis, self.sign)
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
 
     def levels_of(self, component: int) -> int:
@@ -123,6 +131,16 @@ class Encoding:
         if component >= self.components:
             return 2
         return self.levels[component] if self.levels else 0
+
+    @property
+    def can_turn(self) -> bool:
+        """Whether it may have another axis or sign: it holds every direction, and none of it lies in a depth."""
+        return self.domain == "sphere" and not self.sign_bits
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether it has another axis or sign than its files."""
+        return (self.axis, self.sign) != ("z", 1)
 
     @property
     def published(self) -> dict[str, float]:
@@ -136,6 +154,25 @@ class Encoding:
         made = replace(self, constants={**self.constants, **macros})
         return made._variant(said, **values)
 
+    def turned(self, axis: str, sign: int, said: str) -> Encoding:
+        """The encoding of directions in other axes, in both languages, named after `said`.
+
+        Args:
+            axis: which axis of a normal becomes its z, a key of AXES.
+            sign: -1 where the opposite direction is encoded.
+        """
+        order, back = AXES[axis]
+        encode, decode = self.encode, self.decode
+
+        def turned_encode(n: Vec3, view: Vec3) -> Any:
+            return encode(_ordered(n, order) * sign, _ordered(view, order) * sign)
+
+        def turned_decode(e: Any, view: Vec3) -> Vec3:
+            return _ordered(decode(e, _ordered(view, order) * sign), back) * sign
+
+        made = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
+        return made._variant(said)
+
     def with_table(self, table: Any, said: str) -> Encoding:
         """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
         assert self.look_up
@@ -148,3 +185,7 @@ class Encoding:
         encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
         name, title = self.name + said, f"{self.title}, {said.removeprefix(':').replace(':', ', ')}"
         return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)
+
+
+def _ordered(v: Vec3, order: str) -> Vec3:
+    return Vec3(*(getattr(v, axis) for axis in order))

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
 from .rounding import scale_of, store_half, store_unorm
-from .storage import R32F, STORAGES, Storage
+from .storage import R16F, R32F, STORAGES, Storage
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
     {
         "packed16": DepthStorage("packed16", "8:8 in B and A of RGBA8", STORAGES["rgba8"], "packed", 16),
         "packed24": DepthStorage("packed24", "8:8:8 in G, B and A of RGBA8", STORAGES["rgba8"], "packed", 24),
-        "r16f": DepthStorage("r16f", "R16F", Storage("r16f", "R16F", "float", (16,), 0x822D), "channel", 16),
+        "r16f": DepthStorage("r16f", "R16F", R16F, "channel", 16),
         "r32f": DepthStorage("r32f", "R32F", R32F, "channel", 32),
         "depth16": _native("depth16", "depth buffer, 16 bits", "unorm", 16, 0x81A5),
         "depth24": _native("depth24", "depth buffer, 24 bits", "unorm", 24, 0x81A6),

@@ -109,6 +109,8 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rgb10a2": Storage("rgb10a2", "RGB10 A2", "unorm", (10, 10, 10, 2), 0x8059),
         "rg16": Storage("rg16", "RG16", "unorm", (16, 16), 0x822C),
         "rg16_snorm": Storage("rg16_snorm", "RG16 signed", "snorm", (16, 16), 0x8F99),
+        "rgba16": Storage("rgba16", "RGBA16", "unorm", (16, 16, 16, 16), 0x805B),
+        "rgba16_snorm": Storage("rgba16_snorm", "RGBA16 signed", "snorm", (16, 16, 16, 16), 0x8F9B),
         "rg16f": Storage("rg16f", "RG16F", "float", (16, 16), 0x822F),
         "rgba16f": Storage("rgba16f", "RGBA16F", "float", (16, 16, 16, 16), 0x881A),
         "rgba32f": Storage("rgba32f", "RGBA32F", "float", (32, 32, 32, 32), 0x8814),
@@ -120,6 +122,7 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rgb8_12_12_snorm": _packed("rgb8_12_12_snorm", "12:12 signed in RGB8", "snorm", 12, 12),
         "rgba8_11_11_10": _packed("rgba8_11_11_10", "11:11:10 in RGBA8", "unorm", 11, 11, 10),
         "rgba8_11_10_11": _packed("rgba8_11_10_11", "11:10:11 in RGBA8", "unorm", 11, 10, 11),
+        "rgba8_10_10_10_snorm": _packed("rgba8_10_10_10_snorm", "10:10:10 signed in RGBA8", "snorm", 10, 10, 10),
         "rgba8_16_16": _packed("rgba8_16_16", "16:16 in RGBA8", "unorm", 16, 16),
     }
 )
@@ -128,9 +131,8 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
 FRAME_STORAGES: Mapping[str, Storage] = MappingProxyType(
     {
         **{name: STORAGES[name] for name in ("rgb10a2", "rgba8", "rgba8_snorm", "rgba16f", "rgba32f")},
+        **{name: STORAGES[name] for name in ("rgba16", "rgba16_snorm")},
         "rgba8_10_10_11_1": _packed("rgba8_10_10_11_1", "10:10:11:1 in RGBA8", "unorm", 10, 10, 11, 1),
-        "rgba16": Storage("rgba16", "RGBA16", "unorm", (16, 16, 16, 16), 0x805B),
-        "rgba16_snorm": Storage("rgba16_snorm", "RGBA16 signed", "snorm", (16, 16, 16, 16), 0x8F9B),
     }
 )
 
@@ -170,8 +172,9 @@ def storage_of(name: str) -> Storage | None:
     return made
 
 
+R16F = Storage("r16f", "R16F", "float", (16,), 0x822D)
 R32F = Storage("r32f", "R32F", "float", (32,), 0x822E)
-# Blending and clearing convert its colours to linear light and back: it is a format for light alone.
+# Writing, blending and clearing convert its colours from linear light: what lies there must be colours.
 SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved=3)
 
 # What holds light.
@@ -184,6 +187,9 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
     {
         **{name: storage for name, storage in STORAGES.items() if not storage.is_packed},
         "r8": Storage("r8", "R8", "unorm", (8,), 0x8229),
+        "r16": Storage("r16", "R16", "unorm", (16,), 0x822A),
+        "r16f": R16F,
         "r32f": R32F,
+        "srgb8_a8": SRGB8_A8,
     }
 )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...encodings import vec
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.encoding import AXES, Encoding
 from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
 from ..gl.device import Device
 from .harness import Passes, check_functions, exact
@@ -26,8 +26,7 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",
-        "ENCODE": f"{encoding.prefix}_encode",
-        "DECODE": f"{encoding.prefix}_decode",
+        **_functions(encoding),
         "COMPONENTS": encoding.components,
         "SIGN_BITS": encoding.sign_bits,
         "LEVELS": levels_of(encoding),
@@ -35,6 +34,16 @@ def encoding_defines(encoding: Encoding) -> dict[str, object]:
         **vec.CONSTANTS,
         **encoding.constants,
     }
+
+
+def _functions(encoding: Encoding) -> dict[str, object]:
+    names: dict[str, object] = {side.upper(): f"{encoding.prefix}_{side}" for side in ("encode", "decode")}
+    if not encoding.is_turned:
+        return names
+    order, back = AXES[encoding.axis]
+    own = {"OWN_" + name: function for name, function in names.items()}
+    own |= {"AXES": order, "AXES_BACK": back, "AXES_SIGN": float(encoding.sign)}
+    return own | {"ENCODE": "turned_encode", "DECODE": "turned_decode"}
 
 
 def levels_of(encoding: Encoding) -> tuple[int, ...]:

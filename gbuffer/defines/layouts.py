@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..codecs.codec_passes import levels_of, storage_kind
-from ..layouts.layout import COMPONENTS, PACKINGS, Layout
+from ..layouts.layout import Layout
+from ..layouts.words import COMPONENTS, PACKINGS, SIGNED, least_carried
 
 
 def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]:
@@ -11,7 +12,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
     words = layout.words
     storages = [target.storage for target in layout.targets]
     first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
-    first |= {"POWER": "power", "KIND": "kind", "INSTANCE": "instance"}
+    first |= {"POWER": "power", "ROUGHNESS": "roughness", "KIND": "kind", "INSTANCE": "instance"}
     widen, bias = PACKINGS[layout.packing]
     return {
         **{name: COMPONENTS.index(component) for name, component in first.items()},
@@ -31,9 +32,27 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
         "NORMAL_BIASED": int(layout.codec.storage.is_biased),
         "PACK_WIDEN": widen,
         "PACK_BIAS": bias,
+        "PACK_SIGNED": int(layout.packing == SIGNED),
         "HAS_DEPTH": int("depth" in layout.components),
         "HAS_POWER": int("power" in layout.components),
+        "HAS_ROUGHNESS": int("roughness" in layout.components),
+        **_sign_defines(layout),
         "HAS_KIND": int("kind" in layout.components),
         "HAS_INSTANCE": int("instance" in layout.components),
         "WORLD_SPACE": int(layout.space == "world"),
+    }
+
+
+def _sign_defines(layout: Layout) -> dict[str, object]:
+    """The macros of a number of the normal's code that lies in the sign of a quantity."""
+    word = layout.carrier
+    is_depth = word is not None and word.component == "depth"
+    beside = word if word and not is_depth else None
+    storage = layout.targets[beside.target].storage if beside else None
+    bits = (beside.bits or storage.bits[beside.first]) if beside and storage else 0
+    return {
+        "SIGN_NUMBER": COMPONENTS.index(layout.carried) if layout.carried else layout.encoding.components,
+        "SIGN_IN_DEPTH": int(layout.has_signed_depth),
+        "SIGN_CARRIER": COMPONENTS.index(beside.component) if beside else -1,
+        "LEAST_CARRIED": least_carried(storage, bits) if storage else 0.0,
     }

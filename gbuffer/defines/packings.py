@@ -13,7 +13,8 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
 from ..codecs.codec_passes import storage_defines
 from ..codecs.depth_passes import depth_defines
-from ..layouts.layout import COMPONENTS, Layout, Target
+from ..layouts.layout import Layout
+from ..layouts.words import COMPONENTS, Target
 from .kernels import Operation
 from .layouts import layout_defines
 from .materials import CONSTANTS

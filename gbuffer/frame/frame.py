@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...encodings.storages.storage import ROUNDINGS
+from ...encodings.storages.storage import ROUNDINGS, Storage
 from ..codecs.codec_passes import encoding_defines
 from ..codecs.depth_passes import depth_defines
 from ..codecs.light_passes import light_defines
@@ -183,5 +183,14 @@ class Frame:
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
     """For each target 0 where the device rounds as asked, else one more than how `storage.glsl` counts the way."""
-    asked = ROUNDINGS.index(layout.rounding) + 1
-    return tuple(0 if device.native_rounding(t.storage) == layout.rounding else asked for t in layout.targets)
+    homes = {word.target for word in layout.words if word.component.startswith("normal.")}
+    return tuple(
+        _shader_rounding(device, target.storage, layout.rounding if at in homes else "nearest")
+        for at, target in enumerate(layout.targets)
+    )
+
+
+def _shader_rounding(device: Device, storage: Storage, asked: str) -> int:
+    # What the sRGB curve makes of colours is the device's affair.
+    is_native = storage.curved > 0 or device.native_rounding(storage) == asked
+    return 0 if is_native else ROUNDINGS.index(asked) + 1

@@ -14,12 +14,13 @@ void write_gbuffer(Surface s) {
     const float scales[] = NORMAL_SCALE;
     vec4 code = widen(encoded(direction_or_forward(axes * s.direction), axes * s.position, scales, NORMAL_BIASED != 0));
     for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
-    numbers[DEPTH] = SIGN_BITS != 0 ? code[COMPONENTS] * -s.position.z : -s.position.z;
+    numbers[DEPTH] = SIGN_IN_DEPTH != 0 ? code[SIGN_NUMBER] * -s.position.z : -s.position.z;
     for (int i = 0; i < 3; ++i) {
         numbers[ALBEDO + i] = s.albedo[i];
         numbers[SPECULAR + i] = s.specular[i];
     }
     numbers[POWER] = s.power;
+    numbers[ROUGHNESS] = roughness_of_power(s.power);
     numbers[KIND] = float(s.kind);
     numbers[INSTANCE] = float(s.instance);
     numbers[MOTION] = s.motion.x;
@@ -42,15 +43,15 @@ Surface read_gbuffer(ivec2 pixel) {
     float depth = HAS_DEPTH != 0 ? abs(numbers[DEPTH]) : texelFetch(linear_depth, pixel, SAMPLE).x;
     s.position = position_from_linear_depth(screen_place(pixel), depth, eye_ray.xy);
     vec4 code = vec4(numbers[0], numbers[1], numbers[2], 0.0);
-#if SIGN_BITS
+#if SIGN_IN_DEPTH
     // The sign bit, and not a comparison: a depth of zero has a sign too.
-    code[COMPONENTS] = sign_bit(numbers[DEPTH]) ? -1.0 : 1.0;
+    code[SIGN_NUMBER] = sign_bit(numbers[DEPTH]) ? -1.0 : 1.0;
 #endif
     mat3 axes = WORLD_SPACE != 0 ? mat3(view_to_world) : mat3(1.0);
     s.direction = DECODE(CODE(code), axes * s.position) * axes;
     s.albedo = vec3(numbers[ALBEDO], numbers[ALBEDO + 1], numbers[ALBEDO + 2]);
     s.specular = vec3(numbers[SPECULAR], numbers[SPECULAR + 1], numbers[SPECULAR + 2]);
-    s.power = numbers[POWER];
+    s.power = HAS_ROUGHNESS != 0 ? power_of_roughness(numbers[ROUGHNESS]) : numbers[POWER];
     s.kind = int(numbers[KIND] + 0.5);
     s.instance = int(numbers[INSTANCE] + 0.5);
     s.motion = vec2(numbers[MOTION], numbers[MOTION + 1]);

@@ -1,16 +1,11 @@
 """What a layout of a G-buffer is: its targets, their formats, and what lies in which of their bits.
 
-A target is a format and a line of words that fill its bits in order, the most significant first. A word alone
-(`albedo.r`) takes one whole channel and is converted as the format converts. A word with a number of bits (`depth:16`)
-is an unsigned integer laid across channels of 8 bits. `-` leaves a channel free.
-
 Native depth and stencil, D32F S8, belong to every layout; a layout without a `depth` word reads the native depth,
-resolved to linear.
+resolved to linear. `words.py` explains the words.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,47 +18,12 @@ from ...encodings.codecs.depth_codec import DepthCodec
 from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
+from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
+from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
 
-# The order is the G-buffer shaders' (gbuffer.glsl).
-COMPONENTS = (
-    *("normal.x", "normal.y", "normal.z", "depth", "albedo.r", "albedo.g", "albedo.b"),
-    *("specular.r", "specular.g", "specular.b", "power", "kind", "instance", "motion.x", "motion.y"),
-)
-FREE = "-"
 SPACES = ("view", "world")
-# How a number x in [0, 1] becomes one of 2^n codes: floor(x (2^n - 1 + widen) + bias).
-PACKINGS = {"nearest": (0.0, 0.5), "truncate": (0.0, 0.0), "truncate_half": (0.5, 0.0)}
-MAX_PACKED_BITS = 24
-# A Deferred ID tells four kinds apart, an instance is 1 to 255.
-LEAST_BITS = {"kind": 2, "instance": 8}
 DEPTH_STENCIL_BYTES = 5
-
-
-class LayoutError(Exception):
-    """A layout that cannot be: one line that says what clashes."""
-
-
-@dataclass(frozen=True)
-class Word:
-    """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise."""
-
-    component: str
-    target: int
-    first: int
-    bits: int
-
-
-@dataclass(frozen=True)
-class Target:
-    """A render target: the name of its format, and the words that fill it."""
-
-    format: str
-    holds: str
-
-    @property
-    def storage(self) -> Storage:
-        return FORMATS[self.format]
 
 
 @dataclass(frozen=True)
@@ -78,6 +38,8 @@ class Layout:
         rounding: "nearest" or "truncate", how the normal's own format rounds.
         packing: how words with bits round, a key of PACKINGS.
         depth: the encoding of the depth; None for the first of the catalogue that suits the normal.
+        engine, year: which engine or SDK it is of, and when its source was written or read; empty and 0 where it is
+            of none.
 
     Raises:
         LayoutError: what it names does not exist, does not fit, or clashes.
@@ -92,6 +54,8 @@ class Layout:
     rounding: str = "nearest"
     packing: str = "nearest"
     depth: DepthEncoding | None = None
+    engine: str = ""
+    year: int = 0
 
     def __post_init__(self):
         self._check_names()
@@ -99,22 +63,43 @@ class Layout:
         for component in found:
             if found.count(component) > 1:
                 raise LayoutError(f"layout {self.name}: {component} lies in two places")
-        encoding, name = self.encoding, self.encoding.name
+        self._check_normal_words(found)
+        if self.depth_encoding.signed != self.has_signed_depth:
+            known = ", ".join(depth.name for depth in self._suitable_depths)
+            said = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
+            raise LayoutError(f"layout {self.name}: {said}")
+
+    def _check_normal_words(self, found: Collection[str]) -> None:
+        """Raises LayoutError where the words of the normal are not those that its encoding needs."""
+        encoding, name, carried = self.encoding, self.encoding.name, self.carried
         normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
-        if {c for c in found if c.startswith("normal.")} != normal:
+        kept = {c for c in found if c.startswith("normal.")} | ({carried} if carried else set())
+        if kept != normal or carried in found:
             raise LayoutError(f"layout {self.name}: {name} needs {', '.join(sorted(normal))}, and no more")
+        if carried and encoding.levels_of("xyz".index(carried[-1])) != 2:
+            raise LayoutError(f"layout {self.name}: {carried} of {name} is no sign, which a quantity could carry")
         if encoding.sign_bits and "depth" not in found:
             raise LayoutError(f"layout {self.name}: {name} keeps a sign in the depth's, but the layout keeps no depth")
-        if self.depth_encoding.signed != (encoding.sign_bits > 0):
-            known = ", ".join(depth.name for depth in self._suitable_depths)
-            raise LayoutError(
-                f"layout {self.name}: {self.depth_encoding.name} does not suit {name}, whose depth is {known}"
-            )
+
+    @property
+    def carrier(self) -> Word | None:
+        """The word that carries a number of the normal's code as its sign; None where none does."""
+        return next((word for word in self.words if word.sign), None)
+
+    @property
+    def carried(self) -> str:
+        """That number, such as `normal.z`; empty where there is none."""
+        return self.carrier.sign if self.carrier else ""
+
+    @property
+    def has_signed_depth(self) -> bool:
+        """Whether the depth carries a sign: of an encoding that leaves one to it, or of a number of the code."""
+        return self.encoding.sign_bits > 0 or (self.carrier is not None and self.carrier.component == "depth")
 
     @property
     def _suitable_depths(self) -> list[DepthEncoding]:
         """Depth encodings that keep a sign if the normal needs one, and only then."""
-        return [depth for depth in DEPTH_ENCODINGS.values() if depth.signed == (self.encoding.sign_bits > 0)]
+        return [depth for depth in DEPTH_ENCODINGS.values() if depth.signed == self.has_signed_depth]
 
     @property
     def depth_encoding(self) -> DepthEncoding:
@@ -130,41 +115,23 @@ class Layout:
     @cached_property
     def words(self) -> tuple[Word, ...]:
         """Where each component lies. Raises LayoutError where one does not fit."""
-        return tuple(word for index, target in enumerate(self.targets) for word in self._placed(index, target))
+        found = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
+        if len([word for word in found if word.sign]) > 1:
+            raise LayoutError(f"layout {self.name}: only one quantity may carry a sign")
+        for word in found:
+            self._check_word(word)
+        return tuple(found)
 
-    def _placed(self, index: int, target: Target) -> list[Word]:
-        place = f"layout {self.name}, target {index} ({target.format})"
-        storage, bit, words = target.storage, 0, []
-        for text in target.holds.split():
-            match = re.fullmatch(r"([a-z.]+|-)(?::(\d{1,2}))?", text)
-            if not match or match[1] not in (*COMPONENTS, FREE):
-                raise LayoutError(f"{place}: unknown component {text!r}; known: {', '.join(COMPONENTS)}, {FREE}")
-            bits = int(match[2] or 0)
-            if match[2] and not bits:
-                raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")
-            if bits and (storage.kind != "unorm" or set(storage.bits) != {8} or bits > MAX_PACKED_BITS):
-                raise LayoutError(
-                    f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into channels of 8-bit UNORM"
-                )
-            channel = len([end for end in _ends(storage) if end <= bit])
-            if not bits and bit not in (0, *_ends(storage)):
-                raise LayoutError(f"{place}: {text} starts within a channel; give it a number of bits")
-            taken = bits or (storage.bits[channel] if channel < storage.channels else 1)
-            if bit + taken > sum(storage.bits):
-                raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
-            if match[1] != FREE:
-                self._check_word(place, match[1], storage, taken)
-                words.append(Word(match[1], index, bit if bits else channel, bits))
-            bit += taken
-        return words
-
-    def _check_word(self, place: str, component: str, storage: Storage, bits: int) -> None:
+    def _check_word(self, word: Word) -> None:
         """Raises LayoutError where a word cannot say what it must."""
-        signed_depth = component == "depth" and self.encoding.sign_bits > 0
-        least = LEAST_BITS.get(component, 2 if signed_depth else 1)
+        target, component = self.targets[word.target], word.component
+        place, storage = place_of(self.name, word.target, target), target.storage
+        bits = word.bits or storage.bits[word.first]
+        is_signed = bool(word.sign) or (component == "depth" and self.encoding.sign_bits > 0)
+        least = LEAST_BITS.get(component, 2 if is_signed else 1)
         if bits < least:
             raise LayoutError(f"{place}: {component} needs {least} bits, not {bits}")
-        if storage.kind == "float" and bits < 16 and signed_depth:
+        if storage.kind == "float" and bits < 16 and is_signed and component == "depth":
             raise LayoutError(f"{place}: {storage.title} has no sign, which {component} needs")
         if component.startswith("normal."):
             self._check_normal(place, component, storage, bits)
@@ -188,8 +155,9 @@ class Layout:
 
     @property
     def components(self) -> frozenset[str]:
-        """What it keeps."""
-        return frozenset(word.component for word in self.words)
+        """What it keeps; a roughness is a power too."""
+        found = frozenset(word.component for word in self.words)
+        return found | {"power"} if "roughness" in found else found
 
     @property
     def codec(self) -> Codec:
@@ -207,7 +175,7 @@ class Layout:
     def normal_bits(self) -> int:
         """The bits its normal takes, with one for each sign bit."""
         taken = (w.bits or self.targets[w.target].storage.bits[w.first] for w in self.words if "normal" in w.component)
-        return sum(taken) + self.encoding.sign_bits
+        return sum(taken) + self.encoding.sign_bits + bool(self.carrier)
 
     @property
     def normal_scales(self) -> tuple[float, ...]:
@@ -228,20 +196,19 @@ class Layout:
         """The layout with its normal in a target of its own, encoded and stored as `codec` does.
 
         Raises:
-            LayoutError: the codec keeps a sign in a depth that the layout does not keep, or lies in signed words.
+            LayoutError: the codec keeps a sign in a depth that the layout does not keep, or cuts off signed words.
         """
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
-        if storage.is_packed and storage.kind != "unorm":
-            raise LayoutError(
-                f"layout {self.name}: {storage.title}: words of a layout are unsigned; use another storage"
-            )
-        kept = [replace(t, holds=" ".join(_without_normal(t.holds))) for t in self.targets]
+        is_signed = storage.is_packed and storage.kind == "snorm"
+        if is_signed and codec.rounding != "nearest":
+            raise LayoutError(f"layout {self.name}: {storage.title}: signed words of a layout are rounded to nearest")
+        kept = [replace(t, holds=" ".join(without_normal(t.holds))) for t in self.targets]
         kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
         sizes = [f":{bits}" if storage.is_packed else "" for bits in storage.bits]
         home = Target(
             storage.target.name, " ".join(f"normal.{a}{size}" for a, size in zip(components, sizes, strict=False))
         )
-        rounding = {"packing" if storage.is_packed else "rounding": codec.rounding}
+        rounding = {"packing" if storage.is_packed else "rounding": SIGNED if is_signed else codec.rounding}
         return replace(self, targets=(*kept, home), encoding=codec.encoding, **rounding)
 
     def with_depth(self, codec: DepthCodec) -> Layout:
@@ -254,7 +221,7 @@ class Layout:
         """
         if codec.misfit:
             raise LayoutError(f"layout {self.name}: {codec.name}: {codec.misfit}")
-        kept = [replace(t, holds=" ".join(FREE if w == "depth" else w for w in t.holds.split())) for t in self.targets]
+        kept = [replace(t, holds=" ".join(_without_depth(t.holds))) for t in self.targets]
         kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
         channel = {16: "r16f", 32: "r32f"}[codec.bits] if codec.storage.format.kind == "float" else ""
         home = Target(channel, "depth") if channel else Target("rgba8", f"depth:{codec.bits}")
@@ -267,20 +234,8 @@ def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> 
         raise LayoutError(f"layout {layout}: unknown {field} {name!r}; known: {', '.join(known)}")
 
 
-def _ends(storage: Storage) -> list[int]:
-    """The bit at which each channel ends."""
-    return [sum(storage.bits[: channel + 1]) for channel in range(storage.channels)]
-
-
-def _without_normal(holds: str) -> list[str]:
-    """The words of a target, those of the normal left free so that the others keep their channels."""
-    words = []
-    for text in holds.split():
-        if not text.startswith("normal."):
-            words.append(text)
-        else:
-            words.append(FREE + text[len("normal.x") :])
-    return words
+def _without_depth(holds: str) -> list[str]:
+    return [FREE + word.removeprefix("depth") if word.startswith("depth") else word for word in holds.split()]
 
 
 def read_layout(path: Path) -> Layout:
@@ -319,10 +274,19 @@ def _from_data(path: Path, data: dict[str, Any]) -> Layout:
         raise LayoutError(f"{path}: {', '.join(texts)} are texts, and encoding must be given")
     if not isinstance(targets, list) or not targets or not all(_is_target(target) for target in targets):
         raise LayoutError(f"{path}: targets is a list of tables, each with a format and what it holds, as texts")
-    named = {"encoding": _named(path, "encoding", texts.pop("encoding"), ENCODINGS)}
+    named: dict[str, Any] = {"encoding": _encoding_named(path, texts.pop("encoding"))}
     depth = texts.pop("depth")
     named |= {"depth": _named(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
     return Layout(called(path.stem), targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
+
+
+def _encoding_named(path: Path, word: str) -> Encoding:
+    """An encoding of the catalogue, or one with settings: octahedral:axis=y."""
+    encoding = _named(path, "encoding", word.partition(MARK)[0], ENCODINGS)
+    try:
+        return variant(encoding, settings_in(word)[1]) if MARK in word else encoding
+    except ValueError as error:
+        raise LayoutError(f"{path}: encoding {word}: {error}") from error
 
 
 def _named(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:

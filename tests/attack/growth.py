@@ -31,7 +31,8 @@ from normalbench.bench.gates.baseline import read_baseline  # noqa: E402
 from normalbench.bench.normals.captures import Reading, capture  # noqa: E402
 from normalbench.bench.results.runs import read_run  # noqa: E402
 from normalbench.gbuffer.gl.shader import Source  # noqa: E402
-from normalbench.gbuffer.layouts.layout import LayoutError, read_layout  # noqa: E402
+from normalbench.gbuffer.layouts.layout import read_layout  # noqa: E402
+from normalbench.gbuffer.layouts.words import LayoutError  # noqa: E402
 from normalbench.gbuffer.scenes.files.read import read_mesh_file  # noqa: E402
 
 MOST = 1.05

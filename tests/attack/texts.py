@@ -20,7 +20,8 @@ from normalbench.bench.gates.gates import checked, read_gates
 from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
-from normalbench.gbuffer.layouts.layout import LayoutError, read_layout
+from normalbench.gbuffer.layouts.layout import read_layout
+from normalbench.gbuffer.layouts.words import LayoutError
 
 from .kind import MEASURED, Attack, Kind, command, one_line, outcome
 

@@ -33,7 +33,7 @@ from normalbench.gbuffer.effects.occlusion.passes import BENT_NORMAL, CONSTANTS,
 from normalbench.gbuffer.effects.sao import turns
 from normalbench.gbuffer.frame.contract import Pass, Pipeline, PipelineError
 from normalbench.gbuffer.frame.resource import Resource
-from normalbench.gbuffer.layouts.layout import Target
+from normalbench.gbuffer.layouts.words import Target
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box, rotation

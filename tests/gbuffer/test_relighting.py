@@ -16,8 +16,9 @@ from normalbench.gbuffer.defines.materials import CONSTANTS
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.frame.resources import SHADOW_SIZE
 from normalbench.gbuffer.frame.scene_buffers import sun_matrix
-from normalbench.gbuffer.layouts.layout import Layout, Target
+from normalbench.gbuffer.layouts.layout import Layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.layouts.words import Target
 from normalbench.gbuffer.passes.shadow_map import SHADOW_OFFSET
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering

@@ -21,8 +21,8 @@ from normalbench.gbuffer.effects.subsurface.profile import (
     separable_kernel,
 )
 from normalbench.gbuffer.frame.contract import PipelineError
-from normalbench.gbuffer.layouts.layout import LayoutError
 from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.layouts.words import LayoutError
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box

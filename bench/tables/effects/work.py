@@ -12,8 +12,9 @@ from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker

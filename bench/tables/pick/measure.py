@@ -17,8 +17,9 @@ from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Keeps, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker

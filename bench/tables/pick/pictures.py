@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....gbuffer.layouts.layout import LayoutError
+from ....gbuffer.layouts.words import LayoutError
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png

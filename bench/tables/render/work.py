@@ -11,8 +11,9 @@ from ....encodings.codecs.codec import Codec
 from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout, LayoutError
+from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker

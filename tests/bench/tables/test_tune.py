@@ -352,7 +352,7 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("stereographic:scale", "each once, such as stereographic:scale=1.7777"),
         ("stereographic:scale=1:scale=2", "each once"),
         ("best_fit:table=", "each once, such as best_fit:table=FILE.npy"),
-        ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: none"),
+        ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: axis, sign"),
         ("all:scale=1", "unknown encoding 'all'"),
         ("best_fit:table=missing.npy", "missing.npy: there is no such file"),
         ("best_fit:table=text.npy", "not a NumPy file"),

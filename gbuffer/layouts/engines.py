@@ -1,0 +1,455 @@
+"""The layouts of engines and SDKs, each from its own source.
+
+`kind`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. Where the source says nothing
+of what lies beside the normal, that is this renderer's.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.variants import variant
+from .layout import Layout
+from .words import Target
+
+ALBEDO = "rgba8: albedo.r albedo.g albedo.b kind"
+SPECULAR = "rgba8: specular.r specular.g specular.b -"
+MATERIAL = f"{ALBEDO}; rgba8: specular.r specular.g specular.b power"
+# What a normal that stands with its roughness is measured beside.
+COLOURS = f"{ALBEDO}; {SPECULAR}"
+# An engine keeps other things beside its normal than this renderer's materials need.
+ENGINE = " (its normal; what lies beside it is this renderer's)"
+NRD = "NVIDIA-RTX/NRD, Shaders/NRD.hlsli (a822d87)"
+
+
+def targets_of(text: str) -> tuple[Target, ...]:
+    """Targets of text such as `rg16f: normal.x normal.y; rgba8: albedo.r albedo.g albedo.b kind`."""
+    return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
+
+
+def _layout(
+    engine: str, year: int, name: str, title: str, encoding: str | Encoding, targets: str, source: str, **how: Any
+) -> Layout:
+    found = ENCODINGS[encoding] if isinstance(encoding, str) else encoding
+    how = {"space": "world", **how}
+    return Layout(name, title, targets_of(targets), found, source, engine=engine, year=year, **how)
+
+
+def _about_y(name: str) -> Encoding:
+    """An encoding with its pole at +y."""
+    return variant(ENCODINGS[name], {"axis": "y"})
+
+
+ENGINES = (
+    _layout(
+        "Killzone 2",
+        2007,
+        "killzone2",
+        "view-space xy, two half floats, there packed into RGBA8: the same bits, other blending and clears",
+        "xy",
+        f"rg16f: normal.x normal.y; {MATERIAL}",
+        "Valient, Deferred Rendering in Killzone 2, 2007" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "CryENGINE 3",
+        2010,
+        "cryengine3",
+        "world-space best-fit normal in RGB8, specular power in A",
+        "best_fit",
+        f"rgba8: normal.x normal.y normal.z power; {COLOURS}",
+        "Kaplanyan, CryENGINE 3: Reaching the Speed of Light, 2010 (Crysis 2)" + ENGINE,
+    ),
+    _layout(
+        "Godot",
+        2023,
+        "godot4",
+        "view-space best-fit normal in RGB8, roughness in A: the Forward+ prepass, not a deferred G-buffer",
+        "best_fit",
+        f"rgba8: normal.x normal.y normal.z power; {COLOURS}",
+        "Godot 4" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "Unreal Engine",
+        2012,
+        "unreal4",
+        "world-space xyz in RGB10A2",
+        "xyz_renormalised",
+        f"rgb10a2: normal.x normal.y normal.z; {MATERIAL}",
+        "Unreal Engine 4 (2012), GBufferA" + ENGINE,
+    ),
+    _layout(
+        "Unreal Engine",
+        2022,
+        "unreal5_substrate_22",
+        "world-space octahedral, 11:11 bits",
+        "octahedral",
+        f"rgba8: normal.x:11 normal.y:11 power:10; {COLOURS}",
+        "Unreal Engine 5, Substrate" + ENGINE,
+    ),
+    _layout(
+        "Unreal Engine",
+        2022,
+        "unreal5_substrate_32",
+        "world-space octahedral, 16:16 bits",
+        "octahedral",
+        f"rgba8: normal.x:16 normal.y:16; {MATERIAL}",
+        "Unreal Engine 5, Substrate" + ENGINE,
+    ),
+    _layout(
+        "Unity",
+        2015,
+        "unity_builtin",
+        "world-space xyz in RGB10A2",
+        "xyz_renormalised",
+        f"{MATERIAL}; rgb10a2: normal.x normal.y normal.z",
+        "Unity, built-in deferred path" + ENGINE,
+    ),
+    _layout(
+        "Unity",
+        2021,
+        "unity_urp",
+        "world-space xyz in RGBA8 signed; where that cannot be rendered to, URP takes unity_urp_accurate",
+        "xyz_renormalised",
+        f"{MATERIAL}; rgba8_snorm: normal.x normal.y normal.z",
+        "Unity, Universal Render Pipeline" + ENGINE,
+    ),
+    _layout(
+        "Unity",
+        2021,
+        "unity_urp_accurate",
+        "world-space octahedral, 12:12 in RGB8 by floor(x 4095.5)",
+        "octahedral",
+        f"{MATERIAL}; rgba8: normal.x:12 normal.y:12",
+        "Unity, Universal Render Pipeline, accurate G-buffer normals" + ENGINE,
+        packing="truncate_half",
+    ),
+    _layout(
+        "Unity",
+        2018,
+        "unity_hdrp",
+        "world-space octahedral, 12:12 in RGB8",
+        "octahedral",
+        f"{MATERIAL}; rgba8: normal.x:12 normal.y:12",
+        "Unity, High Definition Render Pipeline, less its step that keeps z off 0" + ENGINE,
+        packing="truncate_half",
+    ),
+    _layout(
+        "Bevy",
+        2024,
+        "bevy",
+        "world-space octahedral, 12:12, rounded",
+        "octahedral",
+        f"rgba8: normal.x:12 normal.y:12; {MATERIAL}",
+        "Bevy, deferred path, newer releases" + ENGINE,
+    ),
+    _layout(
+        "Bevy",
+        2023,
+        "bevy_truncated",
+        "world-space octahedral, 12:12, truncated",
+        "octahedral",
+        f"rgba8: normal.x:12 normal.y:12; {MATERIAL}",
+        "Bevy, deferred path, older releases" + ENGINE,
+        packing="truncate",
+    ),
+    _layout(
+        "Bevy",
+        2023,
+        "bevy_prepass",
+        "world-space xyz in RGB10A2, the normal prepass",
+        "xyz_renormalised",
+        f"rgb10a2: normal.x normal.y normal.z; {MATERIAL}",
+        "bevyengine/bevy, issues 9264 and 22843" + ENGINE,
+    ),
+    _layout(
+        "Bevy",
+        2026,
+        "bevy_prepass_octahedral",
+        "world-space octahedral in RG16 signed, proposed for the normal prepass",
+        "octahedral",
+        f"rg16_snorm: normal.x normal.y; {MATERIAL}",
+        "bevyengine/bevy, issue 22843" + ENGINE,
+    ),
+    _layout(
+        "Granite",
+        2017,
+        "granite",
+        "world-space xyz in RGB10A2",
+        "xyz_renormalised",
+        f"rgb10a2: normal.x normal.y normal.z; {MATERIAL}",
+        "Granite (Arntzen)" + ENGINE,
+    ),
+    _layout(
+        "kajiya",
+        2021,
+        "kajiya",
+        "world-space xyz, 11:10:11 bits, truncated",
+        "xyz_renormalised",
+        f"rgba8: normal.x:11 normal.y:10 normal.z:11; {MATERIAL}",
+        "kajiya (Embark Studios)" + ENGINE,
+        packing="truncate",
+    ),
+    _layout(
+        "NRD",
+        2026,
+        "nrd",
+        "signed octahedron 10:10, its sign on the roughness, material ID: RGB10A2, NRD_NORMAL_ENCODING 2, the default",
+        "signed_octahedral",
+        f"rgb10a2: normal.x normal.y roughness*normal.z kind; rgba8: albedo.r albedo.g albedo.b -; {SPECULAR}",
+        NRD,
+    ),
+    _layout(
+        "NRD",
+        2026,
+        "nrd_rgba8",
+        "xyz over the largest and roughness in RGBA8, NRD_NORMAL_ENCODING 0",
+        "xyz_largest",
+        f"rgba8: normal.x normal.y normal.z roughness; {COLOURS}",
+        NRD,
+    ),
+    _layout(
+        "NRD",
+        2026,
+        "nrd_rgba8_snorm",
+        "xyz over the largest and roughness in RGBA8 signed, NRD_NORMAL_ENCODING 1",
+        "xyz_largest",
+        f"rgba8_snorm: normal.x normal.y normal.z roughness; {COLOURS}",
+        NRD,
+    ),
+    _layout(
+        "NRD",
+        2026,
+        "nrd_rgba16",
+        "xyz over the largest and roughness in RGBA16, NRD_NORMAL_ENCODING 3",
+        "xyz_largest",
+        f"rgba16: normal.x normal.y normal.z roughness; {COLOURS}",
+        NRD,
+    ),
+    _layout(
+        "NRD",
+        2026,
+        "nrd_rgba16_snorm",
+        "xyz over the largest and roughness in RGBA16 signed, NRD_NORMAL_ENCODING 4",
+        "xyz_largest",
+        f"rgba16_snorm: normal.x normal.y normal.z roughness; {COLOURS}",
+        NRD,
+    ),
+    _layout(
+        "Wicked Engine",
+        2026,
+        "wicked",
+        "octahedral and roughness in R11F G11F B10F, rounded to nearest; Wicked computes it in halves",
+        "octahedral",
+        f"r11g11b10f: normal.x normal.y roughness; {COLOURS}",
+        "turanszkij/WickedEngine, shaders/visibility_surfaceCS.hlsl:72, wiRenderer.cpp:11849 (bc3ef16)",
+    ),
+    _layout(
+        "Wicked Engine",
+        2026,
+        "wicked_truncated",
+        "octahedral and roughness in R11F G11F B10F, on a device that cuts off",
+        "octahedral",
+        f"r11g11b10f: normal.x normal.y roughness; {COLOURS}",
+        "turanszkij/WickedEngine, shaders/visibility_surfaceCS.hlsl:72, wiRenderer.cpp:11849 (bc3ef16)",
+        rounding="truncate",
+    ),
+    _layout(
+        "Wicked Engine",
+        2026,
+        "wicked_particles",
+        "xyz 8:8:8 truncated: pack_unitvector, of particles and primitives",
+        "xyz_renormalised",
+        f"rgba8: normal.x:8 normal.y:8 normal.z:8 -:8; {MATERIAL}",
+        "turanszkij/WickedEngine, shaders/globals.hlsli (bc3ef16)" + ENGINE,
+        packing="truncate",
+    ),
+    _layout(
+        "Skyrim Community Shaders",
+        2026,
+        "skyrim_community",
+        "octahedral of -n, z into the screen: what is seen is in the middle, as here. In halves, with 1 - roughness",
+        "octahedral",
+        f"rgb10a2: normal.x normal.y roughness kind; rgba8: albedo.r albedo.g albedo.b -; {SPECULAR}",
+        "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)",
+        space="view",
+    ),
+    _layout(
+        "Skyrim",
+        2026,
+        "skyrim_vanilla",
+        "spheremap, the game's own (EncodeNormalVanilla); z points into the screen, and the pole away, as here",
+        "spheremap",
+        f"rgba8: normal.x normal.y - roughness; {COLOURS}",
+        "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "Donut",
+        2026,
+        "donut",
+        "sRGB8 colours, world-space xyz and roughness in RGBA16 signed, emission RGBA16F, motion RG16F",
+        "xyz_renormalised",
+        "srgb8_a8: albedo.r albedo.g albedo.b kind; srgb8_a8: specular.r specular.g specular.b occlusion; "
+        "rgba16_snorm: normal.x normal.y normal.z roughness; rgba16f: emission.r emission.g emission.b other; "
+        "rg16f: motion.x motion.y",
+        "NVIDIA-RTX/Donut, src/render/GBuffer.cpp:40, include/donut/shaders/gbuffer.hlsli (bfdebdd); opacity is `kind`",
+    ),
+    _layout(
+        "RTX Remix",
+        2026,
+        "remix",
+        "octahedral, two SNORM of 16 bits in R32_UINT: the primary shading normal",
+        "octahedral",
+        f"rg16_snorm: normal.x normal.y; {MATERIAL}",
+        "NVIDIAGameWorks/dxvk-remix, src/dxvk/shaders/rtx/utility/packing.slangh (574be6b)" + ENGINE,
+    ),
+    _layout(
+        "RTX Remix",
+        2026,
+        "remix_ray_reconstruction",
+        "xyz and roughness in RGBA16F: what DLSS Ray Reconstruction is given",
+        "xyz_renormalised",
+        f"rgba16f: normal.x normal.y normal.z roughness; {COLOURS}",
+        "NVIDIAGameWorks/dxvk-remix, rtx_render/rtx_resources.cpp:1043 (574be6b)",
+    ),
+    _layout(
+        "Capsaicin",
+        2026,
+        "capsaicin",
+        "xyz in three RGBA8: of the geometry, the shading and the vertex; roughness R16F, motion RG16F, visibility",
+        "xyz_renormalised",
+        "rgba8: normal.x normal.y normal.z kind; rgba8: albedo.r albedo.g albedo.b other; "
+        f"{SPECULAR}; r16f: roughness; rg16f: motion.x motion.y; rgba8: other:24 other:8; "
+        "rgba32f: other other other other",
+        "GPUOpen-LibrariesAndSDKs/Capsaicin, visibility_buffer.cpp:80-105 (5a3bf2a); the albedo is in a normal's place",
+    ),
+    _layout(
+        "Capsaicin",
+        2026,
+        "capsaicin_rays",
+        "xyz 10:10:10 signed: packNormal, of rays",
+        "xyz_renormalised",
+        f"rgba8: normal.x:10 normal.y:10 normal.z:10 -:2; {MATERIAL}",
+        "GPUOpen-LibrariesAndSDKs/Capsaicin, packNormal (5a3bf2a)" + ENGINE,
+        packing="signed",
+    ),
+    _layout(
+        "Blender",
+        2024,
+        "eevee_next",
+        "octahedral in RG16, a layer for each closure; this is one",
+        "octahedral",
+        f"rg16: normal.x normal.y; {MATERIAL}",
+        "Blender 4.2, EEVEE Next, eevee_gbuffer_lib" + ENGINE,
+    ),
+    _layout(
+        "O3DE",
+        2026,
+        "o3de",
+        "signed octahedron 10:10 in RGB10 A2, its sign in all of B",
+        "signed_octahedral",
+        f"rgb10a2: normal.x normal.y normal.z; {MATERIAL}",
+        "o3de/o3de-atom-sampleviewer, Materials/Pipelines/PrototypeDeferredPipeline/DeferredMaterialPass.azsli:79"
+        + ENGINE,
+    ),
+    _layout(
+        "XeGTAO",
+        2021,
+        "xegtao",
+        "view-space xyz, 11:11:10 in R32_UINT",
+        "xyz_renormalised",
+        f"rgba8: normal.x:11 normal.y:11 normal.z:10; {MATERIAL}",
+        "GameTechDev/XeGTAO" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "Bevy",
+        2025,
+        "bevy_solari",
+        "world-space xyz and roughness in RGBA16F, motion RG16F: what DLSS Ray Reconstruction is given",
+        "xyz_renormalised",
+        f"rgba16f: normal.x normal.y normal.z roughness; {COLOURS}; rg16f: motion.x motion.y",
+        "bevyengine/bevy 0.17, bevy_solari, resolve_dlss_rr_textures.wgsl; there decoded from octahedral 12:12 first",
+    ),
+    _layout(
+        "webgpu-samples",
+        0,
+        "webgpu_samples",
+        "world-space xyz in RGBA16F",
+        "xyz_renormalised",
+        f"rgba16f: normal.x normal.y normal.z; {MATERIAL}",
+        "webgpu/webgpu-samples, deferredRendering (pull request 238)" + ENGINE,
+    ),
+    _layout(
+        "Diligent Engine",
+        0,
+        "diligent_fx",
+        "world-space xyz in RGBA16F",
+        "xyz_renormalised",
+        f"rgba16f: normal.x normal.y normal.z; {MATERIAL}",
+        "DiligentGraphics/DiligentFX, issue 49" + ENGINE,
+    ),
+    _layout(
+        "three.js",
+        0,
+        "three_directions",
+        "view-space xyz in RGBA8, as directionToColor writes them",
+        "xyz_renormalised",
+        f"rgba8: normal.x normal.y normal.z; {MATERIAL}",
+        "mrdoob/three.js, TSL, directionToColor (issue 32136)" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "Timberdoodle",
+        2026,
+        "timberdoodle",
+        "octahedral 12:12 and roughness of 8 bits in one word",
+        "octahedral",
+        f"rgba8: normal.x:12 normal.y:12 roughness:8; {COLOURS}",
+        "Sunset-Flock/Timberdoodle" + ENGINE,
+    ),
+    _layout(
+        "Timberdoodle",
+        2026,
+        "timberdoodle_geometric",
+        "octahedral 16:16: the normal of the triangle",
+        "octahedral",
+        f"rgba8: normal.x:16 normal.y:16; {MATERIAL}",
+        "Sunset-Flock/Timberdoodle" + ENGINE,
+    ),
+    _layout(
+        "Intel deferred samples",
+        2010,
+        "intel_deferred",
+        "view-space spheremap, specular amount and power in RGBA16F",
+        "spheremap_classic",
+        "rgba16f: normal.x normal.y other power; rgba8: albedo.r albedo.g albedo.b kind; "
+        "rgba8: specular.r specular.g specular.b -",
+        "A. Lauritzen, Deferred Rendering for Current and Future Rendering Pipelines, 2010",
+        space="view",
+    ),
+    _layout(
+        "Torque3D",
+        2012,
+        "torque3d",
+        "Lambert azimuthal about y, 8:8, and depth of 16 bits",
+        _about_y("spheremap"),
+        f"rgba8: normal.x normal.y depth:16; {MATERIAL}",
+        "GarageGames/Torque3D, GBuffer conditioner" + ENGINE,
+        space="view",
+    ),
+    _layout(
+        "volo",
+        2023,
+        "volo",
+        "world-space octahedral about y in RG8, since decals on floors met the fold",
+        _about_y("octahedral"),
+        "srgb8_a8: albedo.r albedo.g albedo.b kind; rg8: normal.x normal.y; rg8: roughness other; "
+        "r11g11b10f: emission.r emission.g emission.b; rgba8: specular.r specular.g specular.b -",
+        "BastianBlokland/volo, assets/shaders/include/geometry.glsl, pull request 513; specular is this renderer's",
+    ),
+)
