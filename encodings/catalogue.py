@@ -54,7 +54,7 @@ LIGHT_NAMES = ("plain", "linear", "srgb", "log", "rgbm", "nao32", "rgb9e5")
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
 
-FRAME_NAMES = ("smallest_three", "octahedral_angle", "qtangent")
+FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")
 
 
 def _load(kind: Kind, names: tuple[str, ...]) -> Mapping[str, Any]:

@@ -1,0 +1,91 @@
+"""Encodings with another axis or sign: the same code of other axes, in both languages."""
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.tuned_names import tuned
+from normalbench.bench.metrics.angles import angles_deg
+from normalbench.bench.output.errors import UsageError
+from normalbench.bench.tables.quality.measure import round_trip
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.variants import variant
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import from_array
+from normalbench.gbuffer.codecs.codec_passes import exact_values
+
+TURNS = [{"axis": "x"}, {"axis": "y"}, {"sign": "-1"}, {"axis": "y", "sign": "-1"}]
+CAN_TURN = [name for name, encoding in ENCODINGS.items() if encoding.can_turn and not encoding.is_precise]
+# The pole, where the square's centre is.
+POLES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+
+
+def directions(count: int = 4096) -> np.ndarray:
+    n = np.random.default_rng(3).normal(size=(count, 3))
+    return (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32)
+
+
+@pytest.mark.parametrize("values", TURNS, ids=str)
+@pytest.mark.parametrize("name", ["octahedral", "spheremap"])
+def test_the_pole_of_the_code_is_where_it_was_asked_for(name, values):
+    """0, 0 of the code is the axis, or its opposite."""
+    pole = np.array(POLES[values.get("axis", "z")], np.float32) * float(values.get("sign", "1"))
+    encoding = variant(ENCODINGS[name], values)
+    code = encoding.encode(from_array(pole[None]), from_array(pole[None]))
+    assert np.abs(np.stack(code)).max() < 1e-6, f"the code of {pole} is {code}"
+
+
+@pytest.mark.parametrize("values", TURNS, ids=str)
+@pytest.mark.parametrize("name", ["octahedral", "spheremap", "spherical", "cube", "best_fit", "tetrahedral"])
+def test_both_languages_turn_alike(gl, name, values):
+    """Codes and decodes differ by no more than those of the encoding that is not turned, singular points apart."""
+    found = []
+    for encoding in (ENCODINGS[name], variant(ENCODINGS[name], values)):
+        n = directions(1024)
+        four = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
+        by_jax = np.stack(encoding.encode(from_array(n), from_array(n)), axis=1)
+        codes = np.zeros((len(n), 4), np.float32)
+        codes[:, : by_jax.shape[1]] = by_jax
+        by_gl, decoded = exact_values(gl, encoding, four, four, codes)
+        same = np.abs(by_gl[:, : by_jax.shape[1]] - by_jax).max(axis=1) < 1e-5
+        found.append((same.mean(), np.quantile(angles_deg(n, decoded[:, :3].astype(np.float64)), 0.98)))
+    (plain, plain_angle), (turned, turned_angle) = found
+    assert turned >= plain - 0.01, f"{turned:.3%} of codes agree, {plain:.3%} where it is not turned"
+    assert turned_angle <= max(2 * plain_angle, 1e-3), f"{turned_angle:.3g} degrees off without storage"
+
+
+@pytest.mark.parametrize("name", CAN_TURN)
+def test_a_turned_encoding_is_as_good_on_the_sphere(name):
+    """The error of uniform directions does not depend on the axis, but for what sampling makes of it."""
+    n = directions(2**17)
+    rms = []
+    for encoding in (ENCODINGS[name], variant(ENCODINGS[name], {"axis": "x", "sign": "-1"})):
+        storage = STORAGES["rgba8"] if encoding.components == 3 else STORAGES["rg8"]
+        codec = Codec(encoding, storage)
+        if codec.misfit:
+            codec = Codec(encoding, STORAGES["rgb8_10_10_2"])
+        rms.append(float(np.sqrt(np.mean(angles_deg(n, round_trip(codec, n, n)) ** 2))))
+    assert rms[1] == pytest.approx(rms[0], rel=0.03), f"{rms[1]:.4f} degrees, {rms[0]:.4f} where it is not turned"
+
+
+def test_a_turned_encoding_has_a_fingerprint_of_its_own():
+    turned = variant(ENCODINGS["octahedral"], {"axis": "y"})
+    assert turned.fingerprint != ENCODINGS["octahedral"].fingerprint and turned.name == "octahedral:axis=y"
+
+
+@pytest.mark.parametrize(
+    "word, said",
+    [
+        ("octahedral:axis=w", "axis is x, y or z, not 'w'"),
+        ("octahedral:sign=2", "sign is 1 or -1, not '2'"),
+        ("octahedral:axis", "after octahedral come parameters, each once, such as octahedral:axis=y"),
+        ("octahedral:axis=x:axis=y", "each once"),
+        ("hemi_octahedral:axis=y", "has no parameter 'axis'; known: none"),
+        ("per_pixel_view:sign=-1", "has no parameter 'sign'"),
+        ("xy_sign:axis=x", "has no parameter 'axis'"),
+    ],
+)
+def test_an_axis_that_cannot_be_is_one_line(word, said):
+    with pytest.raises(UsageError) as caught:
+        tuned(word)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
