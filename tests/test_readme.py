@@ -47,7 +47,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
-    "normalbench effects",
+    *("normalbench effects", "normalbench half"),
 }
 
 
@@ -291,6 +291,27 @@ def test_the_effects_table_is_what_is_measured(run):
         method = rows[name, *codes[0]]["method_rms"]
         assert [float(text) for text in figures[4:]] == pytest.approx([1e3 * method] if method else [], rel=0.05), name
         assert method is None or method > 15 * rows[name, *codes[0]]["effect_rms"], name
+
+
+@pytest.mark.slow
+def test_the_half_table_is_what_is_measured(run):
+    """To the digits shown; the largest angle, which a driver's roots decide, to 3 %."""
+    lines = [re.findall(r"[\w.]+", line) for line in table("normalbench half").splitlines()[3:]]
+    assert len(lines) == 11
+    rows = {}
+    for storage in ("rg8", "rgb10a2"):
+        names = ",".join(line[1] for line in lines if line[0] == storage)
+        words = ("--storage", storage, "--normals", "sphere", "--arithmetic", "float,half", "--backend", "jax")
+        status, out, _ = run("quality", "--encoding", names, *words, "--count", "1048576", "--format", "json")
+        assert status == 0
+        rows |= {(storage, row["encoding"]): row for row in json.loads(out)}
+    for storage, name, *figures in lines:
+        pair = rows[storage, name], rows[storage, f"{name}:arithmetic=half"]
+        means = [row["angle_mean_deg"] for row in pair]
+        assert [float(text) for text in figures[:2]] == pytest.approx(means, abs=6e-5), name
+        largest = [row["angle_max_deg"] for row in pair]
+        assert [float(text) for text in figures[2:4]] == pytest.approx(largest, rel=0.03), name
+        assert float(figures[4]) == pytest.approx(pair[1]["half_loss_percent"], rel=0.02, abs=0.06), name
 
 
 def test_the_light_table_is_what_is_measured():

@@ -76,6 +76,7 @@ def quality(
     encoding: Names = ...,
     storage: Names = ...,
     rounding: Names = ...,
+    arithmetic: Names = ...,
     normals: Names = ...,
     backend: Names = ...,
     count: int = ...,
@@ -101,6 +102,7 @@ def quality(
         encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         backend: jax, glsl; comma-separated, or all.
         count: Normals in a uniform set.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import jax
 import jax.numpy as jnp
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
 from ..options.words import given_in
@@ -16,15 +17,24 @@ from ..output.errors import UsageError, by_reason, pick
 from .user_encodings import NoTwinError, encodings_named
 
 
-def codecs_named(encodings: str, storages: str, roundings: str) -> list[Codec]:
+def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
     """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
-    chosen = encodings_named(encodings)
+    chosen = with_arithmetics(encodings_named(encodings), arithmetics)
     return [
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
         for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
         for encoding in chosen
     ]
+
+
+def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:
+    """Encodings computed in each of comma-separated arithmetics, those of a name that says half once. Raises
+    UsageError."""
+    chosen = pick("arithmetic", names, dict(zip(ARITHMETICS, ARITHMETICS, strict=True)))
+    named = [encoding for encoding in encodings if encoding.is_half or FLOAT in chosen]
+    made = [in_half(encoding) for encoding in encodings if HALF in chosen and not encoding.is_half]
+    return [*named, *made]
 
 
 def storages_named(names: str) -> list[Storage]:

@@ -63,6 +63,14 @@ Samples = Annotated[int, Option("--samples", "Samples per pixel; the device may 
 Scale = Annotated[float, Option("--scale", "Size of inferred's buffers relative to the image's, up to 1.")]
 Objects = Annotated[int, Option("--objects", "Objects in the scene `objects`.")]
 Lights = Annotated[int, Option("--lights", "Point lights.")]
+Arithmetics = Annotated[
+    str,
+    Option(
+        "--arithmetic",
+        "What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.",
+        in_run=True,
+    ),
+]
 Repeats = Annotated[int, Option("--repeats", "Frames that times are taken over; of render, 0 takes none.")]
 Images = Annotated[Path | None, Option("--images", "Write pictures into this folder.")]
 Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SVG or PDF file.")]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from ...reports import tables
+from ..half.compute import half_device
 from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
@@ -25,6 +26,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality by GLSL, render, effects, lights, sweep": require_device,
         "instructions (cost --isa, pick)": require_compilers,
         "render --flip": require_flip,
+        "quality --arithmetic half by GLSL": half_device,
         "rays (method_rms of effects)": require_rays,
         "-o FILE.parquet": _require_parquet,
     }

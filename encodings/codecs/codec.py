@@ -11,7 +11,7 @@ from functools import reduce
 import numpy as np
 
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import Storage
+from ..storages.storage import LARGEST, Storage
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -55,11 +55,23 @@ class Codec:
             return f"{storage.title} is of floats, and {self._rounds} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
+        if encoding.is_half and self._not_in_half:
+            return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, [encoding.levels_of(channel) for channel in range(encoding.components)])
 
     @property
     def _rounds(self) -> str:
         return "precise rounding" if self.encoding.is_precise else self.rounding
+
+    @property
+    def _not_in_half(self) -> str:
+        """Why half arithmetic cannot be asked of the encoding; empty where it can."""
+        if self.encoding.is_precise:
+            return "precise rounding compares errors too small"
+        # Whole numbers are bits and counts of loops, which stay integers.
+        numbers = [value for value in self.encoding.constants.values() if isinstance(value, float)]
+        is_large = self.encoding.has_tables or max(numbers, default=0.0) > LARGEST[16]
+        return "it counts in numbers too large" if is_large else ""
 
     @property
     def fits(self) -> bool:
@@ -104,8 +116,9 @@ class Codec:
 
     def stored(self, n: Vec3, view: Vec3):
         """The code of unit normals as it comes back from the storage."""
-        # A number chosen from constants has no width of its own.
-        code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, n.z.dtype) for c in code))
+        # A number chosen from constants has no width of its own; half arithmetic has another one.
+        dtype = jnp.float16 if self.encoding.is_half else n.z.dtype
+        code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, dtype) for c in code))
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
 
     def _nearest_of(self, code, n: Vec3, view: Vec3):

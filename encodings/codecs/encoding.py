@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..vec import Vec2, Vec3
+from ..vec import Vec2, Vec3, jnp
 from .fingerprint import fingerprint
 
 Code = Vec2 | Vec3
@@ -82,6 +82,7 @@ class Encoding:
         look_up: that one of its tables that may be another one.
         axis: which axis of a normal is its z, a key of AXES.
         sign: 1, or -1 where the opposite of a normal is encoded.
+        is_half: every step of encode and decode is rounded to a float of 16 bits; codes are of that type.
     """
 
     name: str
@@ -105,6 +106,7 @@ class Encoding:
     look_up: LookUp | None = None
     axis: str = "z"
     sign: int = 1
+    is_half: bool = False
 
     @property
     def prefix(self) -> str:
@@ -123,7 +125,8 @@ class Encoding:
     @cached_property
     def fingerprint(self) -> str:
         """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
-        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise, self.axis, self.sign)
+        code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
+        code = (*code, self.axis, self.sign, self.is_half)
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
 
     def levels_of(self, component: int) -> int:
@@ -131,6 +134,11 @@ class Encoding:
         if component >= self.components:
             return 2
         return self.levels[component] if self.levels else 0
+
+    @property
+    def has_tables(self) -> bool:
+        """Whether it reads look-up tables."""
+        return self.tables is not dict
 
     @property
     def can_turn(self) -> bool:
@@ -173,6 +181,19 @@ class Encoding:
         made = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
         return made._variant(said)
 
+    def in_half(self, said: str) -> Encoding:
+        """The encoding computed in floats of 16 bits, by the same code, named after `said`."""
+        encode, decode = self.encode, self.decode
+
+        def half_encode(n: Vec3, view: Vec3) -> Any:
+            code = encode(_as(n, jnp.float16), _as(view, jnp.float16))
+            return _as(code, jnp.float16)
+
+        def half_decode(e: Any, view: Vec3) -> Vec3:
+            return _as(decode(_as(e, jnp.float16), _as(view, jnp.float16)), view.z.dtype)
+
+        return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(said)
+
     def with_table(self, table: Any, said: str) -> Encoding:
         """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
         assert self.look_up
@@ -185,6 +206,10 @@ class Encoding:
         encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
         name, title = self.name + said, f"{self.title}, {said.removeprefix(':').replace(':', ', ')}"
         return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)
+
+
+def _as(v: Any, dtype: Any) -> Any:
+    return type(v)(*(jnp.asarray(c, dtype) for c in v))
 
 
 def _ordered(v: Vec3, order: str) -> Vec3:

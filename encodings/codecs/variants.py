@@ -1,4 +1,4 @@
-"""Variants of an encoding by name: `stereographic:scale=1.31`, `octahedral:axis=y:sign=-1`."""
+"""Variants of an encoding by name: `stereographic:scale=1.31`, `octahedral:axis=y`, `octahedral:arithmetic=half`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from .encoding import AXES, Encoding
 
 MARK, TABLE = ":", "table"
 SIGNS = ("1", "-1")
+FLOAT, HALF = ARITHMETICS = ("float", "half")
+# What the name of an encoding in half arithmetic ends with.
+HALF_NAME = f"{MARK}arithmetic={HALF}"
 
 
 def settings_in(word: str) -> tuple[str, dict[str, str]]:
@@ -30,11 +33,13 @@ def known_settings(encoding: Encoding) -> dict[str, str]:
     """The settings of an encoding, each with a value as an example."""
     known = {name: f"{value:g}" for name, value in encoding.published.items()}
     known |= {TABLE: "FILE.npy"} if encoding.look_up else {}
-    return known | ({"axis": "y", "sign": "-1"} if encoding.can_turn else {})
+    known |= {"axis": "y", "sign": "-1"} if encoding.can_turn else {}
+    return known | {"arithmetic": HALF}
 
 
 def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
-    """An encoding with settings: its own parameters by number, and `axis` and `sign` where it holds every direction.
+    """An encoding with settings: its own parameters by number, `axis` and `sign` where it holds every direction, and
+    `arithmetic`.
 
     Raises:
         ValueError: an unknown setting, or a value that it cannot have; a sentence.
@@ -44,9 +49,18 @@ def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
             known = ", ".join(known_settings(encoding)) or "none"
             raise ValueError(f"{encoding.name} has no parameter {key!r}; known: {known}")
     turns = {key: values[key] for key in ("axis", "sign") if key in values}
-    numbers = {key: _number(encoding, key, text) for key, text in values.items() if key not in turns}
+    arithmetic = values.get("arithmetic", FLOAT)
+    _check("arithmetic", arithmetic, ARITHMETICS)
+    own = [key for key in values if key in encoding.published]
+    numbers = {key: _number(encoding, key, values[key]) for key in own}
     made = encoding.with_parameters(numbers) if numbers else encoding
-    return _turned(made, turns) if turns else made
+    made = _turned(made, turns) if turns else made
+    return in_half(made) if arithmetic == HALF else made
+
+
+def in_half(encoding: Encoding) -> Encoding:
+    """The encoding computed in floats of 16 bits."""
+    return encoding.in_half(HALF_NAME)
 
 
 def _number(encoding: Encoding, key: str, text: str) -> float:
@@ -62,7 +76,11 @@ def _number(encoding: Encoding, key: str, text: str) -> float:
 
 def _turned(encoding: Encoding, turns: Mapping[str, str]) -> Encoding:
     axis, sign = turns.get("axis", "z"), turns.get("sign", "1")
-    for key, value, known in (("axis", axis, tuple(AXES)), ("sign", sign, SIGNS)):
-        if value not in known:
-            raise ValueError(f"{key} is {', '.join(known[:-1])} or {known[-1]}, not {value!r}")
+    _check("axis", axis, tuple(AXES))
+    _check("sign", sign, SIGNS)
     return encoding.turned(axis, int(sign), "".join(f"{MARK}{key}={value}" for key, value in turns.items()))
+
+
+def _check(key: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise ValueError(f"{key} is {', '.join(known[:-1])} or {known[-1]}, not {value!r}")

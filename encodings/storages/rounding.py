@@ -149,7 +149,12 @@ def _scale(storage: Storage, channel: int) -> Scale:
 
 
 def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
-    """One number of a texel (float32, any shape), as the format is given it, through one channel and back."""
+    """One number of a texel (float32, any shape), as the format is given it, through one channel and back.
+
+    A float16 is a result of half arithmetic: the format's own conversion is not part of that, the shader's number is.
+    """
+    if x.dtype == jnp.float16:
+        return store_texel(x.astype(jnp.float32), storage, channel, rounding).astype(jnp.float16)
     if storage.kind == "float":
         return _store_float_texel(x, storage.bits[channel], rounding)
     if storage.kind == "snorm":

@@ -12,17 +12,20 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
 from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
 from ..gl.device import Device
+from ..gl.shader import ShaderError
 from .harness import Passes, check_functions, exact
 
 KINDS = ("unorm", "snorm", "float")
 
 
-def encoding_defines(encoding: Encoding) -> dict[str, object]:
-    """The macros that make `code.glsl` speak of an encoding.
+def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, object]:
+    """The macros that make `code.glsl` speak of an encoding; `as_half` where it is compiled in 16-bit types.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+        ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
+    if encoding.is_half and not as_half:
+        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; `quality` measures half arithmetic")
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",

@@ -24,14 +24,17 @@ from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...codecs.user_encodings import NoTwinError
+from ...half import compute as half_compute
+from ...half.round_trip import HalfPasses
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
+from ...output.errors import MissingError
 from ...worst_case import exact_figures
 from .table import TABLE
 
 # Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
 # What an unused channel is drawn as: -1 is black.
@@ -131,6 +134,9 @@ def _how_by_jax() -> dict[str, str]:
 
 @contextmanager
 def _by_glsl(case: Case) -> Iterator[Decoding]:
+    if case.codec.encoding.is_half:
+        yield _by_half_device(case)
+        return
     gl = device()
     with CodecPasses(gl, case.codec) as passes:
 
@@ -141,6 +147,19 @@ def _by_glsl(case: Case) -> Iterator[Decoding]:
 
         loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
         yield Decoding(_decoded_meter(), loads, {"device": gl.renderer, "rounded_by": passes.rounded_by})
+
+
+def _by_half_device(case: Case) -> Decoding:
+    passes = HalfPasses(case.codec)
+    how = {"device": half_compute.name(), "rounded_by": "emulation"}
+
+    def decoded(chunk: Chunk) -> Decoded:
+        rows = (rgba(planes, 1, len(np.ravel(planes.z)))[0] for planes in (chunk.n, chunk.view))
+        found = np.ascontiguousarray(passes.round_trip(*rows).T).reshape(3, *np.shape(chunk.n.z))
+        return Decoded(chunk.n, Vec3(*found), chunk.covered)
+
+    loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
+    return Decoding(_decoded_meter(), loads, how)
 
 
 def identity(value: Any) -> Any:

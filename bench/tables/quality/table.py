@@ -8,6 +8,7 @@ from typing import Annotated
 
 from ...options.counts import DEFAULT_COUNT
 from ...options.option import (
+    Arithmetics,
     Backends,
     Count,
     Encodings,
@@ -32,6 +33,7 @@ class QualityOptions(Reading):
     encoding: Encodings = "all"
     storage: StorageNames = "rgba8"
     rounding: Roundings = "nearest"
+    arithmetic: Arithmetics = "float"
     normals: Normals = "playground"
     backend: Backends = "jax,glsl"
     count: Count = DEFAULT_COUNT
@@ -115,6 +117,13 @@ COLUMNS = (
         HOW,
     ),
     _supremum("sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"),
+    Column(
+        "half_loss_percent",
+        "How much larger the RMS angle is than that of the same code computed in float32; of half arithmetic.",
+        unit="percent",
+        better="less",
+        option="arithmetic",
+    ),
     Column(
         "angle_counts",
         "A histogram of the angles, `from:count`, eight bins an octave.",

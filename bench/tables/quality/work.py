@@ -19,6 +19,7 @@ from ...output.writing import check_folder, without
 from ..charts import backends_of, drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
+from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
 from .table import TABLE, QualityOptions, QualityOutputs
@@ -41,7 +42,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     """
     count = checked_count(options.count)
     check_seed(options.seed)
-    codecs = codecs_named(options.encoding, options.storage, options.rounding)
+    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic)
     backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
     codecs, left_out = fitting(codecs)
     require_jax()
@@ -82,6 +83,10 @@ def _measure(chosen: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         yield [row]
 
 
+def _finished(rows: Sequence[Row]) -> list[Row]:
+    return in_order(with_half_loss(rows))
+
+
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["invalid"]:
@@ -105,7 +110,7 @@ def _named(row: Row) -> str:
 
 def _shown(done: Measured) -> Iterator[Sheet]:
     rows = TABLE.without_hidden(without(with_limits(done.rows), ONCE))
-    yield Sheet("", rows, TABLE.drops(rows))
+    yield Sheet("", rows, TABLE.drops(rows), notes=survivors(done.rows))
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -185,7 +190,7 @@ WORK = Work(
     steps=steps,
     check=_check,
     measure=_measure,
-    finish=in_order,
+    finish=_finished,
     shown=_shown,
     summary=_summary,
     warnings=_warnings,

@@ -4,13 +4,7 @@
 #include "vec.glsl"
 #include "storage.glsl"
 #include ENCODING
-
-#ifdef AXES
-// The encoding in other axes: OWN_ENCODE and OWN_DECODE are its functions, AXES and AXES_BACK the order of components,
-// and AXES_SIGN is -1 where the opposite direction is encoded.
-CODE turned_encode(vec3 n, vec3 view) { return OWN_ENCODE(AXES_SIGN * n.AXES, AXES_SIGN * view.AXES); }
-vec3 turned_decode(CODE e, vec3 view) { return AXES_SIGN * OWN_DECODE(e, AXES_SIGN * view.AXES).AXES_BACK; }
-#endif
+#include "turned.glsl"
 
 vec4 widen(vec2 code) { return vec4(code, 0.0, 0.0); }
 vec4 widen(vec3 code) { return vec4(code, 0.0); }
