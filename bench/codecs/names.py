@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -12,20 +13,51 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
-from ..options.words import given_in
-from ..output.errors import UsageError, by_reason, pick
+from ..options.words import Words, given_in
+from ..output.errors import UsageError, by_reason, names_a_file, pick
 from .user_encodings import NoTwinError, encodings_named
+
+# Between a codec and the encoding of what comes back from it.
+CHAIN = "+"
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
     """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
-    chosen = with_arithmetics(encodings_named(encodings), arithmetics)
+    chosen = with_arithmetics(_with_chains(encodings), arithmetics)
     return [
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
         for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
         for encoding in chosen
     ]
+
+
+def _with_chains(names: str) -> list[Encoding]:
+    """Encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
+    words, own = list(dict.fromkeys(map(str.strip, names.split(",")))), given_in(names)
+    if not any(_is_chain(word) for word in words):
+        return encodings_named(names)
+    single = [word for word in words if not _is_chain(word)]
+    found = encodings_named(Words(single, own)) if single else []
+    return [*found, *(_chained(word, own) for word in words if _is_chain(word))]
+
+
+def _is_chain(word: str) -> bool:
+    return CHAIN in word and not names_a_file(word)
+
+
+def _chained(word: str, own: Mapping[str, Any]) -> Encoding:
+    before, _, then = word.rpartition(CHAIN)
+    name, is_codec, storage = before.rpartition("/")
+    if not (is_codec and name and then):
+        raise UsageError(f"{word}: a chain is ENCODING/STORAGE+ENCODING, such as octahedral/rgb8_12_12+xyz")
+    codecs = codecs_named(Words([name], own), storage, "nearest")
+    encodings = encodings_named(Words([then], own))
+    if len(codecs) != 1 or len(encodings) != 1:
+        raise UsageError(f"{word}: one codec and one encoding at a time")
+    if encodings[0].domain == "view" or codecs[0].encoding.sign_bits:
+        raise UsageError(f"{word}: codes that need a view ray or a depth are not chained")
+    return encodings[0].behind(codecs[0])
 
 
 def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:

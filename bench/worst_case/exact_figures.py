@@ -49,8 +49,10 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
         return {"angle_sup_deg": s.angle_max_deg, "sup_found_by": "every normal", "sup_moved_deg": 0.0}
     if not has_twin(codec.encoding):
         return {"sup_found_by": "nothing: it has no Python twin"}
-    if codec.encoding.is_half:
-        return {"sup_found_by": "nothing: half arithmetic is no exact map, which the search needs"}
+    if not codec.encoding.is_exact:
+        return {
+            "sup_found_by": "nothing: half arithmetic and chains of codecs have no exact map, which the search needs"
+        }
     if AREAS[domain] < area:
         return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
     worst = _exactly(worst_case, codec, domain)
@@ -71,7 +73,7 @@ def odd(codec: Codec, domain: str | None) -> Row:
 
 
 def _has_exact_map(encoding: Encoding) -> bool:
-    return has_twin(encoding) and not encoding.is_half
+    return has_twin(encoding) and encoding.is_exact
 
 
 def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T:

@@ -49,6 +49,8 @@ class Codec:
         Sign bits are kept beside it, in the depth's sign.
         """
         encoding, storage = self.encoding, self.storage
+        if encoding.before and encoding.before.misfit:
+            return f"{encoding.before.name}: {encoding.before.misfit}"
         if encoding.components > storage.channels:
             return f"{encoding.components} components, but {storage.title} has {storage.channels} channels"
         if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
@@ -66,6 +68,8 @@ class Codec:
     @property
     def _not_in_half(self) -> str:
         """Why half arithmetic cannot be asked of the encoding; empty where it can."""
+        if self.encoding.before:
+            return "the first of two codecs is not computed again"
         if self.encoding.is_precise:
             return "precise rounding compares errors too small"
         # Whole numbers are bits and counts of loops, which stay integers.

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..vec import Vec2, Vec3, jnp
+from ..vec import Vec2, Vec3, jnp, unit
 from .fingerprint import fingerprint
 
 Code = Vec2 | Vec3
@@ -83,6 +83,7 @@ class Encoding:
         axis: which axis of a normal is its z, a key of AXES.
         sign: 1, or -1 where the opposite of a normal is encoded.
         is_half: every step of encode and decode is rounded to a float of 16 bits; codes are of that type.
+        before: the codec that normals have been through when they are encoded; None where it is given them as they are.
     """
 
     name: str
@@ -107,6 +108,7 @@ class Encoding:
     axis: str = "z"
     sign: int = 1
     is_half: bool = False
+    before: Any = None
 
     @property
     def prefix(self) -> str:
@@ -127,6 +129,8 @@ class Encoding:
         """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
         code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
         code = (*code, self.axis, self.sign, self.is_half)
+        if self.before:
+            code = (*code, self.before.name, self.before.encoding.fingerprint)
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
 
     def levels_of(self, component: int) -> int:
@@ -149,6 +153,11 @@ class Encoding:
     def is_turned(self) -> bool:
         """Whether it has another axis or sign than its files."""
         return (self.axis, self.sign) != ("z", 1)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether its maps are those of real numbers, which only storage rounds."""
+        return not self.is_half and self.before is None
 
     @property
     def published(self) -> dict[str, float]:
@@ -193,6 +202,23 @@ class Encoding:
             return _as(decode(_as(e, jnp.float16), _as(view, jnp.float16)), view.z.dtype)
 
         return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(said)
+
+    def behind(self, before: Any) -> Encoding:
+        """The encoding of what comes back from another codec: of a G-buffer that is decoded, renormalised and encoded
+        again.
+
+        Args:
+            before: the `Codec` that normals have been through.
+        """
+        encode = self.encode
+
+        def encode_again(n: Vec3, view: Vec3) -> Any:
+            return encode(unit(before.round_trip(n, view)), view)
+
+        domain = before.encoding.domain if self.domain == "sphere" else self.domain
+        title = f"{self.title}, of normals from {before.name}"
+        named = {"name": f"{before.name}+{self.name}", "title": title, "functions": self.prefix, "domain": domain}
+        return replace(self, encode=encode_again, before=before, **named)
 
     def with_table(self, table: Any, said: str) -> Encoding:
         """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""

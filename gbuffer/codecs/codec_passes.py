@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,8 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
+    if encoding.before:
+        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; `quality` measures it")
     if encoding.is_half and not as_half:
         raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; `quality` measures half arithmetic")
     check_functions(encoding.glsl, encoding.signatures)
@@ -98,13 +100,19 @@ class CodecPasses(Passes):
 
     def __init__(self, device: Device, codec: Codec):
         encoding, storage = codec.encoding, codec.storage
+        self._before = CodecPasses(device, encoding.before) if encoding.before else None
         is_native = not storage.is_packed and device.native_rounding(storage) == codec.rounding
         self.rounded_by = "device" if is_native else "shader"
         roundings = [codec.rounding_of(channel) for channel in range(storage.channels)]
-        defines = encoding_defines(encoding) | storage_defines(storage, roundings, not is_native)
+        defines = encoding_defines(replace(encoding, before=None)) | storage_defines(storage, roundings, not is_native)
         formats = {"texels": storage.target} | ({"signed_depths": R32F} if encoding.sign_bits else {})
         shaders, names = ("encode.frag", "decode.frag"), {"ENCODING": encoding.glsl}
         super().__init__(device, shaders, defines, names, formats, encoding.tables)
+
+    def __exit__(self, *error: object) -> None:
+        if self._before:
+            self._before.__exit__(*error)
+        super().__exit__(*error)
 
     def round_trip(self, normals: np.ndarray, views: np.ndarray) -> Decoded:
         """Normals and view-space positions, float32 of shape (height, width, 4), encoded, stored and decoded.
@@ -112,8 +120,16 @@ class CodecPasses(Passes):
         Raises:
             FormatError: the device cannot render to the storage's format.
         """
+        if self._before:
+            normals = _unit(self._before.round_trip(normals, views).normals)
         decoded, codes = self._through([STORAGES["rgba32f"]] * 2, normals=normals, views=views)
         return Decoded(decoded[..., :3], codes)
+
+
+def _unit(normals: np.ndarray) -> np.ndarray:
+    """Directions of shape (height, width, 3), as pixels of four numbers at length 1."""
+    length = np.sqrt(np.sum(normals * normals, axis=-1, keepdims=True))
+    return np.concatenate([normals / np.maximum(length, vec.TINY), np.zeros_like(length)], axis=-1)
 
 
 def exact_values(device: Device, encoding: Encoding, normals, views, given) -> tuple[np.ndarray, np.ndarray]:

@@ -31,8 +31,9 @@ Drawn = dict[tuple[str, Codec], dict[str, np.ndarray]]
 
 
 def stem(normals: str, key: CodecKey) -> str:
-    """What the files of a codec on a set are called, without what they show."""
-    return "-".join([normals, key.encoding, key.storage, *([] if key.rounding == "nearest" else [key.rounding])])
+    """What the files of a codec on a set are called, without what they show. The name of a chain has a slash."""
+    parts = [normals, key.encoding, key.storage, *([] if key.rounding == "nearest" else [key.rounding])]
+    return "-".join(parts).replace("/", "_in_")
 
 
 def write(chosen: Sequence[measure.Case], folder: Path) -> None:

@@ -99,7 +99,8 @@ def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:
 
 def file_name(encoding: str, storage: str, rounding: str) -> str:
     """What a codec's map is called."""
-    return "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])]) + ".npz"
+    name = "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])])
+    return name.replace("/", "_in_") + ".npz"
 
 
 def write_maps(codecs: Iterable[Codec], folder: Path) -> None:

@@ -1,0 +1,81 @@
+"""Chains: an encoding of what comes back from another codec."""
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.metrics.angles import angles_deg
+from normalbench.bench.output.errors import UsageError
+from normalbench.bench.tables.quality.measure import round_trip
+from normalbench.gbuffer.codecs.codec_passes import CodecPasses, encoding_defines
+from normalbench.gbuffer.gl.shader import ShaderError
+
+CHAIN = "octahedral/rgb8_12_12+xyz_renormalised"
+
+
+def directions(count: int) -> np.ndarray:
+    n = np.random.default_rng(7).normal(size=(count, 3))
+    return (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32)
+
+
+def codec(name: str, storage: str = "rgba16f"):
+    (found,) = codecs_named(name, storage, "nearest")
+    return found
+
+
+def test_a_chain_is_one_codec_after_the_other():
+    """To a unit in the last place of what is renormalised between them."""
+    n = directions(4096)
+    first = round_trip(codec("octahedral", "rgb8_12_12"), n, n)
+    first = first / np.linalg.norm(first, axis=1, keepdims=True)
+    expected = round_trip(codec("xyz_renormalised"), first, n)
+    apart = angles_deg(expected, round_trip(codec(CHAIN), n, n))
+    assert np.quantile(apart, 0.99) < 1e-4, f"{np.quantile(apart, 0.99):.2g} degrees"
+
+
+def test_a_chain_is_worse_than_either():
+    """RTX Remix and Bevy give a denoiser octahedral 12:12 in half floats: their errors add up as squares."""
+    n = directions(2**16)
+    rms = [
+        float(np.sqrt(np.mean(angles_deg(n, round_trip(one, n, n)) ** 2)))
+        for one in (codec("octahedral", "rgb8_12_12"), codec("xyz_renormalised"), codec(CHAIN))
+    ]
+    assert rms[2] == pytest.approx(np.hypot(*rms[:2]), rel=0.02), rms
+
+
+def test_both_languages_agree_on_a_chain(gl):
+    n = directions(64 * 64)
+    four = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1).reshape(64, 64, 4)
+    chain = codec("octahedral/rg8+signed_octahedral", "rgb10a2")
+    with CodecPasses(gl, chain) as passes:
+        by_gl = passes.round_trip(four, four).normals.reshape(-1, 3)
+    apart = angles_deg(by_gl, round_trip(chain, n, n))
+    assert np.mean(apart < 1e-3) > 0.995, f"{np.mean(apart < 1e-3):.3%} the same"
+
+
+def test_a_chain_is_not_rendered():
+    with pytest.raises(ShaderError, match="a chain of codecs is not rendered"):
+        encoding_defines(codec(CHAIN).encoding)
+
+
+@pytest.mark.parametrize(
+    "word, said",
+    [
+        ("octahedral+xyz", "a chain is ENCODING/STORAGE+ENCODING"),
+        ("octahedral/rg8+", "a chain is ENCODING/STORAGE+ENCODING"),
+        ("octahedral/rg9+xyz", "unknown storage 'rg9'"),
+        ("octahedron/rg8+xyz", "unknown encoding 'octahedron'"),
+        ("octahedral/rg8+xyzw", "unknown encoding 'xyzw'"),
+        ("xy_sign/rg8+xyz", "are not chained"),
+        ("octahedral/rg8+per_pixel_view", "are not chained"),
+        ("octahedral/all+xyz", "one codec and one encoding at a time"),
+    ],
+)
+def test_a_chain_that_cannot_be_is_one_line(word, said):
+    with pytest.raises(UsageError) as caught:
+        codecs_named(word, "rgba16f", "nearest")
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_the_first_codec_of_a_chain_must_fit():
+    assert "RG8 has 2 channels" in (codec("xyz/rg8+octahedral").misfit or "")
