@@ -107,7 +107,7 @@ def test_a_marker_holds_before_the_test(inside):
         [
             "xy rgba8 nearest sphere jax: psnr_db is *, not at least 50",
             "  worst normal: (*) comes back as (*), * degrees off",
-            "unknown option 'encodin'; known: encoding, storage, rounding, normals, *",
+            "unknown option 'encodin'; known: encoding, storage, rounding, arithmetic, normals, *",
             "the marker normalbench takes options and limits by name, not 'xy'",
             'no limit given; add for example psnr_db = "at least 47.5"',
             "unknown table 'costs'; known: pick, quality, render, *",
