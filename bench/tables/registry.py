@@ -11,6 +11,7 @@ from .table import Table
 FOLDERS = (
     "pick",
     "quality",
+    "mix",
     "render",
     "cost",
     "effects",

@@ -1,0 +1,118 @@
+"""The figures of a row: how far what comes back lies from the right normal, and what of it is garbage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ...metrics.angles import angles_deg
+from .means import AVERAGES, MEANS
+from .model import QUAD
+from .patches import Mixes
+from .reference import toksvig_power, unit_rows
+from .table import GARBAGE_DEG
+
+Row = dict[str, Any]
+
+
+class Figures:
+    """What mixes gave, over those that an encoding can hold.
+
+    Args:
+        mixes: what was mixed.
+        domain: of the encoding.
+        power: what Toksvig's formula starts from.
+        texels: decoded texels of the patches, (TEXELS, patches, 3).
+        mixed: by operation what it gave, decoded, not renormalised, (patches, 3).
+    """
+
+    def __init__(self, mixes: Mixes, domain: str, power: float, texels: np.ndarray, mixed: Mapping[str, np.ndarray]):
+        self._mixes, self._domain, self._power, self._texels, self._mixed = mixes, domain, power, texels, mixed
+        self._normals, self._held = mixes.patches.normals, mixes.patches.held_by(domain)
+        self._alone = angles_between(texels[:, self._held], self._normals[:, self._held])
+
+    def of(self, operation: str) -> Row:
+        """The figures of an operation; the reason where the encoding can hold none of its mixes."""
+        held = self._held & self._mixes.held_by(operation, self._domain)
+        if not held.any():
+            return {"skipped": outside(self._mixes.patches.name, self._domain)}
+        mean = MEANS[operation](self._normals, self._mixes)[held]
+        right, mixed = unit_rows(mean), self._mixed[operation][held]
+        errors, alone = angles_between(mixed, right), self._alone
+        used = self._used(operation)[:, held]
+        reach = angles_between(used, np.broadcast_to(right, used.shape)).max(axis=0)
+        garbage = errors > 2 * alone.max() + np.minimum(GARBAGE_DEG, reach)
+        row: Row = {
+            "count": int(held.sum()),
+            "invalid": int(np.count_nonzero(~np.isfinite(mixed).all(axis=-1))),
+            "alone_mean_deg": float(alone.mean()),
+            "alone_max_deg": float(alone.max()),
+            "angle_mean_deg": float(errors.mean()),
+            "angle_p99_deg": float(np.percentile(errors, 99)),
+            "angle_max_deg": float(errors.max()),
+            "added_max_deg": float(errors.max() - alone.max()),
+            "reach_max_deg": float(reach.max()),
+            "garbage_percent": percent(garbage),
+        }
+        row |= self._worst(int(errors.argmax()), used, right, mixed)
+        return row | (self._powers(operation, held, mean, mixed) if operation in AVERAGES else {})
+
+    def _used(self, operation: str) -> np.ndarray:
+        """The exact normals that an operation mixes, (texels, patches, 3)."""
+        if operation == "detail":
+            return np.stack([self._normals[0], self._mixes.decals])
+        return self._normals[USED.get(operation, slice(None)), :]
+
+    @staticmethod
+    def _worst(at: int, used: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
+        texels = used[:, at]
+        one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
+        named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}
+        named |= {"worst_right": right[at], "worst_result": mixed[at]}
+        return {name: f"({', '.join(f'{c:.4f}' for c in n)})" for name, n in named.items()}
+
+    def _powers(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
+        """Errors of the specular power that Toksvig's formula gives, in percent."""
+        texels = np.nan_to_num(self._texels.astype(np.float64))
+        decoded = MEANS[operation](texels, self._mixes)[held]
+        exact, found, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
+        return {
+            "power_error_percent": 100 * float(np.mean(np.abs(found / exact - 1))),
+            "power_decoded_percent": 100 * float(np.mean(np.abs(after / exact - 1))),
+        }
+
+
+def _lengths(v: np.ndarray) -> np.ndarray:
+    return np.nan_to_num(np.linalg.norm(v.astype(np.float64), axis=-1))
+
+
+def outside(name: str, domain: str) -> str:
+    """Why a set has nothing for an encoding."""
+    return f"no patch of {name} lies whole in the normals that the encoding is made for ({domain})"
+
+
+# By operation, the texels that it mixes; all where none are named.
+PAIR = (0, 1)
+USED: Mapping[str, Any] = MappingProxyType(
+    {
+        **dict.fromkeys(("filter", "mip_2x2", "upsample"), QUAD),
+        **dict.fromkeys(("resolve", "resolve_decoded", "blend", "blend_decoded"), PAIR),
+    }
+)
+
+
+def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Degrees between rows; 180 where one is no direction."""
+    a, b = a.astype(np.float64), b.astype(np.float64)
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        angles = angles_deg(unit_rows(a), unit_rows(b))
+        is_there = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1) & a.any(axis=-1) & b.any(axis=-1)
+    return np.where(is_there, angles, 180.0)
+
+
+def percent(which: np.ndarray) -> float:
+    """The share of true values."""
+    return 100.0 * float(np.mean(which))
