@@ -28,6 +28,7 @@ def pick(
     aim: Names = ...,
     most_instructions: int | None = ...,
     domain: Names | None = ...,
+    needs: Names | None = ...,
     count: int = ...,
     seed: int = ...,
     channels: Names | None = ...,
@@ -57,6 +58,7 @@ def pick(
         aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
         most_instructions: The most instructions, encode and decode together.
         domain: What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
+        needs: What stored codes must survive: filter, blend, resolve; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...metrics.angles import angles_deg
-from .means import AVERAGES, MEANS
+from .means import AVERAGES, MEANS, STRAIGHT
 from .model import QUAD
 from .patches import Mixes
 from .reference import toksvig_power, unit_rows
@@ -44,7 +44,9 @@ class Figures:
         errors, alone = angles_between(mixed, right), self._alone
         used = self._used(operation)[:, held]
         reach = angles_between(used, np.broadcast_to(right, used.shape)).max(axis=0)
-        garbage = errors > 2 * alone.max() + np.minimum(GARBAGE_DEG, reach)
+        straight = STRAIGHT.get(operation, MEANS[operation])(self._normals, self._mixes)[held]
+        geometry = angles_between(straight, right)
+        garbage = errors > geometry + 2 * alone.max() + np.minimum(GARBAGE_DEG, reach)
         row: Row = {
             "count": int(held.sum()),
             "invalid": int(np.count_nonzero(~np.isfinite(mixed).all(axis=-1))),
@@ -54,6 +56,7 @@ class Figures:
             "angle_p99_deg": float(np.percentile(errors, 99)),
             "angle_max_deg": float(errors.max()),
             "added_max_deg": float(errors.max() - alone.max()),
+            "geometry_max_deg": float(geometry.max()),
             "reach_max_deg": float(reach.max()),
             "garbage_percent": percent(garbage),
         }

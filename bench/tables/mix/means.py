@@ -56,5 +56,9 @@ MEANS: Mapping[str, Mean] = MappingProxyType(
         "upsample": _upsampled,
     }
 )
+# By operation, what exact normals would give where that is not what is right: blending follows a straight line.
+STRAIGHT: Mapping[str, Mean] = MappingProxyType(
+    {"detail": lambda texels, mixes: _blended(np.stack([texels[0], mixes.decals]), mixes)}
+)
 # Operations whose mean's length says how much normals vary; a blend's does not.
 AVERAGES = ("filter", "mip_2x2", "mip_4x4", "resolve", "resolve_decoded")

@@ -20,25 +20,34 @@ DONE: Mapping[str, str] = {
 
 
 def _excess(row: Row) -> float:
-    """The largest error less twice that of the texels alone: once for texels read, once for what is written."""
-    return row["angle_max_deg"] - 2 * row["alone_max_deg"]
+    """The largest error less geometry's, and less twice that of the texels alone: once read, once written."""
+    return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * row["alone_max_deg"]
 
 
 def _allowed(row: Row) -> float:
     return MOST_ADDED * row["reach_max_deg"]
 
 
-def fault(row: Row) -> str:
-    """Why a row speaks against its codec; empty where it does not."""
-    far = f"{row['angle_max_deg']:.3g} degrees off"
-    apart = "neighbours" if row["angle_deg"] is None else f"normals {row['angle_deg']:g} degrees apart"
-    done = f"{apart} on {row['normals']}, {DONE[row['operation']]}"
-    if row["garbage_percent"]:
-        pair = f"{row['worst_first']} with {row['worst_second']} gives {row['worst_result']}"
-        return f"{done}: {row['garbage_percent']:.2g} % garbage, up to {far}: {pair}"
-    if _excess(row) > _allowed(row):
-        return f"{done}: up to {far}, {row['alone_max_deg']:.3g} without mixing"
-    return ""
+def is_faulty(row: Row) -> bool:
+    """Whether a row speaks against its codec."""
+    return bool(row["garbage_percent"]) or _excess(row) > _allowed(row)
+
+
+def summed_up(row: Row) -> str:
+    """What a row is and how far off it is, in a few words."""
+    angle = row["angle_deg"]
+    apart = "neighbours" if angle is None else f"normals {angle:g} degree{'s' * (angle != 1)} apart"
+    far = f"up to {row['angle_max_deg']:.3g} degrees off"
+    share = row["garbage_percent"]
+    how = f"{share:.{0 if share >= 10 else 1 if share >= 1 else 3}f} % garbage, {far}" if share else far
+    return f"{apart} on {row['normals']}, {DONE[row['operation']]}: {how}"
+
+
+def _reason(row: Row) -> str:
+    """The same, and the pair that shows it."""
+    if not row["garbage_percent"]:
+        return f"{summed_up(row)}, {row['alone_max_deg']:.3g} without mixing"
+    return f"{summed_up(row)}: {row['worst_first']} with {row['worst_second']} gives {row['worst_result']}"
 
 
 def _severity(row: Row) -> tuple[bool, float]:
@@ -66,9 +75,9 @@ def _verdicts(rows: Sequence[Row]) -> Row:
         part = [row for row in rows if row["operation"] in operations and _counts(row)]
         if {row["operation"] for row in part} != set(operations):
             continue
-        said = why_not(part)
-        made[VERDICTS[use]] = "no" if said else "yes"
-        reasons += [said] if said else []
+        worst = worst_fault(part)
+        made[VERDICTS[use]] = "no" if worst else "yes"
+        reasons += [_reason(worst)] if worst else []
     return made | {"why": "; ".join(dict.fromkeys(reasons)) or None}
 
 
@@ -77,17 +86,17 @@ def _counts(row: Row) -> bool:
     return row["angle_max_deg"] is not None and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
 
 
-def why_not(rows: Sequence[Row]) -> str:
-    """The fault of the worst of some rows; empty where none has any."""
-    faulty = [row for row in rows if fault(row)]
-    return fault(max(faulty, key=_severity)) if faulty else ""
+def worst_fault(rows: Sequence[Row]) -> Row | None:
+    """The worst of the rows that decide and speak against their codec; None where none does."""
+    faulty = [row for row in rows if _counts(row) and is_faulty(row)]
+    return max(faulty, key=_severity) if faulty else None
 
 
 def lines(rows: Sequence[Row]) -> Iterator[Row]:
-    """A line for each codec and back end: its verdicts and its worst figures."""
+    """A line for each codec and back end: its verdicts, and the worst figures of the rows that decide."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
-        if row["angle_max_deg"] is not None:
+        if _counts(row):
             groups.setdefault(codec_of(row), []).append(row)
     for group in groups.values():
         first = group[0]
