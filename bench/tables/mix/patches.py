@@ -141,7 +141,7 @@ def patches_of(normals: NormalSet, angles_deg: tuple[float, ...], count: int, se
     if normals.shape:
         yield from _own_neighbours(normals, count, seed)
         return
-    directions = _directions(normals, count)
+    directions = _directions(normals, count, seed)
     for angle in angles_deg:
         yield _about(normals.name, directions, angle, seed)
 
@@ -152,23 +152,22 @@ def _filled(count: int) -> np.ndarray:
     return np.arange(whole) % count
 
 
-def _planes(normals: NormalSet, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Normals, views and coverage of a set's first ones: (count, 3), (count, 3) and (count,)."""
+def _planes(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Normals, views and coverage of a set: (count, 3), (count, 3) and (count,)."""
     found = ([], [], [])
     for load in normals.loads():
         chunk = load()
         for parts, planes in zip(found, (chunk.n, chunk.view, chunk.covered), strict=True):
             parts.append(np.stack([np.asarray(p) for p in planes], axis=1) if isinstance(planes, Vec3) else planes)
-        if sum(map(len, found[0])) >= most:
-            break
-    n, view, covered = (np.concatenate(parts)[: min(most, normals.count)] for parts in found)
+    n, view, covered = (np.concatenate(parts)[: normals.count] for parts in found)
     return n, view, np.asarray(covered)
 
 
-def _directions(normals: NormalSet, count: int) -> np.ndarray:
-    n, _, covered = _planes(normals, count)
+def _directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
+    """Some of a set's normals or each of them several times, evenly, in random order: alphas go by rows of patches."""
+    n, _, covered = _planes(normals)
     n = unit_rows(n[covered].astype(np.float64))
-    return n[np.arange(count) % len(n)]
+    return n[np.random.default_rng([seed, 2]).permutation(np.arange(count) * len(n) // count)]
 
 
 def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
@@ -193,7 +192,7 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
     """Squares of an image's pixels that are all covered, at random places; none of an image that has none."""
     assert normals.shape
     height, width = normals.shape
-    n, view, covered = (a.reshape(height, width, -1) for a in _planes(normals, height * width))
+    n, view, covered = (a.reshape(height, width, -1) for a in _planes(normals))
     if min(height, width) < SIDE:
         return
     window = np.lib.stride_tricks.sliding_window_view(covered[..., 0], (SIDE, SIDE)).all(axis=(2, 3))

@@ -117,8 +117,8 @@ COLUMNS = (
     Column(
         "garbage_percent",
         f"Results that are off by more than {GARBAGE_DEG:g} degrees, or by more than the angle between the right "
-        "normal and the farthest texel of the mix: those lie across a seam. Twice alone_max_deg and the error of geometry "
-        "are allowed on top.",
+        "normal and the farthest texel of the mix: those lie across a seam. Twice alone_max_deg and the error of the "
+        "geometry come on top.",
         unit="%",
         better="less",
     ),
