@@ -11,8 +11,8 @@ from .table import Table
 FOLDERS = (
     "pick",
     "quality",
-    "mix",
     "render",
+    "mix",
     "cost",
     "effects",
     "lights",

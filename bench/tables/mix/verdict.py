@@ -76,7 +76,7 @@ def _verdicts(rows: Sequence[Row]) -> Row:
     made: Row = dict.fromkeys(VERDICTS.values())
     reasons = []
     for use, operations in USES.items():
-        part = [row for row in rows if row["operation"] in operations and _counts(row)]
+        part = [row for row in rows if row["operation"] in operations and decides(row)]
         if {row["operation"] for row in part} != set(operations):
             continue
         worst = worst_fault(part)
@@ -85,14 +85,14 @@ def _verdicts(rows: Sequence[Row]) -> Row:
     return made | {"why": "; ".join(dict.fromkeys(reasons)) or None}
 
 
-def _counts(row: Row) -> bool:
+def decides(row: Row) -> bool:
     """Whether a row decides: it has figures, and its neighbours are as close as those of a surface."""
     return row["angle_max_deg"] is not None and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
 
 
 def worst_fault(rows: Sequence[Row]) -> Row | None:
     """The worst of the rows that decide and speak against their codec; None where none does."""
-    faulty = [row for row in rows if _counts(row) and is_faulty(row)]
+    faulty = [row for row in rows if decides(row) and is_faulty(row)]
     return max(faulty, key=_severity) if faulty else None
 
 
@@ -100,7 +100,7 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
     """A line for each codec and back end: its verdicts, and the worst figures of the rows that decide."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
-        if _counts(row):
+        if decides(row):
             groups.setdefault(codec_of(row), []).append(row)
     for group in groups.values():
         first = group[0]

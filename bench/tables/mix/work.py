@@ -14,17 +14,18 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_numbers, in_range
 from ...output.errors import UsageError, leave_out, pick
 from ...output.writing import check_plot, save_plot
-from ..charts import drawing, having, one_backend
+from ..charts import backends_of, drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
 from .measure import Case
 from .patches import Patches, mixes_of, patches_of
 from .table import MOST_COUNT, OPERATIONS, TABLE, MixOptions, MixOutputs
-from .verdict import judged, lines
+from .verdict import decides, judged, lines
 
 # Two neighbours further apart than this lie on no surface that a filter is for.
 MOST_ANGLE, MOST_SAMPLES, MOST_POWER = 60.0, 64, 65536
-RAW_DROPS = ("why", "storage", "alone_max_deg")
+NEAREST = "nearest"
+SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
 
 
 def cases(options: MixOptions) -> list[Case]:
@@ -55,7 +56,7 @@ def cases(options: MixOptions) -> list[Case]:
 
 
 def _codecs(options: MixOptions) -> list[Codec]:
-    codecs, left_out = fitting(codecs_named(options.encoding, options.storage, "nearest"))
+    codecs, left_out = fitting(codecs_named(options.encoding, options.storage, NEAREST))
     require_jax()
     if options.backend.strip() == "glsl":
         require_device()
@@ -148,21 +149,28 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(made) if line["why"]
         )
         shown = [{name: value for name, value in line.items() if name != "why"} for line in made]
-        yield Sheet("What each code can be used for", shown, RAW_DROPS, notes=notes)
+        yield Sheet("What each code can be used for", shown, SUMMARY_DROPS, notes=notes)
+
+
+def _charted(rows: Sequence[Row]) -> list[Row]:
+    """The worst of the rows that decide, or of all where none does, as a chart takes them."""
+    usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
+    return [row | {"rounding": NEAREST} for row in _worst([row for row in usable if decides(row)] or usable)]
 
 
 def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
-    if usable:
-        said = "The largest error of each operation and the share of garbage. The figures are in the tables below."
-        title = "What mixing makes of each code"
-        yield drawing("mix", title, said, _worst(usable), charts.mix_chart, specs.mix_specs)
+    if chosen := _charted(rows):
+        said = (
+            "The largest error of each operation and the share of garbage, of the rows that decide the verdicts. The "
+        )
+        said += "figures are in the tables below."
+        title = f"What mixing makes of each code, by {backends_of(chosen)}"
+        yield drawing("mix", title, said, chosen, charts.mix_chart, specs.mix_specs)
 
 
 def _write(done: Measured, _: Any) -> None:
     if done.outputs.plot:
-        usable = one_backend(having(done.rows, "garbage_percent", "angle_max_deg"))
-        save_plot(done.outputs.plot, charts.mix_chart(_worst(usable)))
+        save_plot(done.outputs.plot, charts.mix_chart(_charted(done.rows)))
 
 
 WORK = Work(
