@@ -35,7 +35,7 @@ class Way:
         is_fixed: fixed-point numbers are mixed as integers: each step of a filter is rounded, and a blend's products
             are made of shifts, p + p / 256 + 1/2 for p / 255.
         fraction_bits: of a filter's place between two texels; 0 for as many as a float32 has.
-        rounding: of what is written, one of storage.ROUNDINGS.
+        rounding: of what is written, one of storage.ROUNDINGS; CUT is to 16 bits, of which the lowest are cut off.
         rounds_source: whether what a shader writes is rounded as the codec asks before it is blended.
     """
 
@@ -48,9 +48,14 @@ class Way:
         said = ["integers" if self.is_fixed else "32-bit floats"]
         said += [f"fractions of {self.fraction_bits} bits"] if self.fraction_bits else []
         said += ["the source rounded first"] if self.rounds_source else []
-        return ", ".join(said + (["cut off when written"] if self.rounding == "truncate" else []))
+        said += [WRITTEN[self.rounding]] if self.rounding in WRITTEN else []
+        return ", ".join(said)
 
 
+CUT = "cut"
+WRITTEN: Mapping[str, str] = MappingProxyType(
+    {"truncate": "cut off when written", CUT: "rounded to 16 bits and cut off when written"}
+)
 MODEL = Way()
 # How devices have been found to mix, the plainest first: a filter, a blend, and whatever else is written.
 FILTERS = (MODEL, *(Way(is_fixed, bits) for is_fixed in (True, False) for bits in (8, 6, 4)))
@@ -59,9 +64,10 @@ BLENDS = (
     Way(rounding="truncate"),
     Way(rounds_source=True),
     Way(rounding="truncate", rounds_source=True),
+    Way(rounding=CUT, rounds_source=True),
     Way(is_fixed=True, rounds_source=True),
 )
-MEANS_WAYS = (MODEL, Way(rounding="truncate"), Way(is_fixed=True))
+MEANS_WAYS = (MODEL, Way(rounding="truncate"), Way(rounding=CUT), Way(is_fixed=True))
 WAYS: Mapping[str, Sequence[Way]] = MappingProxyType(
     {
         "filter": FILTERS,
@@ -141,8 +147,19 @@ class Texels:
     def written(self, texels: np.ndarray, rounding: str) -> np.ndarray:
         """Texels as the target keeps them; the depth's sign is kept as it is."""
         channels = len(texels) - self._signs
+        if rounding == CUT:
+            return np.concatenate([self._cut(texels[:channels]), texels[channels:]])
         kept = _stored([jnp.asarray(p) for p in texels[:channels]], self._storage, rounding)
         return np.concatenate([np.stack([np.asarray(p) for p in kept]), texels[channels:]])
+
+    def _cut(self, texels: np.ndarray) -> np.ndarray:
+        """UNORM that is made of the upper bits of 16, of planes without a sign's; other formats as they are."""
+        if self._storage.kind != "unorm":
+            return texels
+        scales = [self._storage.scale(channel) for channel in range(len(texels))]
+        one = np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
+        sixteen = np.rint(np.clip(texels.astype(np.float64), 0, 1) * (2**16 - 1))
+        return (np.floor(sixteen * (one + 1) / 2**16) / one).astype(F32)
 
     def _whole(self, texels: np.ndarray) -> np.ndarray:
         """What stands for 1 in each plane, of a shape that broadcasts; 0 for floats, and for the sign's."""
@@ -173,7 +190,8 @@ class Texels:
             return made
         share = np.rint(alpha * one)
         parts = (_product(np.rint(source * one), share, one), _product(np.rint(base * one), one - share, one))
-        return np.where(one > 0, sum(parts) / np.maximum(one, 1), made).astype(F32)
+        # Products that go down may add up to one step below -1, which reads as -1.
+        return np.where(one > 0, np.maximum(sum(parts) / np.maximum(one, 1), -1), made).astype(F32)
 
 
 def _product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:

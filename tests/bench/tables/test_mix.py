@@ -322,3 +322,22 @@ def test_the_command_writes_rows_and_a_plot(run, tmp_path):
     status, _, err = run(*words, "--plot", str(plot), "-o", str(out))
     assert status == 0 and plot.read_bytes().startswith(b"\x89PNG"), err
     assert len(json.loads(out.read_text())) == 2 * len(OPERATIONS)
+
+
+def test_an_image_without_a_square_of_texels_is_one_line(run, tmp_path):
+    """Of 3 x 3 pixels there is no patch."""
+    flat = np.zeros((3, 3, 3), np.float32)
+    flat[..., 2] = 1.0
+    np.save(tmp_path / "small.npy", flat)
+    status, out, err = run("mix", "--normals", str(tmp_path / "small.npy"), "--backend", "jax")
+    assert (status, out) == (2, "") and "no square of 4 x 4 pixels of it is covered" in err, err
+
+
+def test_a_set_of_few_normals_is_mixed_evenly_and_with_every_alpha():
+    """Each of the six axes gets as many patches, and every alpha of a blend."""
+    given = mixes("axes", 1.0, 1024)
+    centre = given.patches.normals[:4].mean(axis=0)
+    axis = np.argmax(np.concatenate([centre, -centre], axis=1), axis=1)
+    counts = np.bincount(axis, minlength=6)
+    assert counts.min() >= 160 and counts.max() <= 180, counts
+    assert all(len(set(given.alphas[axis == side])) == 9 for side in range(6))
