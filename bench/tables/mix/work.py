@@ -19,7 +19,7 @@ from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
 from .measure import Case
 from .patches import Patches, mixes_of, patches_of
-from .table import MOST_COUNT, OPERATIONS, TABLE, MixOptions, MixOutputs
+from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
 from .verdict import decides, judged, lines
 
 # Two neighbours further apart than this lie on no surface that a filter is for.
@@ -118,13 +118,26 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """The verdicts, then each operation's worst figures; files of rows have every set and angle."""
+    """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
     yield from _summary(done.rows)
     shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "alone_max_deg", "angle_mean_deg")
-    shown += ("angle_max_deg", "garbage_percent", "power_error_percent", "agree_percent")
-    worst = [{name: row[name] for name in shown} for row in _worst(done.rows)]
+    shown += ("angle_max_deg", "garbage_percent", "power_error_percent", "power_decoded_percent")
+    worst = [{name: row[name] for name in shown} for row in _worst(one_backend(done.rows))]
     if worst:
         yield Sheet("The worst of all sets and angles, by operation", worst, TABLE.drops(worst))
+    if ways := _ways(done.rows):
+        yield Sheet("How the device mixes, and the least agreement with the model", ways)
+
+
+def _ways(rows: Sequence[Row]) -> list[Row]:
+    """A line for each storage, operation and arithmetic of the device."""
+    found: dict[tuple[str, ...], float] = {}
+    for row in rows:
+        if row["mixed_by"] and row["agree_percent"] is not None:
+            key = row["storage"], row["operation"], row["mixed_by"]
+            found[key] = min(found.get(key, 100.0), row["agree_percent"])
+    names = ("storage", "operation", "mixed_by")
+    return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in found.items()]
 
 
 def _worst(rows: Sequence[Row]) -> list[Row]:
@@ -149,7 +162,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(made) if line["why"]
         )
         shown = [{name: value for name, value in line.items() if name != "why"} for line in made]
-        yield Sheet("What each code can be used for", shown, SUMMARY_DROPS, notes=notes)
+        title = f"What each code can be used for, by neighbours up to {MOST_JUDGED_DEG:g} degrees apart"
+        yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
 
 
 def _charted(rows: Sequence[Row]) -> list[Row]:
