@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
-from .means import AVERAGES, MEANS, STRAIGHT
-from .model import QUAD
+from .means import AVERAGES, MEANS, right_of
 from .patches import Mixes
-from .reference import toksvig_power, unit_rows
+from .reference import angles_between, toksvig_power
 from .table import GARBAGE_DEG
 
 Row = dict[str, Any]
@@ -39,13 +36,9 @@ class Figures:
         held = self._held & self._mixes.held_by(operation, self._domain)
         if not held.any():
             return {"skipped": outside(self._mixes.patches.name, self._domain)}
-        mean = MEANS[operation](self._normals, self._mixes)[held]
-        right, mixed = unit_rows(mean), self._mixed[operation][held]
-        errors, alone = angles_between(mixed, right), self._alone
-        used = self._used(operation)[:, held]
-        reach = angles_between(used, np.broadcast_to(right, used.shape)).max(axis=0)
-        straight = STRAIGHT.get(operation, MEANS[operation])(self._normals, self._mixes)[held]
-        geometry = angles_between(straight, right)
+        right, mixed = right_of(self._mixes, operation), self._mixed[operation][held]
+        errors, alone = angles_between(mixed, right.normals[held]), self._alone
+        reach, geometry = right.reach_deg[held], right.geometry_deg[held]
         garbage = errors > geometry + 2 * alone.max() + np.minimum(GARBAGE_DEG, reach)
         row: Row = {
             "count": int(held.sum()),
@@ -60,22 +53,9 @@ class Figures:
             "reach_max_deg": float(reach.max()),
             "garbage_percent": percent(garbage),
         }
-        row |= self._worst(int(errors.argmax()), used, right, mixed)
-        return row | (self._powers(operation, held, mean, mixed) if operation in AVERAGES else {})
-
-    def _used(self, operation: str) -> np.ndarray:
-        """The exact normals that an operation mixes, (texels, patches, 3)."""
-        if operation == "detail":
-            return np.stack([self._normals[0], self._mixes.decals])
-        return self._normals[USED.get(operation, slice(None)), :]
-
-    @staticmethod
-    def _worst(at: int, used: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
-        texels = used[:, at]
-        one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
-        named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}
-        named |= {"worst_right": right[at], "worst_result": mixed[at]}
-        return {name: f"({', '.join(f'{c:.4f}' for c in n)})" for name, n in named.items()}
+        at = int(errors.argmax())
+        row |= _worst(right.used[:, held][:, at], right.normals[held][at], mixed[at])
+        return row | (self._powers(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
 
     def _powers(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
         """Errors of the specular power that Toksvig's formula gives, in percent."""
@@ -88,6 +68,14 @@ class Figures:
         }
 
 
+def _worst(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
+    """The two of the texels (count, 3) that are farthest apart, what is right and what came back, as text."""
+    one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
+    named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}
+    named |= {"worst_right": right, "worst_result": mixed}
+    return {name: f"({', '.join(f'{c:.4f}' for c in n)})" for name, n in named.items()}
+
+
 def _lengths(v: np.ndarray) -> np.ndarray:
     return np.nan_to_num(np.linalg.norm(v.astype(np.float64), axis=-1))
 
@@ -95,25 +83,6 @@ def _lengths(v: np.ndarray) -> np.ndarray:
 def outside(name: str, domain: str) -> str:
     """Why a set has nothing for an encoding."""
     return f"no patch of {name} lies whole in the normals that the encoding is made for ({domain})"
-
-
-# By operation, the texels that it mixes; all where none are named.
-PAIR = (0, 1)
-USED: Mapping[str, Any] = MappingProxyType(
-    {
-        **dict.fromkeys(("filter", "mip_2x2", "upsample"), QUAD),
-        **dict.fromkeys(("resolve", "resolve_decoded", "blend", "blend_decoded"), PAIR),
-    }
-)
-
-
-def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Degrees between rows; 180 where one is no direction."""
-    a, b = a.astype(np.float64), b.astype(np.float64)
-    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        angles = angles_deg(unit_rows(a), unit_rows(b))
-        is_there = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1) & a.any(axis=-1) & b.any(axis=-1)
-    return np.where(is_there, angles, 180.0)
 
 
 def percent(which: np.ndarray) -> float:

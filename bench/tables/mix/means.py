@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from ....gbuffer.defines.materials import CONSTANTS
 from .model import QUAD
 from .patches import Mixes
-from .reference import unit_rows
+from .reference import angles_between, unit_rows
 
 
 def _resolved(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
@@ -62,3 +65,40 @@ STRAIGHT: Mapping[str, Mean] = MappingProxyType(
 )
 # Operations whose mean's length says how much normals vary; a blend's does not.
 AVERAGES = ("filter", "mip_2x2", "mip_4x4", "resolve", "resolve_decoded")
+# By operation, the texels that it mixes; all where none are named.
+PAIR = (0, 1)
+USED: Mapping[str, Any] = MappingProxyType(
+    {
+        **dict.fromkeys(("filter", "mip_2x2", "upsample"), QUAD),
+        **dict.fromkeys(("resolve", "resolve_decoded", "blend", "blend_decoded"), PAIR),
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Right:
+    """What an operation should give, whatever the code.
+
+    Attributes:
+        mean: the mix of exact normals, not renormalised, (patches, 3); `normals` is at length 1.
+        used: the exact normals that are mixed, (texels, patches, 3).
+        reach_deg: how far the farthest of them is from the right normal, (patches,).
+        geometry_deg: how far off exact normals would be, (patches,).
+    """
+
+    mean: np.ndarray
+    normals: np.ndarray
+    used: np.ndarray
+    reach_deg: np.ndarray
+    geometry_deg: np.ndarray
+
+
+@lru_cache(maxsize=128)
+def right_of(mixes: Mixes, operation: str) -> Right:
+    """What an operation should give of some mixes; kept for the next code."""
+    texels = mixes.patches.normals
+    mean = MEANS[operation](texels, mixes)
+    normals, straight = unit_rows(mean), STRAIGHT.get(operation, MEANS[operation])(texels, mixes)
+    used = np.stack([texels[0], mixes.decals]) if operation == "detail" else texels[USED.get(operation, slice(None)), :]
+    reach = angles_between(used, np.broadcast_to(normals, used.shape)).max(axis=0)
+    return Right(mean, normals, used, reach, angles_between(straight, normals))

@@ -17,11 +17,12 @@ from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...codecs.user_encodings import NoTwinError
 from ...worst_case.exact_figures import has_twin
-from .figures import Figures, angles_between, outside, percent
+from .figures import Figures, outside, percent
 from .means import BY_NORMALS, STORED_AGAIN
 from .model import BY_MODEL, MODEL, WAYS, Given, Texels, Way
 from .patches import TEXELS, Mixes
 from .programs import Programs
+from .reference import angles_between
 from .table import AGREE_DEG, TABLE
 
 Row = dict[str, Any]

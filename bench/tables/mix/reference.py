@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...metrics.angles import angles_deg
+
 
 def unit_rows(v: np.ndarray) -> np.ndarray:
     """Rows at length 1, (..., 3); a row of length 0 stays 0."""
@@ -56,3 +58,12 @@ def toksvig_power(length: np.ndarray, power: float) -> np.ndarray:
     # s' = f s with f = |n| / (|n| + s (1 - |n|))
     short = np.clip(length, 0.0, 1.0)
     return power * short / (short + power * (1.0 - short))
+
+
+def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Degrees between rows; 180 where one is no direction."""
+    a, b = a.astype(np.float64), b.astype(np.float64)
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        angles = angles_deg(unit_rows(a), unit_rows(b))
+        is_there = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1) & a.any(axis=-1) & b.any(axis=-1)
+    return np.where(is_there, angles, 180.0)

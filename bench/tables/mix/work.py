@@ -46,11 +46,11 @@ def cases(options: MixOptions) -> list[Case]:
     codecs = _codecs(options)
     sets = _patches(options, angles, any(codec.encoding.domain == "view" for codec in codecs))
     samples = _samples(options.samples, backends)
-    mixes = [{name: mixes_of(patches, samples[name]) for name in backends} for patches in sets]
+    mixes = [{given: mixes_of(patches, given) for given in set(samples.values())} for patches in sets]
     return [
-        Case(codec, by_backend[name], name, operations, options.power)
+        Case(codec, by_samples[samples[name]], name, operations, options.power)
         for codec in codecs
-        for by_backend in mixes
+        for by_samples in mixes
         for name in backends
     ]
 
