@@ -20,6 +20,8 @@ from normalbench.bench.metrics import published
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.lights.sums import Adder, equal_lights
+from normalbench.bench.tables.mix.table import USES, VERDICTS
+from normalbench.bench.tables.mix.verdict import lines as verdicts_of_mixes
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -48,6 +50,7 @@ HELD = {
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
     *("normalbench effects", "normalbench half"),
+    "normalbench mix",
 }
 
 
@@ -101,7 +104,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|render|effects|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|mix|render|effects|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -312,6 +315,22 @@ def test_the_half_table_is_what_is_measured(run):
         largest = [row["angle_max_deg"] for row in pair]
         assert [float(text) for text in figures[2:4]] == pytest.approx(largest, rel=0.03), name
         assert float(figures[4]) == pytest.approx(pair[1]["half_loss_percent"], rel=0.02, abs=0.06), name
+
+
+@pytest.mark.slow
+def test_the_mix_table_is_what_is_measured(run):
+    """By the model: verdicts as they are, and shares of garbage to a tenth of a percent."""
+    shape = r"^\| `(\w+)` \| (yes|no) \| ([\d.]+) \| (yes|no) \| ([\d.]+) \| (yes|no) \| ([\d.]+) \|$"
+    lines = re.findall(shape, table("normalbench mix"), re.M)
+    assert len(lines) == 12
+    status, out, _ = run("mix", "--backend", "jax", "--format", "json")
+    assert status == 0
+    found = {line["encoding"]: line for line in verdicts_of_mixes(json.loads(out))}
+    for name, *shown in lines:
+        line = found[name]
+        for use, verdict, said, share in zip(USES, VERDICTS.values(), shown[::2], shown[1::2], strict=True):
+            assert said == line[verdict], (name, use)
+            assert float(share) == pytest.approx(line[f"{use}_garbage_percent"], abs=0.1), (name, use)
 
 
 def test_the_light_table_is_what_is_measured():

@@ -28,6 +28,7 @@ def pick(
     aim: Names = ...,
     most_instructions: int | None = ...,
     domain: Names | None = ...,
+    needs: Names | None = ...,
     count: int = ...,
     seed: int = ...,
     channels: Names | None = ...,
@@ -57,6 +58,7 @@ def pick(
         aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
         most_instructions: The most instructions, encode and decode together.
         domain: What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
+        needs: What stored codes must survive: filter, blend, resolve; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
@@ -173,6 +175,56 @@ def render(
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.
+    """
+
+def mix(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    operation: Names = ...,
+    normals: Names = ...,
+    angle: Names = ...,
+    backend: Names = ...,
+    samples: int = ...,
+    power: float = ...,
+    count: int = ...,
+    seed: int = ...,
+    channels: Names | None = ...,
+    unpack: bool | None = ...,
+    curve: Names = ...,
+    normalise: bool = ...,
+    space: Names = ...,
+    view_matrix: Names | None = ...,
+    mask: Names | None = ...,
+    nan_share: float = ...,
+    fov: float | None = ...,
+    size: Names = ...,
+) -> Rows:
+    """What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.
+
+    Each codec is said to be filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs that are not.
+
+    Args:
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        operation: filter, mip_2x2, mip_4x4, resolve, resolve_decoded, blend, blend_decoded, detail, upsample; comma-separated, or all.
+        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
+        angle: Degrees between neighbours, comma-separated. Images have their own neighbours.
+        backend: jax, glsl; comma-separated, or all.
+        samples: Samples per pixel that are resolved; the device may give more.
+        power: The specular power that Toksvig's formula starts from.
+        count: Mixes of each set and angle.
+        seed: The random seed of uniform sets, points and scenes.
+        channels: Captures: a layer, or the channels of x,y,z by name.
+        unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
+        curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
+        normalise: Captures: accept normals of any length.
+        space: Captures: view, view-left-handed, world.
+        view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
+        mask: Captures: a file or a channel that is 0 on the background.
+        nan_share: Captures: the share of NaN that is masked and counted.
+        fov: Captures: vertical degrees, for per-pixel view space.
+        size: WIDTHxHEIGHT of the picture of a mesh.
     """
 
 def cost(

@@ -12,6 +12,7 @@ FOLDERS = (
     "pick",
     "quality",
     "render",
+    "mix",
     "cost",
     "effects",
     "lights",

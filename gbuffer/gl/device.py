@@ -27,6 +27,8 @@ KEPT_PROGRAMS = 64
 # Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
 ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
+# The one over the other by `raw.blend_by`: GL's CONSTANT_ALPHA and ONE_MINUS_CONSTANT_ALPHA, unknown to moderngl.
+BY_ALPHA = (0x8003, 0x8004)
 # What is drawn of vertices that are no triangles' corners.
 POINTS = moderngl.POINTS
 INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
@@ -186,6 +188,13 @@ class Device:
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         return texture
+
+    @staticmethod
+    def build_mips(texture: moderngl.Texture) -> None:
+        """The levels of a target as the device makes them of its texels; shaders sample level 0 smoothly."""
+        texture.build_mipmaps()
+        texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
+        texture.repeat_x = texture.repeat_y = False
 
     def given_samples(self, asked: int) -> int:
         """The samples a pixel of a target of which so many are asked: a power of two or the next the device has."""

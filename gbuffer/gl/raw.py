@@ -30,6 +30,7 @@ _SIGNATURES = {
     "glFramebufferTexture": "uuui",
     "glFramebufferTextureLayer": "uuuii",
     "glCheckFramebufferStatus": "u",
+    "glBlendColor": "ffff",
     "glClearBufferfi": "uifi",
     "glClearBufferiv": "uip",
     "glColorMask": "bbbb",
@@ -160,3 +161,8 @@ def once_a_pixel(number: int) -> None:
 def clear_stencil() -> None:
     """Stencil to 0 in the framebuffer in use, depth as it is."""
     function("glClearBufferiv")(STENCIL, 0, ctypes.byref(ctypes.c_int(0)))
+
+
+def blend_by(alpha: float) -> None:
+    """What `device.BY_ALPHA` blends by in the draws that follow."""
+    function("glBlendColor")(alpha, alpha, alpha, alpha)

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
-from .charts import LEAST_DEG, Row, bins, frame_label, frame_total, passes_of, steps
+from .charts import LEAST_DEG, MIX_RANGE, Row, bins, frame_label, frame_total, mix_cells, passes_of, steps
 from .pareto import Error, Panel, Point, pareto_front
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
@@ -186,6 +186,30 @@ def effects_specs(rows: Sequence[Row]) -> list[Spec]:
     encoding = {"x": x, "y": y, "color": _named("effect")}
     said = "PSNR of each effect's own image over the mean angle of the normals, a line for each effect."
     return [_spec(found, said, encoding=encoding, layer=[_line(strokeWidth=1, opacity=0.5), points], height=380)]
+
+
+def mix_specs(rows: Sequence[Row]) -> list[Spec]:
+    """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
+
+    Args:
+        rows: as `charts.mix_chart` takes them.
+    """
+    found = [
+        {"codec": CodecKey.of(cell["row"]).label, "operation": cell["operation"], "said": cell["said"]}
+        | {"angle": _rounded(max(cell["angle"], MIX_RANGE[0])), "garbage": _rounded(cell["garbage"])}
+        for cell in mix_cells(rows)
+    ]
+    x = {"field": "operation", "type": "nominal", "title": None, "axis": {"labelAngle": -30}}
+    x["sort"] = list(dict.fromkeys(row["operation"] for row in rows))
+    y = {"field": "codec", "type": "nominal", "title": None, "sort": list(dict.fromkeys(row["codec"] for row in found))}
+    scale = {"type": "log", "domain": list(MIX_RANGE), "scheme": "viridis"}
+    colour = {"field": "angle", "type": "quantitative", "scale": scale, "title": "largest error, degrees"}
+    tooltip = _tooltip(codec="codec", operation="operation", angle="largest error, degrees", garbage="garbage, %")
+    text: Spec = {"mark": {"type": "text", "fontSize": 11}, "encoding": {"text": {"field": "said"}}}
+    text["encoding"]["color"] = {"condition": {"test": "datum.angle > 10", "value": "#000000"}, "value": "#ffffff"}
+    layers = [{"mark": "rect", "encoding": {"color": colour, "opacity": _if_lit(1, 0.3), "tooltip": tooltip}}, text]
+    said = "The largest error of each operation on mixed codes, a line for each codec, with the share of garbage."
+    return [_spec(found, said, encoding={"x": x, "y": y}, layer=layers, height=24 * len(y["sort"]))]
 
 
 def pareto_specs(panels: Sequence[Panel], error: Error) -> list[Spec]:

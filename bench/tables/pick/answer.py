@@ -86,6 +86,8 @@ def why_left_out(row: Row) -> str:
         return f"made for {MADE_FOR[row['domain']]} alone"
     if not row["needs"] and row["lost_percent"]:
         return lost(row)
+    if row.get("cannot_mix"):
+        return row["cannot_mix"]
     most, count = row["most_instructions"], row["instructions"]
     if most is not None and count is None:
         return "instructions not known"

@@ -31,6 +31,8 @@ from ...output import cache as kept
 from ...output.sources import sources
 from ...worst_case.exact_figures import has_twin
 from ..cost import measure as cost
+from ..mix import judge
+from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
 from .answer import IMAGE, answered, clearly_beats
@@ -113,6 +115,9 @@ class Question:
         for name, case in self._cases.items():
             self._rows[name] = _described(case) | angles[name] | self._costs.of(case.codec.encoding)
             tick(f"{case.codec.name} {case.normal_set.name}")
+        for row in self._qualified("angle"):
+            if row["mixing"]:
+                self._rows[row["encoding"]] |= _mixed(self._cases[row["encoding"]])
         self._find_suprema(self._qualified("angle") if self._aim == "worst" else self.answered()[:1])
 
     def draw(self, pictures: Pictures | None) -> None:
@@ -148,6 +153,21 @@ class Question:
         """The rows, in the order of the cases."""
         self._take_suprema()
         return list(self._rows.values())
+
+
+def _mixed(case: Case) -> Row:
+    """Why a code does not survive the mixing that is asked for, if it does not."""
+    uses, domain = case.said["mixing"], case.said["needs"] or case.codec.encoding.domain
+    if domain == "sphere" and not _lost(case.normal_set, "hemisphere"):
+        domain = "hemisphere"
+    key = _key("mixing", case.codec, uses, domain, _normals(case))
+
+    def judged() -> Row:
+        found = judge.faults(case.codec, uses.split(","), case.normal_set, domain)
+        said = (f"cannot be {DONE[use]}: {why}" for use, why in found.items())
+        return {"cannot_mix": "; ".join(said) or None}
+
+    return kept.kept(key, judged)
 
 
 def _described(case: Case) -> Row:

@@ -57,6 +57,10 @@ class PickOptions(Reading):
             "What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.",
         ),
     ] = None
+    needs: Annotated[
+        str | None,
+        Option("--needs", "What stored codes must survive: filter, blend, resolve; comma-separated, or all."),
+    ] = None
     count: Count = COUNT
     seed: Seed = 0
 
@@ -115,6 +119,8 @@ COLUMNS = (
     Column("aim", "What decides.", HOW),
     Column("most_instructions", "The most instructions that were allowed.", HOW),
     Column("needs", "The domain that was asked for.", HOW),
+    Column("mixing", "What stored codes must survive, as --needs says it.", HOW),
+    Column("cannot_mix", "Why the code does not survive that: the verdict of `mix`.", HOW),
     Column("against", "Whether the code was named by --against.", HOW, shown=False),
     Column("count", "How many normals were measured.", HOW),
     shared.DEVICE,

@@ -20,8 +20,9 @@ from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, by_reason, leave_out, pick_one, tell
+from ...output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...output.writing import check_folder
+from ..mix.table import USES
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, groups
@@ -101,7 +102,9 @@ def _question(options: PickOptions) -> Row:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
     aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, FAMILIES)
-    return {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+    uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
+    said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+    return said | {"mixing": ",".join(uses) if uses else None}
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

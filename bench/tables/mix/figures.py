@@ -1,0 +1,90 @@
+"""The figures of a row: how far what comes back lies from the right normal, and what of it is garbage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .means import AVERAGES, MEANS, right_of
+from .patches import Mixes
+from .reference import angles_between, toksvig_power
+from .table import GARBAGE_DEG
+
+Row = dict[str, Any]
+
+
+class Figures:
+    """What mixes gave, over those that an encoding can hold.
+
+    Args:
+        mixes: what was mixed.
+        domain: of the encoding.
+        power: what Toksvig's formula starts from.
+        texels: decoded texels of the patches, (TEXELS, patches, 3).
+        mixed: by operation what it gave, decoded, not renormalised, (patches, 3).
+    """
+
+    def __init__(self, mixes: Mixes, domain: str, power: float, texels: np.ndarray, mixed: Mapping[str, np.ndarray]):
+        self._mixes, self._domain, self._power, self._texels, self._mixed = mixes, domain, power, texels, mixed
+        self._normals, self._held = mixes.patches.normals, mixes.patches.held_by(domain)
+        self._alone = angles_between(texels[:, self._held], self._normals[:, self._held])
+
+    def of(self, operation: str) -> Row:
+        """The figures of an operation; the reason where the encoding can hold none of its mixes."""
+        held = self._held & self._mixes.held_by(operation, self._domain)
+        if not held.any():
+            return {"skipped": outside(self._mixes.patches.name, self._domain)}
+        right, mixed = right_of(self._mixes, operation), self._mixed[operation][held]
+        errors, alone = angles_between(mixed, right.normals[held]), self._alone
+        reach, geometry = right.reach_deg[held], right.geometry_deg[held]
+        garbage = errors > geometry + 2 * alone.max() + np.minimum(GARBAGE_DEG, reach)
+        row: Row = {
+            "count": int(held.sum()),
+            "invalid": int(np.count_nonzero(~np.isfinite(mixed).all(axis=-1))),
+            "alone_mean_deg": float(alone.mean()),
+            "alone_max_deg": float(alone.max()),
+            "angle_mean_deg": float(errors.mean()),
+            "angle_p99_deg": float(np.percentile(errors, 99)),
+            "angle_max_deg": float(errors.max()),
+            "added_max_deg": float(errors.max() - alone.max()),
+            "geometry_max_deg": float(geometry.max()),
+            "reach_max_deg": float(reach.max()),
+            "garbage_percent": percent(garbage),
+        }
+        at = int(errors.argmax())
+        row |= _worst(right.used[:, held][:, at], right.normals[held][at], mixed[at])
+        return row | (self._powers(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
+
+    def _powers(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
+        """Errors of the specular power that Toksvig's formula gives, in percent."""
+        texels = np.nan_to_num(self._texels.astype(np.float64))
+        decoded = MEANS[operation](texels, self._mixes)[held]
+        exact, found, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
+        return {
+            "power_error_percent": 100 * float(np.mean(np.abs(found / exact - 1))),
+            "power_decoded_percent": 100 * float(np.mean(np.abs(after / exact - 1))),
+        }
+
+
+def _worst(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
+    """The two of the texels (count, 3) that are farthest apart, what is right and what came back, as text."""
+    one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
+    named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}
+    named |= {"worst_right": right, "worst_result": mixed}
+    return {name: f"({', '.join(f'{c:.4f}' for c in n)})" for name, n in named.items()}
+
+
+def _lengths(v: np.ndarray) -> np.ndarray:
+    return np.nan_to_num(np.linalg.norm(v.astype(np.float64), axis=-1))
+
+
+def outside(name: str, domain: str) -> str:
+    """Why a set has nothing for an encoding."""
+    return f"no patch of {name} lies whole in the normals that the encoding is made for ({domain})"
+
+
+def percent(which: np.ndarray) -> float:
+    """The share of true values."""
+    return 100.0 * float(np.mean(which))

@@ -1,0 +1,49 @@
+"""Whether a codec can be filtered, blended or resolved, for who has no table of mixes: a few thousand of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+from ....encodings.codecs.codec import Codec
+from ...normals.normal_sets import NORMAL_SETS, NormalSet
+from ...worst_case.exact_figures import has_twin
+from .measure import Case, measure
+from .patches import Mixes, mixes_of, patches_of
+from .table import USES
+from .verdict import summed_up, worst_fault
+
+# All around, and about the six axes, where seams lie.
+SETS, ANGLES, COUNT = ("sphere", "axes"), (1.0, 5.0), 2048
+SAMPLES, POWER = 4, 1.0
+
+
+@cache
+def _usual(seed: int) -> tuple[Mixes, ...]:
+    chosen = (NORMAL_SETS[name](COUNT, seed) for name in SETS)
+    return tuple(mixes_of(patches, SAMPLES) for one in chosen for patches in patches_of(one, ANGLES, COUNT, seed))
+
+
+def _mixes(normals: NormalSet) -> tuple[Mixes, ...]:
+    """An image's own neighbours; of any other set, the usual ones."""
+    if not normals.shape:
+        return _usual(normals.seed)
+    return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
+
+
+def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, str]:
+    """Why a codec cannot be used so, by use; nothing where it can.
+
+    Args:
+        uses: some of table.USES.
+        normals: an image whose neighbours are mixed; of any other set the seed alone counts.
+        domain: the normals that are mixed: "sphere", "hemisphere" or "view".
+
+    A codec without a twin in JAX is measured by GLSL; what cannot be measured has no fault.
+    """
+    operations = tuple(operation for use in uses for operation in USES[use])
+    backend = "jax" if has_twin(codec.encoding) else "glsl"
+    cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes(normals))
+    rows = [row for case in cases for row in measure(case)]
+    found = {use: worst_fault([row for row in rows if row["operation"] in USES[use]]) for use in uses}
+    return {use: summed_up(row) for use, row in found.items() if row}

@@ -1,0 +1,104 @@
+"""Normals that are mixed after they are decoded; and, of exact normals, what every operation should give. NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ....gbuffer.defines.materials import CONSTANTS
+from .model import QUAD
+from .patches import Mixes
+from .reference import angles_between, unit_rows
+
+
+def _resolved(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
+    first = (mixes.counts / mixes.samples)[:, None]
+    return texels[0] * first + texels[1] * (1 - first)
+
+
+def _blended(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
+    alpha = mixes.alphas[:, None]
+    return unit_rows(unit_rows(texels[0]) * (1 - alpha) + unit_rows(texels[1]) * alpha)
+
+
+def _bilinear(shares: np.ndarray) -> np.ndarray:
+    """The weights of the first four texels, (4, patches, 1)."""
+    x, y = shares.T
+    return np.stack([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y])[..., None]
+
+
+def _upsampled(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
+    """As gbuffer/glsl/filter.glsl weighs light: bilinear, by those whose normal is close to the nearest one's."""
+    quad, weights = unit_rows(texels[QUAD, :]), _bilinear(mixes.quarters)
+    nearest = np.take_along_axis(quad, weights.argmax(axis=0)[None], axis=0)
+    weights = weights * (np.sum(quad * nearest, axis=-1, keepdims=True) > CONSTANTS["FILTER_COSINE"])
+    return np.sum(quad * weights, axis=0) / np.sum(weights, axis=0)
+
+
+Mean = Callable[[np.ndarray, Mixes], np.ndarray]
+# By operation, how decoded normals are mixed; what is right is the same of exact normals.
+BY_NORMALS: Mapping[str, Mean] = MappingProxyType(
+    {"resolve_decoded": _resolved, "blend_decoded": _blended, "upsample": _upsampled}
+)
+STORED_AGAIN = ("blend_decoded",)
+MEANS: Mapping[str, Mean] = MappingProxyType(
+    {
+        "filter": lambda texels, mixes: np.sum(texels[QUAD, :] * _bilinear(mixes.shares), axis=0),
+        "mip_2x2": lambda texels, _: texels[QUAD, :].mean(axis=0),
+        "mip_4x4": lambda texels, _: texels.mean(axis=0),
+        "resolve": _resolved,
+        "resolve_decoded": _resolved,
+        "blend": _blended,
+        "blend_decoded": _blended,
+        "detail": lambda _, mixes: mixes.details,
+        "upsample": _upsampled,
+    }
+)
+# By operation, what exact normals would give where that is not what is right: blending follows a straight line.
+STRAIGHT: Mapping[str, Mean] = MappingProxyType(
+    {"detail": lambda texels, mixes: _blended(np.stack([texels[0], mixes.decals]), mixes)}
+)
+# Operations whose mean's length says how much normals vary; a blend's does not.
+AVERAGES = ("filter", "mip_2x2", "mip_4x4", "resolve", "resolve_decoded")
+# By operation, the texels that it mixes; all where none are named.
+PAIR = (0, 1)
+USED: Mapping[str, Any] = MappingProxyType(
+    {
+        **dict.fromkeys(("filter", "mip_2x2", "upsample"), QUAD),
+        **dict.fromkeys(("resolve", "resolve_decoded", "blend", "blend_decoded"), PAIR),
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Right:
+    """What an operation should give, whatever the code.
+
+    Attributes:
+        mean: the mix of exact normals, not renormalised, (patches, 3); `normals` is at length 1.
+        used: the exact normals that are mixed, (texels, patches, 3).
+        reach_deg: how far the farthest of them is from the right normal, (patches,).
+        geometry_deg: how far off exact normals would be, (patches,).
+    """
+
+    mean: np.ndarray
+    normals: np.ndarray
+    used: np.ndarray
+    reach_deg: np.ndarray
+    geometry_deg: np.ndarray
+
+
+@lru_cache(maxsize=128)
+def right_of(mixes: Mixes, operation: str) -> Right:
+    """What an operation should give of some mixes; kept for the next code."""
+    texels = mixes.patches.normals
+    mean = MEANS[operation](texels, mixes)
+    normals, straight = unit_rows(mean), STRAIGHT.get(operation, MEANS[operation])(texels, mixes)
+    used = np.stack([texels[0], mixes.decals]) if operation == "detail" else texels[USED.get(operation, slice(None)), :]
+    reach = angles_between(used, np.broadcast_to(normals, used.shape)).max(axis=0)
+    return Right(mean, normals, used, reach, angles_between(straight, normals))

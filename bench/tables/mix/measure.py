@@ -1,0 +1,222 @@
+"""The rows of `mix`: what each operation makes of a codec's texels, by the model and by the GL device."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.codecs.codec_passes import Decoded
+from ....gbuffer.codecs.mixing.passes import BY_DEVICE, SIDE, MixPasses
+from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+from ...codecs.user_encodings import NoTwinError
+from ...worst_case.exact_figures import has_twin
+from .figures import Figures, outside, percent
+from .means import BY_NORMALS, STORED_AGAIN
+from .model import BY_MODEL, MODEL, WAYS, Given, Texels, Way
+from .patches import TEXELS, Mixes
+from .programs import Programs
+from .reference import angles_between
+from .table import AGREE_DEG, TABLE
+
+Row = dict[str, Any]
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
+# JAX compiles for one number of normals.
+BLOCK = 2**14
+# The share of results, in percent, that a way to mix must explain.
+EXPLAINED = 99.9
+# Numbers that are the same but for the last bits of float32.
+SAME = 2.0**-20
+
+
+@dataclass(frozen=True)
+class Case:
+    """A codec on one set of patches by one back end; a row for each operation.
+
+    Attributes:
+        codec, mixes, backend, operations: what is measured.
+        power: what Toksvig's formula starts from.
+        domain: the normals that are mixed, where they are fewer than the encoding holds.
+    """
+
+    codec: Codec
+    mixes: Mixes
+    backend: str
+    operations: tuple[str, ...]
+    power: float
+    domain: str = ""
+
+    @property
+    def name(self) -> str:
+        patches = self.mixes.patches
+        angle = "" if patches.angle_deg is None else f" {patches.angle_deg:g}"
+        return f"{self.codec.name} {patches.name}{angle} {self.backend}"
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What operations gave.
+
+    Attributes:
+        texels: decoded texels of the patches, (TEXELS, patches, 3).
+        mixed: by operation what it gave, decoded, not renormalised, (patches, 3).
+        how: by operation, columns of how it was mixed.
+        said: columns of the device.
+    """
+
+    texels: np.ndarray
+    mixed: Mapping[str, np.ndarray]
+    how: Mapping[str, Row]
+    said: Row
+
+
+class Modelled:
+    """A codec's texels by the model."""
+
+    def __init__(self, codec: Codec, mixes: Mixes):
+        self._codec, self._mixes, self._programs = codec, mixes, Programs(codec, BLOCK)
+        self._texels = Texels(codec)
+        self._views = mixes.patches.views
+
+    def decoded(self, codes: np.ndarray) -> np.ndarray:
+        """Normals of codes (numbers, ..., patches): (..., patches, 3)."""
+        shape = codes.shape[1:]
+        views = np.broadcast_to(self._views, (*shape, 3)).reshape(-1, 3)
+        return self._programs.normals(codes.reshape(len(codes), -1), views).reshape(*shape, 3)
+
+    def _codes(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        shape = normals.shape[:-1]
+        views = np.broadcast_to(self._views, normals.shape).reshape(-1, 3)
+        made = self._programs.codes(normals.reshape(-1, 3), views)
+        raw, stored = (code.reshape(len(code), *shape) for code in made)
+        return raw, stored
+
+    def texels(self) -> np.ndarray:
+        """Stored codes of the patches' texels, (numbers, TEXELS, patches)."""
+        return self._codes(self._mixes.patches.normals)[1]
+
+    def given(self, codes: np.ndarray) -> Given:
+        """What the model mixes: stored codes of the texels, and what shaders write over them."""
+        over = np.stack([self._mixes.patches.normals[1], self._mixes.decals])
+        written = self._texels.of(self._codes(over)[0])
+        # What was stored is written once more: float32 has moved it by a unit, and means of texels lie on ties.
+        return Given(self._texels.written(self._texels.of(codes), self._codec.rounding), written[:, 0], written[:, 1])
+
+    def mixed(self, operation: str, given: Given, way: Way) -> np.ndarray:
+        """The numbers that an operation on stored codes leaves, (numbers, patches)."""
+        return self._texels.code(BY_MODEL[operation](self._texels, given, self._mixes, way))
+
+    def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
+        """What an operation on decoded texels (TEXELS, patches, 3) gives, (patches, 3)."""
+        made = BY_NORMALS[operation](texels.astype(np.float64), self._mixes)
+        return self.decoded(self._codes(made)[1]) if operation in STORED_AGAIN else made
+
+
+def _by_jax(case: Case) -> Result:
+    made = Modelled(case.codec, case.mixes)
+    codes = made.texels()
+    texels, given = made.decoded(codes), made.given(codes)
+    stored = [name for name in case.operations if name in BY_MODEL]
+    numbers = [made.mixed(name, given, MODEL) for name in stored]
+    mixed = dict(zip(stored, made.decoded(np.stack(numbers, axis=1)), strict=True)) if stored else {}
+    mixed |= {name: made.of_normals(name, texels) for name in case.operations if name in BY_NORMALS}
+    how = {name: {"mixed_by": str(MODEL) if name in BY_MODEL else None} for name in case.operations}
+    return Result(texels, mixed, how, {"device": jax.devices()[0].device_kind})
+
+
+def _by_glsl(case: Case) -> Result:
+    gl: Device = device()
+    with MixPasses(gl, case.codec, case.mixes.meetings(), case.mixes.samples) as passes:
+        texels = passes.texels()
+        found = {name: BY_DEVICE[name](passes) for name in case.operations}
+    height, width, _ = texels.normals.shape
+    blocks = (_blocked(a, height // SIDE, width // SIDE) for a in (texels.normals, texels.codes))
+    decoded, codes = blocks
+    flat = {name: Decoded(one.normals.reshape(-1, 3), one.codes.reshape(-1, 4)) for name, one in found.items()}
+    numbers = case.codec.encoding.components + case.codec.encoding.sign_bits
+    how = _compared(case, np.moveaxis(codes[..., :numbers], -1, 0), flat)
+    return Result(decoded, {name: one.normals for name, one in flat.items()}, how, {"device": gl.renderer})
+
+
+def _blocked(image: np.ndarray, height: int, width: int) -> np.ndarray:
+    """An image of patches as (TEXELS, patches, ...)."""
+    split = image.reshape(height, SIDE, width, SIDE, -1)
+    return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
+
+
+def _compared(case: Case, codes: np.ndarray, found: Mapping[str, Decoded]) -> dict[str, Row]:
+    """By operation, the way to mix that explains the device's numbers best, and in how many results it agrees.
+
+    The model mixes the codes that the device stored.
+    """
+    if not has_twin(case.codec.encoding):
+        return {name: {} for name in found}
+    made = Modelled(case.codec, case.mixes)
+    given = made.given(codes)
+    return {
+        name: _way(made, name, given, one, case.mixes.patches.count)
+        if name in BY_MODEL
+        else {"agree_percent": _agreed(made.of_normals(name, made.decoded(codes)), one.normals, case)}
+        for name, one in found.items()
+    }
+
+
+def _agreed(model: np.ndarray, normals: np.ndarray, case: Case) -> float:
+    count = case.mixes.patches.count
+    return percent(angles_between(model[:count], normals[:count]) <= AGREE_DEG)
+
+
+def _way(made: Modelled, operation: str, given: Given, found: Decoded, count: int) -> Row:
+    best, least, numbers, off = MODEL, np.inf, np.empty(0), 0.0
+    for way in WAYS[operation]:
+        tried = made.mixed(operation, given, way)
+        apart = np.abs(tried.T[:count] - found.codes[:count, : len(tried)]).max(axis=1)
+        missed = float(np.mean(~(apart <= SAME)))
+        if missed < least:
+            best, least, numbers, off = way, missed, tried, float(apart.max())
+        if not least:
+            break
+    agreed = percent(angles_between(made.decoded(numbers)[:count], found.normals[:count]) <= AGREE_DEG)
+    own = f"its own arithmetic, up to {off:.2g} off"
+    return {"mixed_by": str(best) if agreed >= EXPLAINED else own, "agree_percent": agreed}
+
+
+BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType({"jax": _by_jax, "glsl": _by_glsl})
+
+
+def measure(case: Case) -> list[Row]:
+    """A row for each operation; rows that cannot be measured have the reason in `skipped`."""
+    described = _described(case)
+    domain = case.domain or case.codec.encoding.domain
+    if not case.mixes.patches.held_by(domain).any():
+        said = outside(case.mixes.patches.name, domain)
+        return [described | {"operation": name, "skipped": said} for name in case.operations]
+    try:
+        found = BACKENDS[case.backend](case)
+    except UNMEASURABLE as error:
+        return [described | {"operation": name, "skipped": str(error)} for name in case.operations]
+    figures = Figures(case.mixes, domain, case.power, found.texels, found.mixed)
+    return [
+        described | {"operation": name} | figures.of(name) | found.how[name] | found.said for name in case.operations
+    ]
+
+
+def _described(case: Case) -> Row:
+    patches = case.mixes.patches
+    return TABLE.empty() | {
+        "encoding": case.codec.encoding.name,
+        "storage": case.codec.storage.name,
+        "normals": patches.name,
+        "angle_deg": patches.angle_deg,
+        "backend": case.backend,
+        "bits": case.codec.bits,
+        "samples": case.mixes.samples,
+        "power": case.power,
+        "seed": patches.seed,
+    }

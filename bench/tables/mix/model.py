@@ -1,0 +1,262 @@
+"""The model of a device that mixes texels: what a filter, a mip level, a resolve and a blend leave in a channel.
+
+Stored numbers are mixed, in the arithmetic of float32 that a device has, and what is written is rounded as the format
+rounds. Where numbers are laid across channels, it is the bytes that are mixed. A `Way` says how a device mixes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.rounding import store_texel
+from ....encodings.storages.storage import Storage
+from ....encodings.storages.words import words
+from .patches import Mixes
+
+F32 = np.float32
+BYTE = 8
+# The first four texels of a patch, row by row, and by level the texels that a mip level is the mean of.
+QUAD = (0, 1, 4, 5)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a device mixes.
+
+    Attributes:
+        is_fixed: fixed-point numbers are mixed as integers: each step of a filter is rounded, and a blend's products
+            are made of shifts, p + p / 256 + 1/2 for p / 255.
+        fraction_bits: of a filter's place between two texels; 0 for as many as a float32 has.
+        rounding: of what is written, one of storage.ROUNDINGS; CUT is to 16 bits, of which the lowest are cut off.
+        rounds_source: whether what a shader writes is rounded as the codec asks before it is blended.
+    """
+
+    is_fixed: bool = False
+    fraction_bits: int = 0
+    rounding: str = "nearest"
+    rounds_source: bool = False
+
+    def __str__(self) -> str:
+        said = ["integers" if self.is_fixed else "32-bit floats"]
+        said += [f"fractions of {self.fraction_bits} bits"] if self.fraction_bits else []
+        said += ["the source rounded first"] if self.rounds_source else []
+        said += [WRITTEN[self.rounding]] if self.rounding in WRITTEN else []
+        return ", ".join(said)
+
+
+CUT = "cut"
+WRITTEN: Mapping[str, str] = MappingProxyType(
+    {"truncate": "cut off when written", CUT: "rounded to 16 bits and cut off when written"}
+)
+MODEL = Way()
+# How devices have been found to mix, the plainest first: a filter, a blend, and whatever else is written.
+FILTERS = (MODEL, *(Way(is_fixed, bits) for is_fixed in (True, False) for bits in (8, 6, 4)))
+BLENDS = (
+    MODEL,
+    Way(rounding="truncate"),
+    Way(rounds_source=True),
+    Way(rounding="truncate", rounds_source=True),
+    Way(rounding=CUT, rounds_source=True),
+    Way(is_fixed=True, rounds_source=True),
+)
+MEANS_WAYS = (MODEL, Way(rounding="truncate"), Way(rounding=CUT), Way(is_fixed=True))
+WAYS: Mapping[str, Sequence[Way]] = MappingProxyType(
+    {
+        "filter": FILTERS,
+        **dict.fromkeys(("mip_2x2", "mip_4x4", "resolve"), MEANS_WAYS),
+        **dict.fromkeys(("blend", "detail"), BLENDS),
+    }
+)
+
+
+@partial(jax.jit, static_argnames=("storage", "rounding"))
+def _stored(planes, storage: Storage, rounding: str):
+    return [store_texel(x, storage, channel, rounding) for channel, x in enumerate(planes)]
+
+
+class Texels:
+    """Numbers of a codec as a target keeps them: planes of its channels, and of the depth's sign where it has one.
+
+    Args:
+        codec: whose.
+    """
+
+    def __init__(self, codec: Codec):
+        self._codec, self._storage = codec, codec.storage.target
+        self._components = codec.encoding.components
+        self._signs = codec.encoding.sign_bits
+
+    def of(self, code: np.ndarray) -> np.ndarray:
+        """Texels of a code's numbers, float32 of shape (numbers, ...), as they come back from the storage or go in.
+
+        Returns:
+            planes (channels and sign, ...); the sign is a depth of 1 or -1.
+        """
+        signs = code[self._components : self._components + self._signs]
+        if self._codec.storage.is_packed:
+            return np.concatenate([self._packed(code), signs])
+        numbers = code[: self._components]
+        return np.concatenate([numbers * F32(0.5) + F32(0.5) if self._codec.storage.is_biased else numbers, signs])
+
+    def code(self, texels: np.ndarray) -> np.ndarray:
+        """The numbers that texels stand for."""
+        signs = np.where(np.signbit(texels[len(texels) - self._signs :]), F32(-1), F32(1))
+        if self._codec.storage.is_packed:
+            return np.concatenate([self._unpacked(texels), signs])
+        numbers = texels[: self._components]
+        numbers = numbers * F32(2) - F32(1) if self._codec.storage.is_biased else numbers
+        return np.concatenate([numbers, signs])
+
+    def _packed(self, code: np.ndarray) -> np.ndarray:
+        storage = self._codec.storage
+        whole = np.zeros(code.shape[1:], np.uint64)
+        for channel, bits in enumerate(storage.bits):
+            # A channel that the encoding has no number for holds 0.
+            number = code[channel] if channel < self._components else np.zeros_like(code[0])
+            whole = whole << np.uint64(bits) | words(number, storage, channel).astype(np.uint64)
+        whole = whole << np.uint64(self._spare)
+        shifts = range(32 - BYTE, -1, -BYTE)
+        return np.stack([(whole >> np.uint64(s) & np.uint64(255)).astype(F32) * F32(1 / 255) for s in shifts])
+
+    @property
+    def _spare(self) -> int:
+        return 32 - sum(self._codec.storage.bits)
+
+    def _unpacked(self, texels: np.ndarray) -> np.ndarray:
+        storage, whole = self._codec.storage, np.zeros(texels.shape[1:], np.uint64)
+        for byte in texels[:4]:
+            whole = whole << np.uint64(BYTE) | np.floor(byte * F32(255) + F32(0.5)).astype(np.uint64)
+        shift, numbers = 32, []
+        for channel, bits in enumerate(storage.bits):
+            shift -= bits
+            integer = (whole >> np.uint64(shift) & np.uint64(2**bits - 1)).astype(np.int64)
+            scale = storage.scale(channel)
+            signed = integer - (scale if storage.kind == "snorm" else 0)
+            number = signed.astype(F32) * F32(1 / scale)
+            numbers.append(number * F32(2) - F32(1) if storage.is_biased else number)
+        return np.stack(numbers[: self._components])
+
+    def written(self, texels: np.ndarray, rounding: str) -> np.ndarray:
+        """Texels as the target keeps them; the depth's sign is kept as it is."""
+        channels = len(texels) - self._signs
+        if rounding == CUT:
+            return np.concatenate([self._cut(texels[:channels]), texels[channels:]])
+        kept = _stored([jnp.asarray(p) for p in texels[:channels]], self._storage, rounding)
+        return np.concatenate([np.stack([np.asarray(p) for p in kept]), texels[channels:]])
+
+    def _cut(self, texels: np.ndarray) -> np.ndarray:
+        """UNORM that is made of the upper bits of 16, of planes without a sign's; other formats as they are."""
+        if self._storage.kind != "unorm":
+            return texels
+        scales = [self._storage.scale(channel) for channel in range(len(texels))]
+        one = np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
+        sixteen = np.rint(np.clip(texels.astype(np.float64), 0, 1) * (2**16 - 1))
+        return (np.floor(sixteen * (one + 1) / 2**16) / one).astype(F32)
+
+    def _whole(self, texels: np.ndarray) -> np.ndarray:
+        """What stands for 1 in each plane, of a shape that broadcasts; 0 for floats, and for the sign's."""
+        channels = len(texels) - self._signs
+        is_float = self._storage.kind == "float"
+        scales = [0 if is_float else self._storage.scale(c) for c in range(channels)] + [0] * self._signs
+        return np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
+
+    def lerped(self, a: np.ndarray, b: np.ndarray, share: np.ndarray, way: Way) -> np.ndarray:
+        """a + (b - a) share."""
+        step = 2.0**way.fraction_bits
+        share = np.rint(share * step) / step if way.fraction_bits else share
+        made = a + (b - a) * share.astype(F32)
+        one = self._whole(a)
+        if not way.is_fixed or not one.any():
+            return made
+        low, high = np.rint(a * one), np.rint(b * one)
+        whole = low + np.floor((high - low) * share + 0.5)
+        return np.where(one > 0, whole / np.maximum(one, 1), made).astype(F32)
+
+    def blended(self, base: np.ndarray, source: np.ndarray, alpha: np.ndarray, way: Way) -> np.ndarray:
+        """source alpha + base (1 - alpha), written."""
+        source = self.written(source, self._codec.rounding) if way.rounds_source else source
+        x = alpha.astype(F32)
+        made = self.written(source * x + base * (F32(1) - x), way.rounding)
+        one = self._whole(base)
+        if not way.is_fixed or not one.any():
+            return made
+        share = np.rint(alpha * one)
+        parts = (_product(np.rint(source * one), share, one), _product(np.rint(base * one), one - share, one))
+        # Products that go down may add up to one step below -1, which reads as -1.
+        return np.where(one > 0, np.maximum(sum(parts) / np.maximum(one, 1), -1), made).astype(F32)
+
+
+def _product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:
+    """a b / one of whole numbers as shifts make it, which go down: of negative products too."""
+    product = a * b
+    return np.floor((product + np.floor(product / (one + 1)) + np.copysign((one + 1) / 2, product)) / (one + 1))
+
+
+def _filtered(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
+    x, y = mixes.shares.T
+    low, high = (texels.lerped(quad[:, at], quad[:, at + 1], x, way) for at in (0, 2))
+    return texels.lerped(low, high, y, way)
+
+
+def _averaged(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
+    """The mean of four texels (planes, 4, ...), written."""
+    half = np.full(quad.shape[2:], 0.5)
+    low, high = (texels.lerped(quad[:, at], quad[:, at + 1], half, way) for at in (0, 2))
+    return texels.written(texels.lerped(low, high, half, way), way.rounding)
+
+
+def _reduced(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
+    """The mip level below texels of shape (planes, side, side, patches)."""
+    quad = np.stack([planes[:, y::2, x::2] for y in (0, 1) for x in (0, 1)], axis=1)
+    return _averaged(texels, quad, way)
+
+
+def _mip(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
+    side = int(planes.shape[1] ** 0.5)
+    made = planes.reshape(len(planes), side, side, -1)
+    for _ in range(level):
+        made = _reduced(texels, made, way)
+    return made[:, 0, 0]
+
+
+def _resolved(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
+    """The mean of a pixel's samples, the first `counts` of which are the first texel, written."""
+    total = np.zeros_like(planes[:, 0])
+    for sample in range(mixes.samples):
+        total = total + np.where(sample < mixes.counts, planes[:, 0], planes[:, 1])
+    return texels.written(total * F32(1 / mixes.samples), way.rounding)
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Stored codes that a model mixes, float32.
+
+    Attributes:
+        planes: texels of the patches, (planes, TEXELS, patches).
+        second, detail: what a shader writes of the second normal and of the detail, not yet rounded, (planes, patches).
+    """
+
+    planes: np.ndarray
+    second: np.ndarray
+    detail: np.ndarray
+
+
+# By operation, how texels are mixed. What is not here mixes normals that are decoded.
+BY_MODEL: Mapping[str, Callable[[Texels, Given, Mixes, Way], np.ndarray]] = MappingProxyType(
+    {
+        "filter": lambda texels, given, mixes, way: _filtered(texels, given.planes[:, QUAD], mixes, way),
+        "mip_2x2": lambda texels, given, _, way: _mip(1, texels, given.planes, way),
+        "mip_4x4": lambda texels, given, _, way: _mip(2, texels, given.planes, way),
+        "resolve": lambda texels, given, mixes, way: _resolved(texels, given.planes, mixes, way),
+        "blend": lambda texels, given, mixes, way: texels.blended(given.planes[:, 0], given.second, mixes.alphas, way),
+        "detail": lambda texels, given, mixes, way: texels.blended(given.planes[:, 0], given.detail, mixes.alphas, way),
+    }
+)

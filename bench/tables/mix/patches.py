@@ -1,0 +1,212 @@
+"""What meets: patches of 4 x 4 texels, built about directions or cut out of images, and how their texels are mixed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....encodings.vec import Vec3
+from ....gbuffer.codecs.mixing.passes import QUARTERS, SIDE, Meetings
+from ...normals.normal_sets import NormalSet
+from .reference import reoriented, tilted, unit_rows
+
+# Places of a filter are multiples of 2^-12 of a texel, which texture coordinates have exactly.
+FRACTION_BITS = 12
+ALPHAS = tuple(tenth / 10 for tenth in range(1, 10))
+# The fewest patches of an image, so that each alpha has rows of its own.
+LEAST_SIDE = 16
+TEXELS = SIDE * SIDE
+
+
+def in_domain(normals: np.ndarray, views: np.ndarray, domain: str) -> np.ndarray:
+    """Which normals (..., 3) lie in a domain: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer)."""
+    if domain == "hemisphere":
+        return normals[..., 2] >= 0
+    if domain == "view":
+        return np.sum(normals * views, axis=-1) <= 0
+    return np.ones(normals.shape[:-1], bool)
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """Patches of one set.
+
+    Attributes:
+        name: the set's.
+        angle_deg: between neighbours; None where they are an image's own.
+        count: how many of the patches count; the others fill the image up.
+        normals: unit normals, float64 of shape (TEXELS, patches, 3), row by row from the first texel.
+        views: float32 of shape (patches, 3).
+        seed: what it was made with.
+    """
+
+    name: str
+    angle_deg: float | None
+    count: int
+    normals: np.ndarray
+    views: np.ndarray
+    seed: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the image of patches, powers of two."""
+        bits = (self.normals.shape[1] - 1).bit_length()
+        return 1 << (bits + 1) // 2, 1 << bits // 2
+
+    def held_by(self, domain: str) -> np.ndarray:
+        """Which patches an encoding of a domain can hold all texels of, bool of shape (patches,)."""
+        is_held = np.arange(self.normals.shape[1]) < self.count
+        return np.logical_and(is_held, np.all(in_domain(self.normals, self.views, domain), axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Mixes:
+    """Patches, and by which weights their texels are mixed.
+
+    Attributes:
+        patches: what is mixed.
+        shares, quarters: where a filter and an upsampling read, float64 of shape (patches, 2).
+        counts: how many samples of a pixel have the first normal, (patches,); `samples` is how many there are.
+        alphas: of a blend, (patches,).
+        decals: what is laid over the first texel, unit, (patches, 3); `details` is the right result of each alpha.
+    """
+
+    patches: Patches
+    samples: int
+    shares: np.ndarray
+    quarters: np.ndarray
+    counts: np.ndarray
+    alphas: np.ndarray
+    decals: np.ndarray
+    details: np.ndarray
+
+    def held_by(self, operation: str, domain: str) -> np.ndarray:
+        """Which mixes an encoding of a domain can hold beside the patches' texels: a detail may lie outside."""
+        if operation != "detail":
+            return np.ones(len(self.alphas), bool)
+        both = np.stack([self.decals, self.details])
+        return np.all(in_domain(both, self.patches.views, domain), axis=0)
+
+    def meetings(self) -> Meetings:
+        """The same as images for a device."""
+        width, height = self.patches.size
+        blocks = _with_fourth(self.patches.normals).reshape(SIDE, SIDE, height, width, 4)
+
+        def image(a: np.ndarray) -> np.ndarray:
+            return a.reshape(height, width, *a.shape[1:])
+
+        return Meetings(
+            blocks.transpose(2, 0, 3, 1, 4).reshape(SIDE * height, SIDE * width, 4),
+            image(_with_fourth(self.decals)),
+            image(_with_fourth(self.patches.views)),
+            image(self.shares),
+            image(self.quarters),
+            image(self.counts),
+            image(self.alphas)[:, 0],
+        )
+
+
+def _with_fourth(vectors: np.ndarray) -> np.ndarray:
+    return np.pad(vectors.astype(np.float32), [(0, 0)] * (vectors.ndim - 1) + [(0, 1)])
+
+
+def mixes_of(patches: Patches, samples: int) -> Mixes:
+    """Patches with random weights, the same for the same seed."""
+    random = np.random.default_rng([patches.seed, 1])
+    width, height = patches.size
+    count = width * height
+    alphas = np.repeat(np.array(ALPHAS)[np.arange(height) * len(ALPHAS) // height], width)
+    shares = random.integers(0, 2**FRACTION_BITS, (count, 2)) / 2**FRACTION_BITS
+    first, second = patches.normals[0], patches.normals[1]
+    # The detail is tilted as far as the second normal, in a direction of its own.
+    tilt = np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), np.sum(first * second, axis=1))
+    turn = random.uniform(0, 2 * np.pi, count)
+    return Mixes(
+        patches,
+        samples,
+        shares,
+        random.choice(QUARTERS, (count, 2)),
+        random.integers(1, samples, count),
+        alphas,
+        reoriented(first, tilted(tilt, turn)),
+        reoriented(first, tilted(alphas * tilt, turn)),
+    )
+
+
+def patches_of(normals: NormalSet, angles_deg: tuple[float, ...], count: int, seed: int) -> Iterator[Patches]:
+    """The patches of a set: an image's own neighbours, or of each angle patches about the set's directions."""
+    if normals.shape:
+        yield from _own_neighbours(normals, count, seed)
+        return
+    directions = _directions(normals, count, seed)
+    for angle in angles_deg:
+        yield _about(normals.name, directions, angle, seed)
+
+
+def _filled(count: int) -> np.ndarray:
+    """Indices of `count` patches, and of as many again as make a power of two."""
+    whole = max(1 << (count - 1).bit_length(), LEAST_SIDE**2)
+    return np.arange(whole) % count
+
+
+def _planes(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Normals, views and coverage of a set: (count, 3), (count, 3) and (count,)."""
+    found = ([], [], [])
+    for load in normals.loads():
+        chunk = load()
+        for parts, planes in zip(found, (chunk.n, chunk.view, chunk.covered), strict=True):
+            parts.append(np.stack([np.asarray(p) for p in planes], axis=1) if isinstance(planes, Vec3) else planes)
+    n, view, covered = (np.concatenate(parts)[: normals.count] for parts in found)
+    return n, view, np.asarray(covered)
+
+
+def _directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
+    """Some of a set's normals or each of them several times, evenly, in random order: alphas go by rows of patches."""
+    n, _, covered = _planes(normals)
+    n = unit_rows(n[covered].astype(np.float64))
+    return n[np.random.default_rng([seed, 2]).permutation(np.arange(count) * len(n) // count)]
+
+
+def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
+    """Patches whose neighbours lie an angle apart, turned at random, their direction somewhere in the first quad.
+
+    n(w) = cos |w| n + sin |w| w / |w|, w a step on the tangent plane.
+    """
+    count, random = len(directions), np.random.default_rng([seed, 0])
+    within, turn = random.random((count, 2)), random.uniform(0, 2 * np.pi, count)
+    at = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
+    steps = math.radians(angle_deg) * (at - within)
+    length, way = np.hypot(steps[..., 0], steps[..., 1]), np.arctan2(steps[..., 1], steps[..., 0]) + turn
+    across = tilted(np.full_like(length, np.pi / 2), way)
+    tangents = reoriented(np.broadcast_to(directions, across.shape), across)
+    n = np.cos(length)[..., None] * directions + np.sin(length)[..., None] * tangents
+    chosen = _filled(count)
+    views = np.broadcast_to(np.array([0, 0, -1], np.float32), (len(chosen), 3))
+    return Patches(name, angle_deg, count, _rounded(n[:, chosen]), views, seed)
+
+
+def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patches]:
+    """Squares of an image's pixels that are all covered, at random places; none of an image that has none."""
+    assert normals.shape
+    height, width = normals.shape
+    n, view, covered = (a.reshape(height, width, -1) for a in _planes(normals))
+    if min(height, width) < SIDE:
+        return
+    window = np.lib.stride_tricks.sliding_window_view(covered[..., 0], (SIDE, SIDE)).all(axis=(2, 3))
+    places = np.argwhere(window)
+    if not len(places):
+        return
+    y, x = np.random.default_rng([seed, 0]).permutation(places)[:count].T
+    chosen = _filled(len(x))
+    right, up = np.meshgrid(np.arange(SIDE), np.arange(SIDE))
+    rows, columns = (a.reshape(TEXELS, 1) + b for a, b in ((up, y[chosen]), (right, x[chosen])))
+    cut = unit_rows(n[rows, columns].astype(np.float64))
+    yield Patches(normals.name, None, len(x), _rounded(cut), view[rows[0], columns[0]], seed)
+
+
+def _rounded(n: np.ndarray) -> np.ndarray:
+    """As float32 has them, which is what encoders are given."""
+    return n.astype(np.float32).astype(np.float64)

@@ -1,0 +1,86 @@
+"""Codes and normals by JAX: two programs for each encoding, compiled once for all storages, sets and operations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.rounding import fixed, scales_of
+from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.vec import Vec2, Vec3, direction_or_forward
+
+
+@cache
+def _encoder(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
+    """From normals to the code as it is, or as it is rounded precisely, and as it comes back from the storage."""
+
+    def encode(n: Vec3, view: Vec3, *scales: Any):
+        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        n = direction_or_forward(n)
+        stored = codec.stored(n, view)
+        code = stored if encoding.is_precise else encoding.encode(n, view)
+        return jnp.stack(_planes(code, n)), jnp.stack(_planes(stored, n))
+
+    return jax.jit(encode)
+
+
+def _planes(code: Any, n: Vec3) -> list[Any]:
+    return [jnp.broadcast_to(jnp.asarray(c, jnp.float32), n.z.shape) for c in code]
+
+
+@cache
+def _decoder(encoding: Encoding) -> Callable[..., Any]:
+    kind = Vec2 if encoding.components + encoding.sign_bits == 2 else Vec3
+    return jax.jit(lambda planes, view: jnp.stack(encoding.decode(kind(*planes), view)))
+
+
+class Programs:
+    """A codec's two halves on arrays, a block of one size at a time.
+
+    Args:
+        codec: whose.
+        block: how many normals at once; fewer are filled up, so that each half is compiled once.
+    """
+
+    def __init__(self, codec: Codec, block: int):
+        self._codec, self._block, storage = codec, block, codec.storage
+        if storage.kind == "float":
+            self._like, self._scales = storage, ()
+        else:
+            self._like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
+            self._scales = scales_of(storage)[: codec.encoding.components]
+
+    def codes(self, normals: np.ndarray, views: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Codes as encoded and as stored, float32 of shape (numbers, count), of unit normals (count, 3)."""
+        encode = _encoder(self._codec.encoding, self._like, self._codec.rounding)
+        parts = [
+            [np.asarray(found)[:, :count] for found in encode(Vec3(*n), Vec3(*view), *self._scales)]
+            for count, n, view in self._blocks(normals.T, views.T)
+        ]
+        code, stored = (np.concatenate(side, axis=1) for side in zip(*parts, strict=True))
+        return code, stored
+
+    def normals(self, codes: np.ndarray, views: np.ndarray) -> np.ndarray:
+        """What codes (numbers, count) are decoded as, float32 of shape (count, 3), not renormalised."""
+        decode = _decoder(self._codec.encoding)
+        parts = [
+            np.asarray(decode(tuple(code), Vec3(*view)))[:, :count].T
+            for count, code, view in self._blocks(codes, views.T)
+        ]
+        return np.concatenate(parts)
+
+    def _blocks(self, *planes: np.ndarray):
+        """Blocks of planes (rows, count): how many count, and JAX's planes of each."""
+        total = planes[0].shape[1]
+        for start in range(0, total, self._block):
+            cut = [a[:, start : start + self._block].astype(np.float32) for a in planes]
+            count = cut[0].shape[1]
+            padded = (np.pad(a, ((0, 0), (0, self._block - count)), mode="edge") for a in cut)
+            yield count, *([jnp.asarray(plane) for plane in a] for a in padded)

@@ -1,0 +1,69 @@
+"""The right normal of each operation, and what a mix does to a length and to a specular power; float64 in NumPy."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...metrics.angles import angles_deg
+
+
+def unit_rows(v: np.ndarray) -> np.ndarray:
+    """Rows at length 1, (..., 3); a row of length 0 stays 0."""
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
+
+
+def lerp_angle(theta, t):
+    """The angle of a mix of two unit normals from the first, in radians; any shapes that broadcast.
+
+    A filter gives this and not the angle t theta of a walk at constant speed (slerp): the difference is what geometry
+    alone does. theta is the angle between the two, t the second one's share.
+    """
+    # |a (1 - t) + b t| leans from a by atan2(t sin theta, 1 - t + t cos theta)
+    return np.arctan2(t * np.sin(theta), 1.0 - t + t * np.cos(theta))
+
+
+def lerp_length(theta, t):
+    """The length of that mix, 1 where both normals are the same."""
+    # |a (1 - t) + b t|^2 = 1 - 2 t (1 - t) (1 - cos theta)
+    return np.sqrt(1.0 - 2.0 * t * (1.0 - t) * (1.0 - np.cos(theta)))
+
+
+def tilted(tilt: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Unit normals tilted from +z by an angle in a direction, radians; (..., 3)."""
+    return np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=-1)
+
+
+def reoriented(base: np.ndarray, detail: np.ndarray) -> np.ndarray:
+    """A detail's normal laid over a base's: turned as +z is turned to the base along the shortest way; unit, (..., 3).
+
+    Source: C. Barre-Brisebois and S. Hill, Blending in Detail, 2012 (reoriented normal mapping). At a base of -z, which
+    has no shortest way, it is turned about x.
+    """
+    # t = base + z, r = t (t . d') / t.z - d' with d' = (-d.x, -d.y, d.z)
+    flipped = detail * np.array([-1.0, -1.0, 1.0])
+    t = base + np.array([0.0, 0.0, 1.0])
+    depth = t[..., 2:]
+    is_behind = depth < 1e-12
+    turned = t * np.sum(t * flipped, axis=-1, keepdims=True) / np.where(is_behind, 1.0, depth) - flipped
+    return unit_rows(np.where(is_behind, detail * np.array([1.0, -1.0, -1.0]), turned))
+
+
+def toksvig_power(length: np.ndarray, power: float) -> np.ndarray:
+    """The specular power that a mean normal of some length stands for; any shape.
+
+    Source: M. Toksvig, Mipmapping Normal Maps, Journal of Graphics Tools 10(3), 2005. Lengths above 1, which only
+    rounding makes, count as 1.
+    """
+    # s' = f s with f = |n| / (|n| + s (1 - |n|))
+    short = np.clip(length, 0.0, 1.0)
+    return power * short / (short + power * (1.0 - short))
+
+
+def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Degrees between rows; 180 where one is no direction."""
+    a, b = a.astype(np.float64), b.astype(np.float64)
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        angles = angles_deg(unit_rows(a), unit_rows(b))
+        is_there = np.isfinite(a).all(axis=-1) & np.isfinite(b).all(axis=-1) & a.any(axis=-1) & b.any(axis=-1)
+    return np.where(is_there, angles, 180.0)

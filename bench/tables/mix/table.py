@@ -1,0 +1,202 @@
+"""The mix table: what happens to a code when texels meet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Annotated
+
+from ...options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
+from .. import shared_columns as shared
+from ..table import Column, Role, Section, Table
+
+KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
+# By operation, what is done, and what the right normal is.
+OPERATIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "filter": "bilinear filtering of stored codes at random fractions",
+        "mip_2x2": "a mip level: the mean of 2 x 2 codes, stored",
+        "mip_4x4": "the next mip level: the mean of four of those, stored",
+        "resolve": "the mean of the codes of a pixel's samples, stored: a hardware resolve",
+        "resolve_decoded": "the mean of the same samples, each decoded first",
+        "blend": "the code of a second normal blended over the first by the target's alpha blending",
+        "blend_decoded": "both decoded, the normals blended by a shader, and the result stored",
+        "detail": "the code of a detail's normal blended over its base's",
+        "upsample": "texels of half the size decoded, then weighed by distance and by how close their normals are",
+    }
+)
+# What a code can be used for, and the operations that decide.
+USES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"filter": ("filter", "mip_2x2", "mip_4x4"), "blend": ("blend", "detail"), "resolve": ("resolve",)}
+)
+VERDICTS: Mapping[str, str] = MappingProxyType({"filter": "filterable", "blend": "blendable", "resolve": "resolvable"})
+# A result is garbage where it is this much farther off than the texels' own errors explain, in degrees, or farther than
+# every texel of the mix is from the right normal.
+GARBAGE_DEG = 5.0
+# A code can be used where nothing is garbage and the largest error, less twice that of the texels alone, is at most
+# this share of the largest angle between the right normal and a texel that was mixed. A map that has a kink and no seam
+# stays below it: of those of the catalogue hemi-octahedral comes nearest, with 0.62.
+MOST_ADDED = 0.75
+# Verdicts are by patches whose neighbours lie at most so many degrees apart, and by an image's own neighbours.
+MOST_JUDGED_DEG = 5.0
+# The model agrees with the device where they differ by no more, in degrees.
+AGREE_DEG = 0.01
+COUNT = 4096
+MOST_COUNT = 2**16
+
+
+@dataclass(frozen=True, kw_only=True)
+class MixOptions(Reading):
+    """What `mix` measures. Names and numbers are comma-separated."""
+
+    encoding: Encodings = (
+        "xyz,xyz_renormalised,xy,xy_sign,spherical,latitude_longitude,spheremap,stereographic,octahedral,"
+        "hemi_octahedral,signed_octahedral,spherical_fibonacci"
+    )
+    storage: StorageNames = "rgba8"
+    operation: Annotated[str, Option("--operation", f"{', '.join(OPERATIONS)}; comma-separated, or all.")] = "all"
+    normals: Normals = "sphere,axes"
+    angle: Annotated[
+        str, Option("--angle", "Degrees between neighbours, comma-separated. Images have their own neighbours.")
+    ] = "1,5,20"
+    backend: Backends = "jax,glsl"
+    samples: Annotated[int, Option("--samples", "Samples per pixel that are resolved; the device may give more.")] = 4
+    power: Annotated[float, Option("--power", "The specular power that Toksvig's formula starts from.")] = 64.0
+    count: Annotated[int, Option("--count", "Mixes of each set and angle.")] = COUNT
+    seed: Seed = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class MixOutputs:
+    """What `mix` writes beside its rows."""
+
+    plot: Plot = None
+
+
+def _degrees(name: str, says: str, drops: int = 0) -> Column:
+    return Column(name, says, unit="degrees", better="less", drops=drops)
+
+
+def _verdict(use: str) -> Column:
+    decides = ", ".join(USES[use])
+    said = f"The verdict, yes or no, by all rows of {decides} of this codec and back end with angle_deg of at most "
+    return Column(VERDICTS[use], f"{said}{MOST_JUDGED_DEG:g}.", HOW)
+
+
+COLUMNS = (
+    shared.ENCODING,
+    shared.STORAGE,
+    Column("normals", "The set of normals: patches about its directions, or the neighbours of an image.", KEY),
+    Column("angle_deg", "The angle between neighbours; empty for an image's own.", KEY, "degrees"),
+    Column(
+        "operation",
+        f"{'; '.join(f'{name}: {said}' for name, said in OPERATIONS.items())}. The right normal is the same mix of "
+        "the exact unit normals, renormalised. For detail it is reoriented normal mapping of the base and the detail, "
+        "whose tilt is scaled by alpha.",
+        KEY,
+    ),
+    Column("backend", "jax: a model in JAX and 32-bit floats; glsl: the GL device's own filtering and blending.", KEY),
+    shared.BITS,
+    Column("count", "How many mixes were measured: those whose texels all lie in the encoding's domain.", HOW, drops=9),
+    Column("invalid", "Results that are NaN or infinite; each counts as 180 degrees.", better="less", drops=8),
+    _degrees("alone_mean_deg", "Mean error of the texels without any mixing.", 7),
+    _degrees("alone_max_deg", "Largest error of the texels without any mixing."),
+    _degrees("angle_mean_deg", "Mean angle between the result, decoded, and the right normal."),
+    _degrees("angle_p99_deg", "99 % of these angles are below it.", 6),
+    _degrees("angle_max_deg", "The largest of these angles."),
+    _degrees("added_max_deg", "What mixing adds: angle_max_deg less alone_max_deg.", 5),
+    Column(
+        "geometry_max_deg",
+        "Largest error that exact normals would have: 0 but for detail, as blending follows a straight line.",
+        HOW,
+        "degrees",
+        drops=4,
+    ),
+    Column("reach_max_deg", "Largest angle between a right normal and a texel of its mix.", HOW, "degrees", drops=4),
+    Column(
+        "garbage_percent",
+        f"Results that are off by more than {GARBAGE_DEG:g} degrees, or by more than the angle between the right "
+        "normal and the farthest texel of the mix: those lie across a seam. Twice alone_max_deg and the error of the "
+        "geometry come on top.",
+        unit="%",
+        better="less",
+    ),
+    Column(
+        "worst_first",
+        "Of the mix that is farthest off, one of the two texels farthest apart.",
+        RAW,
+        drops=1,
+    ),
+    Column("worst_second", "The other one.", RAW, drops=1),
+    Column("worst_right", "The right normal of that mix.", RAW, drops=1),
+    Column("worst_result", "What came back.", RAW, drops=1),
+    Column(
+        "power_error_percent",
+        "Mean error of the specular power that Toksvig's formula gives for the length of what comes back, before it is "
+        "renormalised, against the length of the exact mean.",
+        unit="%",
+        better="less",
+        drops=3,
+    ),
+    Column(
+        "power_decoded_percent",
+        "The same for the mean of the decoded texels, which a tool takes that packs mip levels.",
+        unit="%",
+        better="less",
+        drops=3,
+    ),
+    *map(_verdict, USES),
+    Column("why", "What decided a verdict of no.", HOW, drops=2),
+    Column(
+        "mixed_by",
+        "The arithmetic in which the model gives the device's numbers; `its own arithmetic` where none of those known "
+        "does, and how far one of its numbers is off. `fractions of 8 bits` are those of a filter's place between two "
+        "texels.",
+        HOW,
+        drops=2,
+    ),
+    Column(
+        "agree_percent",
+        f"Results that the model gives too, to {AGREE_DEG} degrees, where it mixes the codes that the device stored in "
+        "that arithmetic.",
+        HOW,
+        "%",
+        drops=2,
+    ),
+    Column("samples", "Samples per pixel that were resolved.", HOW, drops=2),
+    Column("power", "The specular power that Toksvig's formula started from.", HOW, drops=2),
+    shared.DEVICE,
+    shared.SEED,
+    shared.SKIPPED,
+)
+
+TABLE = Table(
+    name="mix",
+    package=__package__ or "",
+    help="What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.\n\n"
+    "Each codec is said to be filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` "
+    "leaves out codecs that are not.",
+    example="normalbench mix --encoding octahedral,xyz --storage rgba8 --angle 5",
+    options=MixOptions,
+    outputs=MixOutputs,
+    columns=COLUMNS,
+    usual=(
+        {
+            "encoding": "xyz,xy,xy_sign,spherical,spheremap,octahedral,hemi_octahedral",
+            "angle": "5",
+            "count": 2048,
+        },
+    ),
+    single={"encoding": "octahedral", "operation": "filter", "normals": "axes", "angle": "5", "backend": "jax"},
+    section=Section(
+        title="Can a code be filtered, blended or resolved?",
+        short="Mixing",
+        intro="Texture filters, mip levels, multisample resolves and alpha blending average stored codes: what do they "
+        "decode to?",
+        method="Patches of 4 x 4 normals lie about the directions of a set, turned at random, so that seams pass "
+        "between their texels. Each is encoded and stored, its codes are mixed, and the result is decoded and compared "
+        "with the same mix of the exact normals. GLSL mixes by the GL device's own filtering, resolve and blending; "
+        "the model computes the same in 32-bit floats.",
+    ),
+)

@@ -1,0 +1,199 @@
+"""How the mix table is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....encodings.codecs.codec import Codec
+from ....reports.charts import charts, specs
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import check_twin, codecs_named, fitting
+from ...machine.devices import found_device, require_device, require_jax
+from ...normals.normal_names import normal_sets_named
+from ...options.counts import check_seed, checked_numbers, in_range
+from ...output.errors import UsageError, leave_out, pick
+from ...output.writing import check_plot, save_plot
+from ..charts import backends_of, drawing, having, one_backend
+from ..table import Measured, Row, Sheet, Step, Work, each
+from . import measure
+from .measure import Case
+from .patches import Patches, mixes_of, patches_of
+from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
+from .verdict import decides, judged, lines
+
+# Two neighbours further apart than this lie on no surface that a filter is for.
+MOST_ANGLE, MOST_SAMPLES, MOST_POWER = 60.0, 64, 65536
+NEAREST = "nearest"
+SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
+
+
+def cases(options: MixOptions) -> list[Case]:
+    """One case for each codec, set, angle and back end.
+
+    Raises:
+        UsageError: unknown names, numbers out of range, a file that cannot be read, or nothing that fits.
+        MissingError: only GLSL is asked for and there is no GL device.
+    """
+    in_range("--count", options.count, 1, MOST_COUNT)
+    in_range("--samples", options.samples, 2, MOST_SAMPLES)
+    check_seed(options.seed)
+    if not 1 <= options.power <= MOST_POWER:
+        raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
+    angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
+    operations = tuple(pick("operation", options.operation, {name: name for name in OPERATIONS}))
+    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    codecs = _codecs(options)
+    sets = _patches(options, angles, any(codec.encoding.domain == "view" for codec in codecs))
+    samples = _samples(options.samples, backends)
+    mixes = [{given: mixes_of(patches, given) for given in set(samples.values())} for patches in sets]
+    return [
+        Case(codec, by_samples[samples[name]], name, operations, options.power)
+        for codec in codecs
+        for by_samples in mixes
+        for name in backends
+    ]
+
+
+def _codecs(options: MixOptions) -> list[Codec]:
+    codecs, left_out = fitting(codecs_named(options.encoding, options.storage, NEAREST))
+    require_jax()
+    if options.backend.strip() == "glsl":
+        require_device()
+    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
+        check_twin(encoding)
+    for line in left_out:
+        leave_out(line)
+    return codecs
+
+
+def _patches(options: MixOptions, angles: tuple[float, ...], needs_rays: bool) -> list[Patches]:
+    made: list[Patches] = []
+    for normals in normal_sets_named(options.normals, options.count, options.seed, options.reading, needs_rays):
+        found = list(patches_of(normals, angles, options.count, options.seed))
+        if not found:
+            raise UsageError(f"--normals {normals.name}: no square of 4 x 4 pixels of it is covered")
+        made += found
+    return made
+
+
+def _samples(asked: int, backends: Sequence[str]) -> dict[str, int]:
+    """By back end the samples of a pixel: the device may have more than were asked for."""
+    gl, _ = found_device()
+    return {name: gl.given_samples(asked) if gl and name == "glsl" else asked for name in backends}
+
+
+def _steps(options: MixOptions, outputs: MixOutputs) -> list[Step]:
+    check_plot(outputs.plot)
+    return [Step(_key(case), case, case.name) for case in cases(options)]
+
+
+def _key(case: Case) -> Row:
+    patches = case.mixes.patches
+    key: Row = {"codec": case.codec.name, "normals": patches.name, "angle": patches.angle_deg, "backend": case.backend}
+    key |= {"operations": list(case.operations), "samples": case.mixes.samples, "power": case.power}
+    return key | {"count": patches.count, "seed": patches.seed}
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by set, angle and operation, the least garbage first, each with its codec's verdicts."""
+    groups = list(dict.fromkeys(_group(row) for row in rows))
+
+    def place(row: Row) -> tuple[Any, ...]:
+        is_skipped = row["angle_max_deg"] is None
+        figures = (0.0, 0.0) if is_skipped else (row["garbage_percent"], row["angle_max_deg"])
+        return groups.index(_group(row)), is_skipped, *figures
+
+    return sorted(judged(rows), key=place)
+
+
+def _group(row: Row) -> tuple[Any, ...]:
+    return row["normals"], row["angle_deg"], row["operation"]
+
+
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["invalid"]:
+            yield f"{TABLE.name_of(row)}: {row['invalid']} results are NaN or infinite"
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
+    yield from _summary(done.rows)
+    shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "alone_max_deg", "angle_mean_deg")
+    shown += ("angle_max_deg", "garbage_percent", "power_error_percent", "power_decoded_percent")
+    worst = [{name: row[name] for name in shown} for row in _worst(one_backend(done.rows))]
+    if worst:
+        yield Sheet("The worst of all sets and angles, by operation", worst, TABLE.drops(worst))
+    if ways := _ways(done.rows):
+        yield Sheet("How the device mixes, and the least agreement with the model", ways)
+
+
+def _ways(rows: Sequence[Row]) -> list[Row]:
+    """A line for each storage, operation and arithmetic of the device."""
+    found: dict[tuple[str, ...], float] = {}
+    for row in rows:
+        if row["mixed_by"] and row["agree_percent"] is not None:
+            key = row["storage"], row["operation"], row["mixed_by"]
+            found[key] = min(found.get(key, 100.0), row["agree_percent"])
+    names = ("storage", "operation", "mixed_by")
+    return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in found.items()]
+
+
+def _worst(rows: Sequence[Row]) -> list[Row]:
+    """Of each operation on a codec by a back end, the row with the most garbage, or with the largest error."""
+    found: dict[tuple[Any, ...], Row] = {}
+    for row in rows:
+        key = (row["operation"], row["encoding"], row["storage"], row["backend"])
+        if row["angle_max_deg"] is not None and (key not in found or _badness(row) > _badness(found[key])):
+            found[key] = row
+    order = list(OPERATIONS)
+    return sorted(found.values(), key=lambda row: (order.index(row["operation"]), *_badness(row)))
+
+
+def _badness(row: Row) -> tuple[float, float]:
+    return row["garbage_percent"], row["angle_max_deg"]
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    made = list(lines(rows))
+    if made:
+        notes = tuple(
+            f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(made) if line["why"]
+        )
+        shown = [{name: value for name, value in line.items() if name != "why"} for line in made]
+        title = f"What each code can be used for, by neighbours up to {MOST_JUDGED_DEG:g} degrees apart"
+        yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
+
+
+def _charted(rows: Sequence[Row]) -> list[Row]:
+    """The worst of the rows that decide, or of all where none does, as a chart takes them."""
+    usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
+    return [row | {"rounding": NEAREST} for row in _worst([row for row in usable if decides(row)] or usable)]
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    if chosen := _charted(rows):
+        said = (
+            "The largest error of each operation and the share of garbage, of the rows that decide the verdicts. The "
+        )
+        said += "figures are in the tables below."
+        title = f"What mixing makes of each code, by {backends_of(chosen)}"
+        yield drawing("mix", title, said, chosen, charts.mix_chart, specs.mix_specs)
+
+
+def _write(done: Measured, _: Any) -> None:
+    if done.outputs.plot:
+        save_plot(done.outputs.plot, charts.mix_chart(_charted(done.rows)))
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(measure.measure),
+    finish=in_order,
+    shown=_shown,
+    summary=_summary,
+    warnings=_warnings,
+    write=_write,
+    drawings=_drawings,
+)

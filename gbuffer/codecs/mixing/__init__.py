@@ -1,0 +1,1 @@
+"""Stored codes that meet: filtered, resolved and blended by the device."""

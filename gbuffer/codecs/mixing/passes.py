@@ -1,0 +1,243 @@
+"""Texels that meet in real hardware: filtered, averaged to mip levels, resolved and blended; then decoded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.storage import R32F, STORAGES
+from ...defines.materials import CONSTANTS
+from ...gl.device import BY_ALPHA, Device, bind, read_pixels
+from ...gl.handles import VertexArray
+from ...gl.raw import blend_by
+from ..codec_passes import Decoded, encoding_defines, storage_defines
+from ..harness import Textures, set_uniforms, uploaded
+
+# Texels along a side of a patch: two levels of mips.
+SIDE = 4
+# Where a filter reads: half the size keeps pixels at quarters between its texels.
+QUARTERS = (0.25, 0.75)
+
+
+@dataclass(frozen=True)
+class Meetings:
+    """What meets, for each pixel of a small image: a patch of SIDE x SIDE texels, and how its texels are mixed.
+
+    Attributes:
+        normals: unit normals of the patches side by side, float32 of shape (SIDE height, SIDE width, 4).
+        decals: unit normals of a detail that is laid over each patch's first texel, (height, width, 4).
+        views: one view-space position for all texels of a patch, (height, width, 4).
+        shares: how far right and up a filter reads between the patch's first four texels, 0 to 1, (height, width, 2).
+        quarters: the same of an upsampling, of QUARTERS, (height, width, 2).
+        counts: how many of the samples have the patch's first normal; the others have its second, (height, width).
+        alphas: of each row of pixels, (height,).
+    """
+
+    normals: np.ndarray
+    decals: np.ndarray
+    views: np.ndarray
+    shares: np.ndarray
+    quarters: np.ndarray
+    counts: np.ndarray
+    alphas: np.ndarray
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in patches."""
+        height, width, _ = self.views.shape
+        return width, height
+
+    @property
+    def firsts(self) -> np.ndarray:
+        """The first normal of each patch, (height, width, 4)."""
+        return self.normals[::SIDE, ::SIDE]
+
+    @property
+    def seconds(self) -> np.ndarray:
+        """The one to its right."""
+        return self.normals[::SIDE, 1::SIDE]
+
+    @property
+    def places(self) -> np.ndarray:
+        """Where a filter reads, in texture coordinates. Widths that are powers of two make them exact."""
+        width, height = self.size
+        x, y = np.meshgrid(np.arange(width), np.arange(height))
+        corners = np.stack([x, y], axis=-1) * SIDE + 0.5
+        return (corners + self.shares) / (SIDE * width, SIDE * height)
+
+
+class MixPasses:
+    """A codec whose texels meet on a GL device; a context manager that releases what it holds there.
+
+    Args:
+        meetings: what meets.
+        samples: of a pixel that is resolved.
+
+    Attributes:
+        samples: as many as the device gave.
+        meetings: what meets.
+
+    Raises:
+        ShaderError: the encoding's GLSL does not compile.
+        FormatError: the device cannot render to the storage's format.
+    """
+
+    def __init__(self, device: Device, codec: Codec, meetings: Meetings, samples: int):
+        encoding, storage = codec.encoding, codec.storage
+        is_native = not storage.is_packed and device.native_rounding(storage) == codec.rounding
+        roundings = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        self.samples = device.given_samples(samples)
+        self._defines = encoding_defines(encoding) | storage_defines(storage, roundings, not is_native)
+        self._defines |= {"SAMPLES": self.samples, "FILTER_COSINE": CONSTANTS["FILTER_COSINE"]}
+        self._names = {"ENCODING": encoding.glsl}
+        self._device, self.meetings, self._size = device, meetings, meetings.size
+        self._formats = {"": storage.target} | ({"signed_": R32F} if encoding.sign_bits else {})
+        with ExitStack() as stack:
+            self._tables = uploaded(device, stack, encoding.tables())
+            self._views = uploaded(device, stack, {"views": meetings.views})
+            self._passes: dict[str, VertexArray] = {}
+            self._stack = stack
+            self._texels = self._encoded(meetings.normals, np.repeat(np.repeat(meetings.views, SIDE, 0), SIDE, 1))
+            self._stack = stack.pop_all()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def _passed(self, shader: str) -> VertexArray:
+        """A pass, compiled once."""
+        if shader not in self._passes:
+            made = self._device.fragment_pass(shader, self._defines, self._names)
+            self._passes[shader] = self._device.owned(self._stack, made)
+        return self._passes[shader]
+
+    def _targets(self, size: tuple[int, int], depths: str, texels: str, samples: int = 1) -> Textures:
+        """Targets of a code, by what shaders call them."""
+        device = self._device
+        made = {depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()}
+        return {name: device.owned(self._stack, texture) for name, texture in made.items()}
+
+    def _encoded(self, normals: np.ndarray, views: np.ndarray) -> Textures:
+        height, width, _ = normals.shape
+        made = self._targets((width, height), "signed_depths", "texels")
+        with self._given(normals=normals, views=views) as given:
+            self._device.render(self._passed("encode.frag"), list(made.values()), **given, **self._tables)
+        return made
+
+    @contextmanager
+    def _given(self, **arrays: np.ndarray) -> Iterator[Textures]:
+        """Arrays as textures for a while."""
+        with ExitStack() as stack:
+            yield uploaded(self._device, stack, arrays)
+
+    def _read(self, shader: str, size: tuple[int, int], given: Textures, **uniforms: int) -> Decoded:
+        """What a pass decodes, and the numbers that it decodes it from."""
+        device, passed = self._device, self._passed(shader)
+        set_uniforms(passed.program, {"level": 0, **uniforms})
+        with ExitStack() as stack:
+            made = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
+            device.render(passed, made, **{**self._views, **given}, **self._tables)
+            normals, numbers = (read_pixels(texture) for texture in made)
+        return Decoded(normals[..., :3], numbers)
+
+    def texels(self) -> Decoded:
+        """Every texel of the patches, as it is; arrays of shape (SIDE height, SIDE width, ...)."""
+        width, height = self._size
+        views = np.repeat(np.repeat(self.meetings.views, SIDE, 0), SIDE, 1)
+        with self._given(views=views) as given:
+            return self._read("mix_texel.frag", (SIDE * width, SIDE * height), {**self._texels, **given}, stride=1)
+
+    def filtered(self) -> Decoded:
+        """The sampler's bilinear filter between the first four texels of each patch."""
+        for texture in self._texels.values():
+            self._device.smooth(texture)
+        with self._given(places=self.meetings.places.astype(np.float32)) as given:
+            return self._read("mix_filter.frag", self._size, {**self._texels, **given})
+
+    def mip(self, level: int) -> Decoded:
+        """The first texel of each patch in a level that the device generated: of 2 x 2 texels, or 4 x 4."""
+        for texture in self._texels.values():
+            self._device.build_mips(texture)
+        return self._read("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
+
+    def _sampled(self) -> Textures:
+        made = self._targets(self._size, "signed_samples", "samples", self.samples)
+        counts = self.meetings.counts[..., None].astype(np.float32)
+        with self._given(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:
+            targets, passed = list(made.values()), self._passed("mix_samples.frag")
+            self._device.render(passed, targets, **given, **self._views, **self._tables)
+        return made
+
+    def resolved(self) -> Decoded:
+        """The first two normals of each patch in the samples of a pixel, whose codes the device averages."""
+        sampled, pixels = self._sampled(), self._targets(self._size, "signed_depths", "texels")
+        for source, target in zip(sampled.values(), pixels.values(), strict=True):
+            self._device.resolve(source, target)
+        return self._read("mix_texel.frag", self._size, pixels, stride=1)
+
+    def resolved_decoded(self) -> Decoded:
+        """The same samples, each decoded before the mean; no numbers."""
+        return self._read("mix_resolve.frag", self._size, self._sampled())
+
+    def blended(self, decals: np.ndarray) -> Decoded:
+        """Normals (height, width, 4) drawn over each patch's first one by the device's blending."""
+        targets = self._encoded(self.meetings.firsts, self.meetings.views)
+        passed, device = self._passed("encode.frag"), self._device
+        framebuffer = device.owned(self._stack, device.framebuffer(list(targets.values())))
+        with self._given(normals=decals) as given:
+            device.blend(BY_ALPHA)
+            framebuffer.use()
+            bind(passed.program, {**given, **self._views, **self._tables})
+            for alpha, start, rows in bands(self.meetings.alphas):
+                blend_by(alpha)
+                framebuffer.viewport = (0, start, self._size[0], rows)
+                passed.render(vertices=3)
+        device.idle.use()
+        return self._read("mix_texel.frag", self._size, targets, stride=1)
+
+    def blended_decoded(self) -> Decoded:
+        """The second normal of each patch over the first by a shader that decodes both and stores their blend."""
+        pair = (self.meetings.firsts, self.meetings.seconds)
+        base, over = (self._encoded(normals, self.meetings.views) for normals in pair)
+        over = {name.replace("texels", "decals").replace("depths", "decals"): t for name, t in over.items()}
+        made = self._targets(self._size, "signed_depths", "texels")
+        alphas = np.repeat(self.meetings.alphas[:, None, None], self._size[0], 1).astype(np.float32)
+        with self._given(alphas=alphas) as given:
+            textures = {**base, **over, **given, **self._views, **self._tables}
+            self._device.render(self._passed("mix_blend.frag"), list(made.values()), **textures)
+        return self._read("mix_texel.frag", self._size, made, stride=1)
+
+    def upsampled(self) -> Decoded:
+        """The first four texels of each patch by the discontinuity-sensitive filter; no numbers."""
+        with self._given(shares=self.meetings.quarters.astype(np.float32)) as given:
+            return self._read("mix_upsample.frag", self._size, {**self._texels, **given}, stride=SIDE)
+
+
+def bands(alphas: np.ndarray) -> Iterator[tuple[float, int, int]]:
+    """Rows of pixels that share an alpha: it, the first row, and how many."""
+    starts = np.flatnonzero(np.diff(alphas, prepend=np.nan))
+    for start, end in zip(starts, [*starts[1:], len(alphas)], strict=True):
+        yield float(alphas[start]), int(start), int(end - start)
+
+
+# By operation, how the device does it.
+BY_DEVICE: Mapping[str, Callable[[MixPasses], Decoded]] = MappingProxyType(
+    {
+        "filter": MixPasses.filtered,
+        "mip_2x2": lambda passes: passes.mip(1),
+        "mip_4x4": lambda passes: passes.mip(2),
+        "resolve": MixPasses.resolved,
+        "resolve_decoded": MixPasses.resolved_decoded,
+        "blend": lambda passes: passes.blended(passes.meetings.seconds),
+        "blend_decoded": MixPasses.blended_decoded,
+        "detail": lambda passes: passes.blended(passes.meetings.decals),
+        "upsample": MixPasses.upsampled,
+    }
+)

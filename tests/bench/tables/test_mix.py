@@ -1,0 +1,343 @@
+"""`normalbench mix`: what filters, mip levels, resolves and blending make of stored codes."""
+
+import json
+import re
+from contextlib import ExitStack
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.normals.normal_sets import NORMAL_SETS
+from normalbench.bench.results.measuring import Nothing, asked, measured
+from normalbench.bench.tables.mix import reference
+from normalbench.bench.tables.mix.judge import faults
+from normalbench.bench.tables.mix.measure import Case, Modelled, measure
+from normalbench.bench.tables.mix.model import BY_MODEL, MODEL, Texels, Way
+from normalbench.bench.tables.mix.patches import SIDE, TEXELS, mixes_of, patches_of
+from normalbench.bench.tables.mix.table import AGREE_DEG, MOST_ADDED, OPERATIONS
+from normalbench.bench.tables.mix.verdict import judged
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.codecs.light_passes import resolved
+from normalbench.gbuffer.codecs.mixing.passes import MixPasses, bands
+
+COUNT, SAMPLES = 512, 4
+OWN = "its own arithmetic"
+
+
+def codec(name: str):
+    (found,) = codecs_named(*name.split("/"), "nearest")
+    return found
+
+
+def mixes(normals: str = "axes", angle: float = 5.0, count: int = COUNT):
+    (patches,) = patches_of(NORMAL_SETS[normals](count, 0), (angle,), count, 0)
+    return mixes_of(patches, SAMPLES)
+
+
+def rows_of(name: str, backend: str = "jax", operations=tuple(OPERATIONS), **given):
+    return {row["operation"]: row for row in measure(Case(codec(name), mixes(**given), backend, operations, 64.0))}
+
+
+def angle_deg(a, b):
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
+
+
+@pytest.fixture(scope="module")
+def rows(gl):  # noqa: ARG001 # it skips where there is no device
+    """Every operation on three codes about the axes, by both back ends."""
+    table = TABLES["mix"]
+    options = {"encoding": "octahedral,spherical,xyz_renormalised", "normals": "axes", "angle": "5", "count": COUNT}
+    return measured(asked(table, table.options(**options), table.outputs()), Nothing()).rows
+
+
+@pytest.mark.parametrize("backend", ["jax", "glsl"])
+def test_unquantised_xyz_interpolates_with_the_error_of_geometry(backend, request):
+    """Normals theta apart give atan2(t sin theta, 1 - t + t cos theta), and the length of `lerp_length`."""
+    given, exact = mixes("sphere", 20.0), codec("xyz/rgba32f")
+    if backend == "jax":
+        made = Modelled(exact, given)
+        mixed = made.decoded(made.mixed("blend", made.given(made.texels()), MODEL))
+    else:
+        with MixPasses(request.getfixturevalue("gl"), exact, given.meetings(), SAMPLES) as passes:
+            mixed = passes.blended(given.meetings().seconds).normals.reshape(-1, 3)
+    first, second = given.patches.normals[:2]
+    theta, t = np.radians(angle_deg(first, second)), given.alphas
+    apart = np.radians(angle_deg(first, mixed)) - reference.lerp_angle(theta, t)
+    longer = np.linalg.norm(mixed, axis=1) - reference.lerp_length(theta, t)
+    assert np.abs(apart).max() < 1e-4 and np.abs(longer).max() < 1e-4, (np.abs(apart).max(), np.abs(longer).max())
+    # It is not slerp, from which it differs by about t (1 - t) (1 - 2 t) theta^3 / 6.
+    slerp = np.degrees(np.abs(reference.lerp_angle(theta, t) - t * theta))
+    expected = np.degrees(np.abs(t * (1 - t) * (1 - 2 * t)) * theta**3 / 6)
+    assert slerp == pytest.approx(expected, rel=0.05, abs=1e-9) and slerp.max() > 0.03, slerp.max()
+
+
+def test_reoriented_normals_turn_the_detail_as_the_base_is_turned():
+    """A flat detail gives the base, a flat base gives the detail, and a detail at part of its tilt lies on the arc."""
+    random = np.random.default_rng(0)
+    base = reference.unit_rows(random.normal(size=(1000, 3)))
+    tilt, turn, alpha = random.uniform(0, 1, 1000), random.uniform(0, 6, 1000), random.uniform(0, 1, 1000)
+    flat, detail = np.broadcast_to([0.0, 0.0, 1.0], base.shape), reference.tilted(tilt, turn)
+    assert np.abs(reference.reoriented(base, flat) - base).max() < 1e-9
+    assert np.abs(reference.reoriented(flat, detail) - detail).max() < 1e-12
+    whole, part = (reference.reoriented(base, reference.tilted(a * tilt, turn)) for a in (np.ones(1000), alpha))
+    sines = (np.sin((1 - alpha) * tilt) / np.sin(tilt), np.sin(alpha * tilt) / np.sin(tilt))
+    slerp = base * sines[0][:, None] + whole * sines[1][:, None]
+    assert np.abs(part - slerp).max() < 1e-9, np.abs(part - slerp).max()
+    behind = reference.reoriented(np.array([[0.0, 0.0, -1.0]]), detail[:1])
+    assert angle_deg(behind, np.array([[0.0, 0.0, -1.0]]))[0] == pytest.approx(np.degrees(tilt[0]))
+
+
+def test_toksvigs_power_is_the_articles():
+    """s' = f s with f = |n| / (|n| + s (1 - |n|)), by hand: 32 / 32.5 for s = 64 and a mean of length one half."""
+    lengths = np.array([1.0, 1.001, 0.5, 0.0])
+    assert reference.toksvig_power(lengths, 64.0) == pytest.approx([64, 64, 64 * 0.5 / (0.5 + 32), 0])
+
+
+def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_named(rows):
+    """Octahedral fails between normals of z < 0 across x = 0 or y = 0; spherical at x < 0 across y = 0."""
+    for row in rows:
+        pair = np.array([[float(c) for c in row[f"worst_{one}"][1:-1].split(",")] for one in ("first", "second")])
+        if row["operation"] not in ("filter", "mip_2x2", "resolve", "blend"):
+            continue
+        if row["encoding"] == "xyz_renormalised":
+            assert row["garbage_percent"] == 0, row
+        if row["encoding"] == "octahedral":
+            signs = pair[:, :2] < 0
+            assert row["garbage_percent"] > 5 and pair[:, 2].max() < 0, (row["operation"], pair)
+            assert (signs[0] != signs[1]).any(), (row["operation"], pair)
+        if row["encoding"] == "spherical":
+            is_pole = np.abs(pair[:, 2]).max() > 0.9
+            assert row["garbage_percent"] > 5, row
+            assert is_pole or (pair[:, 0].max() < 0.1 and pair[:, 1].min() < 0 < pair[:, 1].max()), pair
+    named = {row["encoding"]: row for row in rows if row["backend"] == "jax"}
+    assert named["octahedral"]["filterable"] == named["spherical"]["resolvable"] == "no"
+    assert re.search(r"garbage, up to \d+ degrees off: \(.*\) with \(.*\) gives \(", named["octahedral"]["why"])
+    assert [named["xyz_renormalised"][name] for name in ("filterable", "blendable", "resolvable")] == ["yes"] * 3
+
+
+def test_what_is_decoded_first_never_lies_across_a_seam(rows):
+    for row in rows:
+        if row["operation"] in ("resolve_decoded", "blend_decoded", "upsample"):
+            assert row["garbage_percent"] == 0 and row["angle_max_deg"] < 2 * row["alone_max_deg"] + 0.1, row
+
+
+@pytest.mark.parametrize("storage", ["rg8", "rg8_snorm", "rgb10a2", "rg16", "rg16f", "rgba32f", "rgb8_12_12"])
+@pytest.mark.usefixtures("gl")
+def test_device_and_model_agree_or_the_row_says_how_the_device_mixes(storage):
+    """To 0.01 degrees, of the codes that the device stored. Filters of UNORM of 8 bits have 8 bits of fraction here."""
+    for name in ("octahedral", "xy_sign"):
+        for operation, row in rows_of(f"{name}/{storage}", "glsl").items():
+            is_told = operation in BY_MODEL and row["mixed_by"].startswith(OWN)
+            # What is decoded and stored again may round the other way where the two halves differ by a unit.
+            assert is_told or row["agree_percent"] > 99, (storage, operation, row["agree_percent"], row["mixed_by"])
+            if operation in ("filter", "resolve"):
+                assert row["agree_percent"] == 100 or is_told, (storage, operation, row["agree_percent"])
+    assert AGREE_DEG == 0.01
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_filters_fractions_are_probed(gl):
+    """llvmpipe filters RG8 as integers with fractions of 8 bits, and half floats as floats."""
+    if "llvmpipe" not in gl.renderer:
+        pytest.skip("another device filters in its own way")
+    said = [rows_of(f"octahedral/{s}", "glsl", ("filter",))["filter"]["mixed_by"] for s in ("rg8", "rg16f")]
+    assert said == ["integers, fractions of 8 bits", "32-bit floats"]
+
+
+def test_a_fixed_filter_is_the_float_one_to_a_step():
+    """By the model: fractions of 8 bits and rounded steps move a number of UNORM8 by at most two steps."""
+    given, made = mixes(), Modelled(codec("octahedral/rg8"), mixes())
+    mixed = [made.mixed("filter", made.given(made.texels()), way) for way in (MODEL, Way(True, 8))]
+    steps = np.abs(mixed[0] - mixed[1]).max() * 255 / 2
+    assert 0.4 < steps < 2.0 and given.shares.max() < 1, steps
+
+
+@pytest.mark.parametrize("name", [name for name, storage in STORAGES.items() if storage.channels < 4])
+def test_texels_of_a_storage_come_back_as_the_same_numbers(name):
+    """Also where numbers are laid across channels."""
+    chosen = codec(f"octahedral/{name}")
+    made = Modelled(chosen, mixes("sphere", 5.0))
+    stored = made.texels()
+    texels = Texels(chosen)
+    again = texels.code(texels.of(stored))
+    assert np.abs(again - stored).max() < 1e-6, np.abs(again - stored).max()
+
+
+def test_blends_of_whole_shares_are_the_source_and_the_base():
+    """By every way to mix, to a step of the storage."""
+    texels, shape = Texels(codec("octahedral/rg8")), (2, 64)
+    base, source = (np.random.default_rng(i).integers(0, 256, shape).astype(np.float32) / 255 for i in (0, 1))
+    for way in (MODEL, Way(is_fixed=True, rounds_source=True)):
+        for alpha, expected in ((1.0, source), (0.0, base)):
+            got = texels.blended(base, source, np.full(64, alpha), way)
+            assert np.abs(got - expected).max() * 255 < 0.01, (way, alpha)
+
+
+def test_a_resolve_is_that_of_light_buffers(gl):
+    """`lights --experiment resolve` and `mix` resolve by one mechanism: plain light and xyz, of the same samples in
+    RGBA16F, give the same means, by the hardware and decoded first."""
+    given = mixes("sphere", 20.0).meetings()
+    # What half floats hold exactly, so that neither side rounds when it stores.
+    given = replace(given, normals=np.abs(given.normals).astype(np.float16).astype(np.float32))
+    with ExitStack() as stack:
+        exact, half = (
+            stack.enter_context(MixPasses(gl, codec(f"xyz/{name}"), given, SAMPLES)) for name in ("rgba32f", "rgba16f")
+        )
+        light = resolved(gl, LIGHT_BUFFERS["rgba16f"], exact._sampled()["samples"], SAMPLES)
+        pairs = [(light.by_code, half.resolved()), (light.by_light, half.resolved_decoded())]
+    for ours, theirs in pairs:
+        flipped = theirs.normals.reshape(ours.shape)[::-1]
+        assert np.abs(ours - flipped).max() < 1e-6, np.abs(ours - flipped).max()
+
+
+def test_patches_of_a_direction_lie_as_far_apart_as_was_asked():
+    """Neighbours through the direction are `angle` apart; curvature brings the others closer by its square."""
+    given = mixes("sphere", 5.0).patches
+    assert given.normals.shape == (TEXELS, 512, 3)
+    across = angle_deg(given.normals[0], given.normals[1])
+    assert across.min() > 4.9 and across.max() < 5.0001, (across.min(), across.max())
+
+
+def test_patches_of_an_image_are_its_own_neighbours():
+    playground = NORMAL_SETS["playground"](0, 0)
+    (given,) = patches_of(playground, (5.0,), 64, 0)
+    planes = [np.asarray(c) for load in playground.loads() for c in [np.stack(load().n, axis=1)]]
+    image = np.concatenate(planes)[: playground.count].reshape(*playground.shape, 3)
+    for patch in range(3):
+        block = given.normals[:, patch].reshape(SIDE, SIDE, 3)
+        at = np.argwhere(np.abs(image - block[0, 0]).max(axis=-1) < 1e-6)
+        squares = (image[y : y + SIDE, x : x + SIDE] for y, x in at)
+        assert any(square.shape == block.shape and np.abs(square - block).max() < 1e-6 for square in squares)
+    assert given.angle_deg is None and given.count == 64
+
+
+def test_codes_of_half_a_sphere_are_mixed_there():
+    row = rows_of("hemi_octahedral/rg16", normals="sphere")["filter"]
+    assert 100 < row["count"] < COUNT and row["garbage_percent"] == 0, row["count"]
+
+
+def test_rows_of_one_alpha_are_one_band():
+    assert list(bands(np.array([0.1, 0.1, 0.2, 0.9]))) == [(0.1, 0, 2), (0.2, 2, 1), (0.9, 3, 1)]
+
+
+def test_a_verdict_follows_from_the_thresholds():
+    """Garbage, or an added error above the share of the reach, is a no; operations that are missing leave it open."""
+    base = {"encoding": "e", "storage": "s", "backend": "jax", "normals": "sphere", "angle_deg": 5.0}
+    base |= {f"worst_{name}": "(0, 0, 1)" for name in ("first", "second", "result")}
+    base |= {"alone_max_deg": 0.5, "angle_max_deg": 1.0, "geometry_max_deg": 0.0, "reach_max_deg": 4.0}
+    fine = [base | {"operation": name, "garbage_percent": 0.0} for name in ("blend", "detail", "resolve")]
+    assert {(row["filterable"], row["blendable"], row["resolvable"]) for row in judged(fine)} == {(None, "yes", "yes")}
+    garbage = [row | {"garbage_percent": 0.1} if row["operation"] == "blend" else row for row in fine]
+    assert {(row["blendable"], row["resolvable"]) for row in judged(garbage)} == {("no", "yes")}
+    for added, verdict in ((MOST_ADDED * 4 - 0.01, "yes"), (MOST_ADDED * 4 + 0.01, "no")):
+        moved = [row | {"angle_max_deg": 1.0 + added} for row in fine]
+        assert {row["resolvable"] for row in judged(moved)} == {verdict}
+    wide = [row | {"angle_deg": 20.0, "garbage_percent": 9.0} for row in fine]
+    assert {row["resolvable"] for row in judged(wide)} == {None}, "neighbours 20 degrees apart do not decide"
+
+
+def test_octahedral_can_be_filtered_where_z_is_not_negative():
+    """Its seams lie at z < 0; the sentence says what goes wrong on the whole sphere."""
+    sphere = NORMAL_SETS["sphere"](64, 0)
+    found = faults(codec("octahedral/rg8"), ("filter", "blend"), sphere, "sphere")
+    assert set(found) == {"filter", "blend"} and "garbage, up to" in found["filter"], found
+    assert not faults(codec("octahedral/rg8"), ("filter", "blend", "resolve"), sphere, "hemisphere")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "radv")
+def test_pick_leaves_out_what_does_not_survive(run):
+    words = ("pick", "--encoding", "octahedral,xy_sign", "--storage", "rg8", "--count", "4096")
+    status, out, _ = run(*words)
+    assert status == 0 and "take octahedral" in out and "cannot be" not in out
+    status, out, _ = run(*words, "--needs", "filter")
+    text = " ".join(out.split())
+    assert status == 0 and "take xy_sign" in text, text
+    assert "octahedral (cannot be filtered: normals 1 degree apart on axes" in text, text
+    status, out, _ = run(*words, "--needs", "filter", "--domain", "hemisphere")
+    assert status == 0 and "take octahedral" in out
+
+
+def test_the_page_has_a_chart_and_the_summary_the_verdicts(rows):
+    work = TABLES["mix"].work
+    (chart,) = work.drawings(None, rows)
+    figure, (spec,) = chart.draw(), chart.specs()
+    axis = figure.axes[0]
+    assert [label.get_text() for label in axis.get_xticklabels()] == [name.replace("_", " ") for name in OPERATIONS]
+    assert len(spec["data"]["values"]) == 3 * len(OPERATIONS)
+    assert sum("%" in text.get_text() for text in axis.texts) >= 8
+    (sheet,) = work.summary(rows)
+    assert {line["encoding"]: line["filterable"] for line in sheet.rows}["octahedral"] == "no"
+    assert any("octahedral/rgba8: normals 5 degrees apart on axes" in note for note in sheet.notes)
+
+
+def test_a_gate_holds_the_share_of_garbage(run, tmp_path):
+    gate = '[[gate]]\ntable = "mix"\nencoding = "{}"\nstorage = "rg16"\noperation = "resolve"\nnormals = "axes"\n'
+    gate += 'angle = "5"\nbackend = "jax"\ncount = 256\ngarbage_percent = "at most 0"\n'
+    path = tmp_path / "gates.toml"
+    for name, expected in (("hemi_octahedral", 0), ("octahedral", 1)):
+        path.write_text(gate.format(name))
+        status, out, err = run("check", str(path))
+        assert status == expected, out + err
+
+
+def test_rows_have_the_columns_of_the_table(rows):
+    assert all(tuple(row) == tuple(TABLES["mix"].empty()) for row in rows)
+    assert len(rows) == 3 * 2 * len(OPERATIONS) and len({TABLES["mix"].name_of(row) for row in rows}) == len(rows)
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (("--angle", "0"), "--angle 0: numbers from 0.01 to 60"),
+        (("--angle", "5,far"), "--angle 5,far: numbers from 0.01 to 60"),
+        (("--samples", "1"), "--samples 1: from 2 to 64"),
+        (("--count", "0"), "--count 0: from 1 to 65536"),
+        (("--power", "0"), "--power 0: from 1 to 65536"),
+        (("--operation", "blur"), "unknown operation 'blur'; known: all, filter"),
+        (("--backend", "cuda"), "unknown back end 'cuda'"),
+        (("--normals", "cube"), "unknown normal set 'cube'"),
+        (("--encoding", "xyz", "--storage", "rg8"), "xyz/rg8: 3 components, but RG8 has 2 channels"),
+        (("--plot", "mix.txt"), "mix.txt: a plot's name ends in .png, .svg, .pdf"),
+    ],
+)
+def test_what_cannot_be_measured_is_one_line(run, words, said):
+    status, out, err = run("mix", *words)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+
+
+def test_what_pick_cannot_be_asked_is_one_line(run):
+    status, out, err = run("pick", "--needs", "swim")
+    assert (status, out) == (2, "") and "unknown use 'swim'; known: all, filter, blend, resolve" in err, err
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_command_writes_rows_and_a_plot(run, tmp_path):
+    words = ("mix", "--encoding", "xyz,xy", "--angle", "5", "--normals", "axes", "--count", "64", "--backend", "jax")
+    plot, out = tmp_path / "mix.png", tmp_path / "rows.json"
+    status, _, err = run(*words, "--plot", str(plot), "-o", str(out))
+    assert status == 0 and plot.read_bytes().startswith(b"\x89PNG"), err
+    assert len(json.loads(out.read_text())) == 2 * len(OPERATIONS)
+
+
+def test_an_image_without_a_square_of_texels_is_one_line(run, tmp_path):
+    """Of 3 x 3 pixels there is no patch."""
+    flat = np.zeros((3, 3, 3), np.float32)
+    flat[..., 2] = 1.0
+    np.save(tmp_path / "small.npy", flat)
+    status, out, err = run("mix", "--normals", str(tmp_path / "small.npy"), "--backend", "jax")
+    assert (status, out) == (2, "") and "no square of 4 x 4 pixels of it is covered" in err, err
+
+
+def test_a_set_of_few_normals_is_mixed_evenly_and_with_every_alpha():
+    """Each of the six axes gets as many patches, and every alpha of a blend."""
+    given = mixes("axes", 1.0, 1024)
+    centre = given.patches.normals[:4].mean(axis=0)
+    axis = np.argmax(np.concatenate([centre, -centre], axis=1), axis=1)
+    counts = np.bincount(axis, minlength=6)
+    assert counts.min() >= 160 and counts.max() <= 180, counts
+    assert all(len(set(given.alphas[axis == side])) == 9 for side in range(6))
