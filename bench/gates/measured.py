@@ -54,9 +54,10 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
     if left_out and not any(str(value) == "all" for value in given.values()):
         raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
     steps = measured_steps(ask, Nothing())
-    step_of = {id(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
+    # By name: a finished row may be another object.
+    step_of = {table.name_of(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
     rows = table.work.finish([row for rows in steps for row in rows])
-    return [Found(row, partial(table.work.worst, step_of[id(row)])) for row in rows]
+    return [Found(row, partial(table.work.worst, step_of[table.name_of(row)])) for row in rows]
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:

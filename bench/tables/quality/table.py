@@ -122,7 +122,6 @@ COLUMNS = (
         "How much larger the RMS angle is than that of the same code computed in float32; of half arithmetic.",
         unit="percent",
         better="less",
-        option="arithmetic",
     ),
     Column(
         "angle_counts",
