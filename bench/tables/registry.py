@@ -14,6 +14,7 @@ FOLDERS = (
     "render",
     "cost",
     "effects",
+    "motion",
     "lights",
     "depth",
     "tangent_frames",
