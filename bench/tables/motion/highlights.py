@@ -16,18 +16,12 @@ LIGHTS = (
     Light("point", (0.0, 40.0, 0.0), (6.0, 2.0, 7.0), 40.0),
     Light("point", (0.0, 0.0, 40.0), (0.5, -6.0, 8.0), 40.0),
 )
-# A power that no sphere has, of what is behind them.
-NO_SPHERE = 2.0
 
 
 def lit_scene(scene: Scene) -> Scene:
-    """Scene gloss with nothing but highlights: black surfaces under LIGHTS, without shadows."""
-    spheres = [replace(material, albedo=(0.0,) * 3) for material in scene.materials[: len(POWERS)]]
-    others = [
-        replace(material, albedo=(0.0,) * 3, specular=(0.0,) * 3, power=NO_SPHERE)
-        for material in scene.materials[len(POWERS) :]
-    ]
-    return replace(scene, materials=(*spheres, *others), lights=LIGHTS, ambient=(0.0,) * 3)
+    """Scene gloss with nothing but highlights: its spheres alone, black, under LIGHTS."""
+    spheres = tuple(replace(material, albedo=(0.0,) * 3) for material in scene.materials[: len(POWERS)])
+    return replace(scene, parts=scene.parts[:1], materials=spheres, lights=LIGHTS, ambient=(0.0,) * 3)
 
 
 @dataclass(frozen=True)
@@ -69,15 +63,18 @@ def spots(linear: np.ndarray, spheres: np.ndarray) -> Spots:
     return Spots(np.stack(centroids, axis=1), np.stack(peaks, axis=1))
 
 
-def wobble(frames: list[Spots], reference: list[Spots]) -> tuple[np.ndarray, np.ndarray]:
-    """How far highlights move and flicker from frame to frame beyond those of the reference.
+def wobble(frames: list[Spots], exact: Spots) -> tuple[np.ndarray, np.ndarray]:
+    """How far highlights move and flicker from frame to frame.
+
+    Args:
+        frames: of a code, two or more.
+        exact: the same of exact normals, which stay.
 
     Returns:
-        squared pixels, and squared percent of the peak, each a mean over pairs of frames and lights, of shape
+        squared pixels, and squared percent of the exact peak, each a mean over pairs of frames and lights, of shape
         (spheres,); NaN where a sphere has no light.
     """
-    off = np.stack([one.centroids - exact.centroids for one, exact in zip(frames, reference, strict=True)])
+    moved = np.diff(np.stack([one.centroids for one in frames]), axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.stack([one.peaks / exact.peaks - 1 for one, exact in zip(frames, reference, strict=True)])
-    moved = np.sum(np.diff(off, axis=0) ** 2, axis=-1)
-    return np.mean(moved, axis=(0, 2)), np.mean((100 * np.diff(share, axis=0)) ** 2, axis=(0, 2))
+        flickered = 100 * np.diff(np.stack([one.peaks for one in frames]), axis=0) / exact.peaks
+    return np.mean(np.sum(moved**2, axis=-1), axis=(0, 2)), np.mean(flickered**2, axis=(0, 2))

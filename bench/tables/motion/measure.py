@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -11,7 +12,7 @@ import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.codec import Codec
-from ....gbuffer.display import Display
+from ....gbuffer.display import CLIPPED_ALONE, Display
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
@@ -87,17 +88,21 @@ class Filmed:
     """A sequence as rendered.
 
     Attributes:
-        shown: the displayed image of each frame, float32 of shape (height, width, 3); none where nobody keeps them.
+        shown: the displayed image of each frame, float32 of shape (height, width, 3); of exact normals alone.
         covered: where a frame has a surface, bool of shape (height, width).
         spheres: which sphere a pixel shows, see highlights.spheres_of.
-        spots: the highlights of each frame.
+        lit: the highlights as displayed: a frame of exact normals, or all frames of a code where somebody keeps them.
+        spots: where they are.
+        display: how they are displayed.
         worst: of a code, the sphere whose highlights move the most, counted as `spheres` does; 0 for none.
     """
 
     shown: list[np.ndarray] = field(default_factory=list)
     covered: list[np.ndarray] = field(default_factory=list)
-    spheres: list[np.ndarray] = field(default_factory=list)
+    spheres: np.ndarray | None = None
+    lit: list[np.ndarray] = field(default_factory=list)
     spots: list[Spots] = field(default_factory=list)
+    display: Display = CLIPPED_ALONE
     worst: int = 0
 
 
@@ -139,14 +144,16 @@ class Bench:
     def _filmed(self, case: Case, pictures: Shots, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
         exact, found, sums = self.reference(case), Filmed(), Differences()
+        assert exact.spheres is not None
         with _projector(self._device, pictures) as projector:
             for at, view in enumerate(projector.views()):
-                keeps = _keeps(trip, case.motion.space, view)
-                image = projector.image(view, keeps)
+                image = projector.image(view, in_space(trip, case.motion.space, view))
                 sums.add(image - exact.shown[at], exact.covered[at])
-                found.spots.append(highlights.spots(projector.highlights(view, keeps), exact.spheres[at]))
+            for matrices in case.motion.matrices():
+                light = projector.highlights(on_surfaces(trip, *matrices))
+                found.spots.append(highlights.spots(light, exact.spheres))
                 if self._keeps_frames:
-                    found.shown.append(image)
+                    found.lit.append(exact.display.image(light).astype(np.float32))
         return found, sums.row() | _of_highlights(found, exact)
 
 
@@ -182,7 +189,6 @@ class Projector:
 
     pictures: Shots
     scene: Scene
-    lit: Scene
     of_scene: Rendering
     of_lit: Rendering
 
@@ -192,17 +198,13 @@ class Projector:
 
     def image(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
         """A frame as displayed, float32 of shape (height, width, 3)."""
-        self.of_scene.draw(_seen(self.scene, view), keeps)
+        self.of_scene.draw(replace(self.scene, view=view, previous=view), keeps)
         return Display(SCENES[SCENE].exposure or 0.0).image(self.of_scene.image()).astype(np.float32)
 
-    def highlights(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
+    def highlights(self, keeps: Keeps | None = None) -> np.ndarray:
         """A frame of highlights in linear light, (height, width, 3): one light in each channel."""
-        self.of_lit.draw(_seen(self.lit, view), keeps)
+        self.of_lit.draw(keeps=keeps)
         return self.of_lit.image()
-
-
-def _seen(scene: Scene, view: View) -> Scene:
-    return replace(scene, view=view, previous=view)
 
 
 @contextmanager
@@ -211,35 +213,60 @@ def _projector(device: Device, pictures: Shots) -> Iterator[Projector]:
     lit = highlights.lit_scene(scene)
     plan = Plan(pictures.size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
     with rendering(device, pipeline, scene, plan) as one, rendering(device, pipeline, lit, plan) as other:
-        yield Projector(pictures, scene, lit, one, other)
+        yield Projector(pictures, scene, one, other)
 
 
 def _exact(projector: Projector) -> Filmed:
     found = Filmed()
     for view in projector.views():
         found.shown.append(projector.image(view))
-        light = projector.highlights(view)
-        position, _, albedo, _ = projector.of_lit.gbuffer()
-        found.covered.append(position[..., 2] != 0)
-        found.spheres.append(highlights.spheres_of(albedo[..., 3], found.covered[-1]))
-        found.spots.append(highlights.spots(light, found.spheres[-1]))
+        found.covered.append(projector.of_scene.gbuffer()[0][..., 2] != 0)
+    light = projector.highlights()
+    position, _, albedo, _ = projector.of_lit.gbuffer()
+    covered = position[..., 2] != 0
+    found.spheres = highlights.spheres_of(albedo[..., 3], covered)
+    # The brightest highlight is just not clipped.
+    found.display = Display(-math.log2(peak)) if (peak := float(light.max())) > 0 else CLIPPED_ALONE
+    found.spots.append(highlights.spots(light, found.spheres))
+    found.lit.append(found.display.image(light).astype(np.float32))
     return found
 
 
-def _keeps(trip: Trip, space: str, view: View) -> Keeps:
-    """What the G-buffer keeps in place of normals: what comes back of them, in view space again."""
+def in_space(trip: Trip, space: str, view: View) -> Keeps:
+    """What the G-buffer of a turned camera keeps in place of normals: what comes back of them, in view space again."""
     to_view = view.matrix()[:3, :3] if space == turning.SPACES[1] else np.eye(3)
 
     def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
-        _, decoded = trip((n.astype(np.float64) @ to_view).astype(np.float32), position)
-        return (decoded.astype(np.float64) @ to_view.T).astype(np.float32)
+        return turned(trip(turned(n, to_view.T), position)[1], to_view)
 
     return keeps
 
 
+def on_surfaces(trip: Trip, of_normals: np.ndarray, of_positions: np.ndarray) -> Keeps:
+    """What the G-buffer of a still camera keeps where a turned one's codes lie on the same surfaces.
+
+    So a frame is seen as if the picture turned with the camera, every surface at its pixel: what changes is the code's
+    doing, and not that of the raster of pixels.
+
+    Args:
+        trip: the codec.
+        of_normals, of_positions: as code_wobble.Motion gives them.
+    """
+
+    def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
+        return turned(trip(turned(n, of_normals), turned(position, of_positions))[1], of_normals.T)
+
+    return keeps
+
+
+def turned(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Vectors under a matrix, float32 of shape (count, 3)."""
+    return (rows.astype(np.float64) @ matrix.T).astype(np.float32)
+
+
 def _of_highlights(found: Filmed, exact: Filmed) -> Row:
     """The columns of highlights; `found.worst` is the sphere whose highlights move the most."""
-    moved, flickered = highlights.wobble(found.spots, exact.spots)
+    moved, flickered = highlights.wobble(found.spots, exact.spots[0])
     if not np.isfinite(moved).any():
         return {}
     found.worst = int(np.nanargmax(moved)) + 1

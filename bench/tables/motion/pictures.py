@@ -25,26 +25,20 @@ def _stem(row: Row) -> str:
 
 
 def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
-    """The sphere whose highlights move the most: test next to reference next to their difference."""
-    window = _window(exact, filmed.worst)
-    if window is None:
+    """The sphere whose highlights move the most: the code next to exact normals next to their difference."""
+    if exact.spheres is None or not np.any(where := exact.spheres == filmed.worst) or not filmed.worst:
         return
+    window = _window(where)
     title = f"{row['encoding']} {row['storage']}, {row['space']} space, power {POWERS[filmed.worst - 1]:g}"
-    frames = [
-        chart.beside(one[window], other[window], title) for one, other in zip(filmed.shown, exact.shown, strict=True)
-    ]
+    frames = [chart.beside(one[window], exact.lit[0][window], title) for one in filmed.lit]
     with whole_file(folder / f"{_stem(row)}.png") as partial:
         chart.write_animation(partial, frames)
 
 
-def _window(exact: Filmed, sphere: int) -> tuple[slice, slice] | None:
-    """The part of the picture that a sphere crosses; None where it is never seen."""
-    where = np.any([spheres == sphere for spheres in exact.spheres], axis=0) if sphere else np.zeros((1, 1), bool)
-    if not where.any():
-        return None
+def _window(where: np.ndarray) -> tuple[slice, slice]:
+    """The part of a picture around what is marked, bool of shape (height, width)."""
     spans = [np.flatnonzero(where.any(axis=axis)) for axis in (1, 0)]
-    low, high = ([int(span[end]) for span in spans] for end in (0, -1))
-    y, x = (slice(max(a - MARGIN, 0), b + MARGIN + 1) for a, b in zip(low, high, strict=True))
+    y, x = (slice(max(int(span[0]) - MARGIN, 0), int(span[-1]) + MARGIN + 1) for span in spans)
     return y, x
 
 

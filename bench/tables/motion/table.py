@@ -79,14 +79,14 @@ COLUMNS = (
     Column("jump_deg", "Mean change of the error where the code changes.", unit="degrees", better="less", drops=8),
     Column(
         "highlight_px",
-        "RMS change, from one frame to the next, of the distance that a highlight's centroid lies off that of exact "
-        "normals. Three lights on nine spheres of specular power 4 to 1024.",
+        "RMS change of a highlight's centroid from one frame to the next, on the surface: the picture turns with the "
+        "camera. Three lights on nine spheres of specular power 4 to 1024.",
         unit="pixels",
         better="less",
     ),
     Column(
         "peak_percent",
-        "RMS change, from one frame to the next, of a highlight's brightest pixel over that of exact normals.",
+        "RMS change of a highlight's brightest pixel from one frame to the next, over that of exact normals.",
         unit="%",
         better="less",
     ),
@@ -101,8 +101,8 @@ COLUMNS = (
     ),
     Column(
         "wobble_psnr_db",
-        "The same of the change of their difference from one frame to the next. 3 dB below static_psnr_db where the "
-        "errors of two frames have nothing to do with each other.",
+        "The same of the change of their difference from one frame to the next, pixel by pixel while surfaces move "
+        "across them. 3 dB below static_psnr_db where the errors of two frames have nothing to do with each other.",
         unit="dB",
         better="more",
     ),
@@ -123,7 +123,7 @@ COLUMNS = (
     shared.SKIPPED,
 )
 ALSO = (
-    Column("worst_turn_deg", "The turn a frame at which the wobble is largest, of those measured.", unit="degrees"),
+    Column("worst_turn_deg", "Of the turns measured, the one with the largest wobble; empty for none.", unit="degrees"),
     Column("worst_wobble_deg", "wobble_deg of that turn.", unit="degrees", better="less"),
 )
 
@@ -138,7 +138,7 @@ TABLE = Table(
     outputs=MotionOutputs,
     columns=COLUMNS,
     also=ALSO,
-    usual=({},),
+    usual=({"frames": 16, "count": 2**15},),
     single={"encoding": "octahedral", "space": "view", "turn": "0.25", "picture_turn": "none"},
     files={"images": "motion"},
     section=Section(
@@ -147,7 +147,8 @@ TABLE = Table(
         intro="A code in view space changes while the camera turns, and highlights wobble. How much, and how much "
         "less in world space?",
         method="Normals that are fixed on surfaces are encoded in each frame of a turn, stored and decoded; the error "
-        "is followed on the surface. Highlights and images are rendered with these decodes in place of exact normals "
-        "and compared with the same frames of exact normals.",
+        "is followed on the surface. Highlights and images are rendered with these decodes in place of exact normals. "
+        "Highlights are those of a picture that turns with the camera, so that what changes is the code's doing; "
+        "the image is that of a camera that turns, where the raster of pixels has a share.",
     ),
 )

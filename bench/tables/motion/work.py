@@ -154,7 +154,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         if len({row["moves"] for row in rows}) > 1:
             named["moves"] = worst["moves"]
         found = {name: worst[name] for name in ("static_rms_deg", "ratio", "jumps_percent")}
-        codes.append(named | {"worst_turn_deg": worst["turn_deg"], "worst_wobble_deg": worst["wobble_deg"]} | found)
+        turn = worst["turn_deg"] if worst["wobble_deg"] else None
+        codes.append(named | {"worst_turn_deg": turn, "worst_wobble_deg": worst["wobble_deg"]} | found)
         for row in line:
             if row.get("highlight_px") is not None:
                 names = ("turn_deg", "highlight_px", "peak_percent", "static_psnr_db", "wobble_psnr_db")
