@@ -65,7 +65,8 @@ def motion_chart(rows: Sequence[Row]) -> Any:
     axis.set_xlabel("turn, degrees a frame")
     axis.set_ylabel("wobble, degrees")
     axis.grid(alpha=0.3)
-    figure.legend(loc="outside upper center", ncols=3, fontsize=8, frameon=False)
+    if rows:
+        figure.legend(loc="outside upper center", ncols=3, fontsize=8, frameon=False)
     return figure
 
 

@@ -90,6 +90,7 @@ class Filmed:
     Attributes:
         shown: the displayed image of each frame, float32 of shape (height, width, 3); of exact normals alone.
         covered: where a frame has a surface, bool of shape (height, width).
+        still, still_covered: the same two of the scene's own camera.
         spheres: which sphere a pixel shows, see highlights.spheres_of.
         lit: the highlights as displayed: a frame of exact normals, or all frames of a code where somebody keeps them.
         spots: where they are.
@@ -99,6 +100,8 @@ class Filmed:
 
     shown: list[np.ndarray] = field(default_factory=list)
     covered: list[np.ndarray] = field(default_factory=list)
+    still: np.ndarray | None = None
+    still_covered: np.ndarray = field(default_factory=lambda: np.zeros((1, 1), bool))
     spheres: np.ndarray | None = None
     lit: list[np.ndarray] = field(default_factory=list)
     spots: list[Spots] = field(default_factory=list)
@@ -120,7 +123,7 @@ class Bench:
 
     def measure(self, case: Case) -> tuple[Row, Filmed | None]:
         """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
-        row = TABLE.empty(f"{power:g}" for power in POWERS) | _described(case)
+        row = TABLE.empty([f"{power:g}" for power in POWERS]) | _described(case)
         try:
             with trip_of(case.codec) as trip:
                 row |= code_wobble(trip, case.codec.encoding.domain, case.motion, case.count, case.seed)
@@ -143,18 +146,21 @@ class Bench:
 
     def _filmed(self, case: Case, pictures: Shots, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
-        exact, found, sums = self.reference(case), Filmed(), Differences()
-        assert exact.spheres is not None
+        exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
+        assert exact.spheres is not None and exact.still is not None
         with _projector(self._device, pictures) as projector:
             for at, view in enumerate(projector.views()):
                 image = projector.image(view, in_space(trip, case.motion.space, view))
                 sums.add(image - exact.shown[at], exact.covered[at])
             for matrices in case.motion.matrices():
-                light = projector.highlights(on_surfaces(trip, *matrices))
+                keeps = on_surfaces(trip, *matrices)
+                fixed.add(projector.image(projector.scene.view, keeps) - exact.still, exact.still_covered)
+                light = projector.highlights(keeps)
                 found.spots.append(highlights.spots(light, exact.spheres))
                 if self._keeps_frames:
                     found.lit.append(exact.display.image(light).astype(np.float32))
-        return found, sums.row() | _of_highlights(found, exact)
+        row = {"static_psnr_db": sums.static_db, "wobble_psnr_db": sums.wobble_db}
+        return found, row | {"reprojected_psnr_db": fixed.wobble_db} | _of_highlights(found, exact)
 
 
 @dataclass
@@ -175,12 +181,15 @@ class Differences:
             self.moving.append(float(np.mean((difference[both] - self._before[0][both]) ** 2)))
         self._before = difference, covered
 
-    def row(self) -> Row:
-        """The columns of the image."""
-        return {
-            "static_psnr_db": psnr_db(float(np.mean(self.static))),
-            "wobble_psnr_db": psnr_db(float(np.mean(self.moving))),
-        }
+    @property
+    def static_db(self) -> float:
+        """PSNR of the images, peak 1."""
+        return psnr_db(float(np.mean(self.static)))
+
+    @property
+    def wobble_db(self) -> float:
+        """PSNR of what changes of their differences."""
+        return psnr_db(float(np.mean(self.moving)))
 
 
 @dataclass(frozen=True)
@@ -221,6 +230,8 @@ def _exact(projector: Projector) -> Filmed:
     for view in projector.views():
         found.shown.append(projector.image(view))
         found.covered.append(projector.of_scene.gbuffer()[0][..., 2] != 0)
+    found.still = projector.image(projector.scene.view)
+    found.still_covered = projector.of_scene.gbuffer()[0][..., 2] != 0
     light = projector.highlights()
     position, _, albedo, _ = projector.of_lit.gbuffer()
     covered = position[..., 2] != 0

@@ -23,7 +23,12 @@ class MotionOptions:
     rounding: Roundings = "nearest"
     space: Annotated[
         str,
-        Option("--space", "view, world: the space that normals are encoded in; comma-separated, or all.", in_run=True),
+        Option(
+            "--space",
+            "view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code "
+            "is measured in those that it is made for.",
+            in_run=True,
+        ),
     ] = "view,world"
     moves: Annotated[str, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (
         "camera"
@@ -103,6 +108,13 @@ COLUMNS = (
         "wobble_psnr_db",
         "The same of the change of their difference from one frame to the next, pixel by pixel while surfaces move "
         "across them. 3 dB below static_psnr_db where the errors of two frames have nothing to do with each other.",
+        unit="dB",
+        better="more",
+    ),
+    Column(
+        "reprojected_psnr_db",
+        "The same of a picture that turns with the camera, every surface at its pixel, as frames are after exact "
+        "reprojection: what is left is the code's doing. Infinite where codes stay.",
         unit="dB",
         better="more",
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -66,7 +67,7 @@ def picture_turns(options: MotionOptions) -> tuple[float, ...]:
     turns = checked_numbers("--turn", options.turn, float, LEAST_TURN_DEG, MOST_TURN_DEG)
     possible = tuple(turn for turn in turns if turn <= PICTURE_SWING_DEG)
     if options.picture_turn is None:
-        return tuple(sorted(possible, key=lambda turn: abs(turn - USUAL_PICTURE_TURN_DEG))[:1])
+        return tuple(sorted(possible, key=lambda turn: abs(math.log(turn / USUAL_PICTURE_TURN_DEG)))[:1])
     if options.picture_turn.strip().lower() == NO_PICTURES:
         return ()
     asked = checked_numbers("--picture-turn", options.picture_turn, float, LEAST_TURN_DEG, PICTURE_SWING_DEG)
@@ -83,24 +84,25 @@ def cases(options: MotionOptions, device: Device | None) -> list[Case]:
     """
     in_range("--count", options.count, 1, MAX_POINTS)
     check_seed(options.seed)
-    setting, chosen, rendered = (
-        checked_setting(1, options.lights, options.seed),
-        motions(options),
-        picture_turns(options),
-    )
+    setting = checked_setting(1, options.lights, options.seed)
+    chosen, rendered = motions(options), picture_turns(options)
     size, _ = checked_target(options.size, 1, options.frames, device) if device else ((0, 0), 0)
     made: list[Case] = []
     outside: list[str] = []
     for codec in codecs(options):
-        for motion in chosen:
-            if motion.space == turning.SPACES[1] and codec.encoding.domain != "sphere":
-                outside.append(codec.name)
-                continue
+        suited = [motion for motion in chosen if is_suited(codec, motion)]
+        outside += [] if suited else [codec.name]
+        for motion in suited:
             # A smooth sphere that turns looks the same: images are of turning cameras.
             is_rendered = device and motion.moves == turning.MOVES[0] and motion.turn in rendered
             shots = Shots(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
             made.append(Case(codec, motion, options.count, options.seed, shots))
-    return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in dict.fromkeys(outside)))
+    return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in outside))
+
+
+def is_suited(codec: Codec, motion: Motion) -> bool:
+    """Whether an encoding is made for a space: in world space normals have all directions."""
+    return motion.space != turning.SPACES[1] or codec.encoding.domain == "sphere"
 
 
 def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
@@ -134,6 +136,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
             yield f"{TABLE.name_of(row)}: {row['invalid']} decodes are NaN or infinite"
 
 
+IMAGE = ("static_psnr_db", "wobble_psnr_db", "reprojected_psnr_db")
 LINE = ("encoding", "storage", "rounding", "space", "moves", "axis")
 
 
@@ -158,7 +161,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         codes.append(named | {"worst_turn_deg": turn, "worst_wobble_deg": worst["wobble_deg"]} | found)
         for row in line:
             if row.get("highlight_px") is not None:
-                names = ("turn_deg", "highlight_px", "peak_percent", "static_psnr_db", "wobble_psnr_db")
+                names = ("turn_deg", "highlight_px", "peak_percent", *IMAGE)
                 images.append(named | {name: row[name] for name in names})
     if codes:
         yield Sheet("the code alone, at the turn where it wobbles most", codes)
