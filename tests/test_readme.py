@@ -47,7 +47,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
-    "normalbench effects",
+    *("normalbench effects", "normalbench motion"),
 }
 
 
@@ -101,7 +101,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|render|effects|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|render|effects|motion|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -291,6 +291,26 @@ def test_the_effects_table_is_what_is_measured(run):
         method = rows[name, *codes[0]]["method_rms"]
         assert [float(text) for text in figures[4:]] == pytest.approx([1e3 * method] if method else [], rel=0.05), name
         assert method is None or method > 15 * rows[name, *codes[0]]["effect_rms"], name
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_the_motion_table_is_what_is_measured(run):
+    """To within a few percent, and exactly 0 in world space."""
+    lines = [re.findall(r"[\w.]+", line) for line in table("normalbench motion").splitlines()[3:]]
+    assert len(lines) == 9
+    words = ("--encoding", ",".join(dict.fromkeys(line[0] for line in lines)), "--axis", "all", "--format", "json")
+    status, out, _ = run("motion", *words)
+    assert status == 0
+    rows = {(row["encoding"], row["space"], row["axis"], row["turn_deg"]): row for row in json.loads(out)}
+    for *key, static, slow, slower, usual, fast, highlight, peak, reprojected in lines:
+        found = [rows[*key, turn]["wobble_deg"] for turn in (0.01, 0.05, 0.25, 1.0)]
+        assert list(map(float, (slow, slower, usual, fast))) == pytest.approx(found, rel=0.01, abs=2e-3), key
+        row = rows[*key, 0.25]
+        assert float(static) == pytest.approx(row["static_rms_deg"], rel=0.005), key
+        assert float(highlight) == pytest.approx(row["highlight_px"], rel=0.05, abs=6e-4), key
+        assert float(peak) == pytest.approx(row["peak_percent"], rel=0.05, abs=6e-3), key
+        assert float(reprojected.replace("infinite", "inf")) == pytest.approx(row["reprojected_psnr_db"], rel=0.01), key
 
 
 def test_the_light_table_is_what_is_measured():

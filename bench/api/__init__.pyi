@@ -277,7 +277,7 @@ def motion(
         encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
-        space: view, world: the space that normals are encoded in; comma-separated, or all.
+        space: view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code is measured in those that it is made for.
         moves: camera, object: what turns; comma-separated, or all.
         axis: yaw, pitch, roll; comma-separated, or all.
         turn: Degrees a frame, comma-separated.
