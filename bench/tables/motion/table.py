@@ -27,7 +27,6 @@ class MotionOptions:
             "--space",
             "view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code "
             "is measured in those that it is made for.",
-            in_run=True,
         ),
     ] = "view,world"
     moves: Annotated[str, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (

@@ -277,7 +277,7 @@ def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
 def test_a_page_holds_its_charts_and_its_animation(run, tmp_path):
     """And `compare` finds no difference between a run and itself."""
     one = tmp_path / "one"
-    words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1", "--space", "view")
+    words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1")
     status, _, err = run(*words, "-o", str(one))
     assert status == 0, err
     page = (one / "report.html").read_text()
