@@ -303,9 +303,9 @@ def test_the_motion_table_is_what_is_measured(run):
     status, out, _ = run("motion", "--encoding", names, "--axis", axes, "--format", "json")
     assert status == 0
     rows = {(row["encoding"], row["space"], row["axis"], row["turn_deg"]): row for row in json.loads(out)}
-    for *key, static, slow, slower, usual, fast, highlight, peak, reprojected in lines:
-        found = [rows[*key, turn]["wobble_deg"] for turn in (0.01, 0.05, 0.25, 1.0)]
-        assert list(map(float, (slow, slower, usual, fast))) == pytest.approx(found, rel=0.01, abs=2e-3), key
+    for *key, static, slowest, slow, usual, half, one, highlight, peak, reprojected in lines:
+        found = [rows[*key, turn]["wobble_deg"] for turn in (0.01, 0.05, 0.25, 0.5, 1.0)]
+        assert list(map(float, (slowest, slow, usual, half, one))) == pytest.approx(found, rel=0.01, abs=2e-3), key
         row = rows[*key, 0.25]
         assert float(static) == pytest.approx(row["static_rms_deg"], rel=0.005), key
         assert float(highlight) == pytest.approx(row["highlight_px"], rel=0.05, abs=6e-4), key

@@ -47,6 +47,8 @@ def motion_chart(rows: Sequence[Row]) -> Any:
         a figure for `plots.save`.
     """
     pyplot = drawn_off_screen()
+    from matplotlib.ticker import LogLocator
+
     figure, axis = pyplot.subplots(figsize=(8.2, 4.8), layout="constrained")
     codecs, dashes = dict.fromkeys(map(codec_label, rows)), dict[str, dict[str, None]]()
     for name, line in lines(rows).items():
@@ -60,6 +62,7 @@ def motion_chart(rows: Sequence[Row]) -> Any:
     axis.set_yscale("log")
     for one in (axis.xaxis, axis.yaxis):
         # As plain text, which matplotlib lays out much faster than powers of ten.
+        one.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         one.set_major_formatter("{x:g}")
         one.set_minor_formatter("")
     axis.set_xlabel("turn, degrees a frame")

@@ -33,7 +33,7 @@ class MotionOptions:
         "camera"
     )
     axis: Annotated[str, Option("--axis", "yaw, pitch, roll; comma-separated, or all.", in_run=True)] = "yaw"
-    turn: Annotated[str, Option("--turn", "Degrees a frame, comma-separated.", in_run=True)] = "0.01,0.05,0.25,1"
+    turn: Annotated[str, Option("--turn", "Degrees a frame, comma-separated.", in_run=True)] = "0.01,0.05,0.25,0.5,1"
     picture_turn: Annotated[
         str | None,
         Option(

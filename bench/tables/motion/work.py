@@ -29,6 +29,8 @@ LEAST_TURN_DEG, MOST_TURN_DEG = 1e-4, 45.0
 # One pixel or so of the default picture.
 USUAL_PICTURE_TURN_DEG = 0.25
 MAX_FRAMES, MAX_POINTS = 1000, 2**24
+# A code that wobbles by less of its static error stays but for float32's rounding.
+LEAST_PLOTTED = 0.01
 NO_PICTURES = "none"
 OTHER_DOMAIN = "in world space normals have all directions, and it is made for those that face the camera"
 
@@ -175,14 +177,17 @@ def _write(done: Measured, _: Tick) -> None:
 
 
 def _plotted(rows: Sequence[Row]) -> list[Row]:
-    """Rows in lines over the turn, less those of codes that stay: a logarithmic axis has no zero."""
-    return [row for line in _lines(rows) if any(row["wobble_deg"] > 0 for row in line) for row in line]
+    """Rows in lines over the turn, less those of codes that stay: on a logarithmic axis they would squash the rest."""
+    return [row for line in _lines(rows) if any((row["ratio"] or 0) > LEAST_PLOTTED for row in line) for row in line]
 
 
 def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
     if usable := _plotted(rows):
         said = "RMS change of a code's error from one frame to the next over the degrees that the camera or the object "
-        said += "turns, a line for each code. Codes that stay are not drawn. The figures are in the table below."
+        said += (
+            "turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
+        )
+        said += "are in the table below."
         yield drawing("motion", "How much codes wobble", said, usable, chart.motion_chart, chart.motion_specs)
 
 
