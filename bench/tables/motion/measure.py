@@ -38,7 +38,7 @@ Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Shots:
+class FrameSequence:
     """Frames to render.
 
     Attributes:
@@ -75,7 +75,7 @@ class Case:
     motion: Motion
     count: int
     seed: int
-    pictures: Shots | None = None
+    pictures: FrameSequence | None = None
 
     @property
     def name(self) -> str:
@@ -119,7 +119,7 @@ class Bench:
 
     def __init__(self, device: Device | None, keeps_frames: bool):
         self._device, self._keeps_frames = device, keeps_frames
-        self._references: dict[Shots, Filmed] = {}
+        self._references: dict[FrameSequence, Filmed] = {}
 
     def measure(self, case: Case) -> tuple[Row, Filmed | None]:
         """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
@@ -144,7 +144,7 @@ class Bench:
                 self._references[pictures] = _exact(projector)
         return self._references[pictures]
 
-    def _filmed(self, case: Case, pictures: Shots, trip: Trip) -> tuple[Filmed, Row]:
+    def _filmed(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
         exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
         assert exact.spheres is not None and exact.still is not None
@@ -196,7 +196,7 @@ class Differences:
 class Projector:
     """A sequence about to be rendered: scene gloss, and the same with nothing but highlights."""
 
-    pictures: Shots
+    pictures: FrameSequence
     scene: Scene
     of_scene: Rendering
     of_lit: Rendering
@@ -217,7 +217,7 @@ class Projector:
 
 
 @contextmanager
-def _projector(device: Device, pictures: Shots) -> Iterator[Projector]:
+def _projector(device: Device, pictures: FrameSequence) -> Iterator[Projector]:
     scene, pipeline = SCENES[SCENE].make(pictures.setting), PIPELINES[PIPELINE]
     lit = highlights.lit_scene(scene)
     plan = Plan(pictures.size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)

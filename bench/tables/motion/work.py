@@ -22,7 +22,7 @@ from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import pictures, turning
 from .code_wobble import Motion
-from .measure import PICTURE_SWING_DEG, Bench, Case, Shots
+from .measure import PICTURE_SWING_DEG, Bench, Case, FrameSequence
 from .table import TABLE, MotionOptions, MotionOutputs
 
 LEAST_TURN_DEG, MOST_TURN_DEG = 1e-4, 45.0
@@ -97,7 +97,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[Case]:
         for motion in suited:
             # A smooth sphere that turns looks the same: images are of turning cameras.
             is_rendered = device and motion.moves == turning.MOVES[0] and motion.turn in rendered
-            shots = Shots(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
+            shots = FrameSequence(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
             made.append(Case(codec, motion, options.count, options.seed, shots))
     return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in outside))
 

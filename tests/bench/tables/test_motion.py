@@ -14,7 +14,7 @@ from normalbench.bench.metrics.meter import psnr_db
 from normalbench.bench.results.measuring import Nothing, asked, measured
 from normalbench.bench.tables.motion import turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
-from normalbench.bench.tables.motion.measure import Shots, on_surfaces
+from normalbench.bench.tables.motion.measure import FrameSequence, on_surfaces
 from normalbench.bench.tables.motion.table import MotionOptions
 from normalbench.bench.tables.motion.trips import trip_of
 from normalbench.bench.tables.motion.work import motions, picture_turns
@@ -208,7 +208,7 @@ def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
 def test_the_image_is_that_of_a_real_target(gl, rows):
     """Drawn anew by GLSL, which encodes into a texture of RG8 and decodes from it: the same static and moving PSNR."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
-    shots = Shots("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
+    shots = FrameSequence("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
     images = [drawn(gl, shots, layout) for layout in (LAYOUTS["fp32"].with_codec(codec), LAYOUTS["fp32"])]
     covered = images[1][1]
     apart = images[0][0] - images[1][0]
