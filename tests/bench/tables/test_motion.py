@@ -12,9 +12,9 @@ from PIL import Image
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics.meter import psnr_db
 from normalbench.bench.results.measuring import Nothing, asked, measured
-from normalbench.bench.tables.motion import turning
+from normalbench.bench.tables.motion import highlights, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
-from normalbench.bench.tables.motion.measure import FrameSequence, on_surfaces
+from normalbench.bench.tables.motion.measure import Differences, FrameSequence, in_space, on_surfaces
 from normalbench.bench.tables.motion.table import MotionOptions
 from normalbench.bench.tables.motion.trips import trip_of
 from normalbench.bench.tables.motion.work import motions, picture_turns
@@ -125,6 +125,18 @@ def test_only_what_an_encoding_is_made_for_counts():
     """Normals of z < 0 would come back from `xy` mirrored, some 100 degrees off."""
     row = wobble("xy", turn=1.0, count=4096)
     assert row["static_rms_deg"] < 5 and 0 < row["wobble_deg"] < 5
+
+
+@pytest.mark.parametrize("axis", TURNS)
+def test_an_error_that_turns_with_the_surface_is_no_wobble(axis):
+    """An offset along n x k stays on a surface that turns about k, and turns by 40 degrees a frame in view space."""
+    k = np.eye(3)[TURNS.index(axis)]
+
+    def swirl(n, _):
+        return np.zeros((len(n), 1)), n + 1e-3 * np.cross(n, k)
+
+    row = code_wobble(swirl, "sphere", Motion("view", "camera", axis, 40.0, 3), 1000, SEED)
+    assert row["ratio"] < 1e-3 < row["static_rms_deg"] and row["jumps_percent"] == 0, row
 
 
 def test_what_is_no_number_counts_as_the_opposite_direction():
@@ -246,6 +258,48 @@ def test_codes_on_surfaces_are_those_of_a_turned_camera():
         found = on_surfaces(trip, matrix, matrix)(n, n)
         by_hand = trip((n @ matrix.T).astype(np.float32), n)[1] @ matrix
     assert found == pytest.approx(by_hand, abs=1e-6)
+
+
+def test_a_code_in_world_space_is_the_same_from_every_camera():
+    """What the G-buffer keeps of a normal is the same in world space from two cameras, and another in view space."""
+    (codec,) = codecs_named("octahedral", "rg8", "nearest")
+    n = np.array([[0.48, 0.6, 0.64], [-0.36, 0.48, 0.8]])
+    first = View((0.0, 0.0, 5.0), (0.0, 1.0, 0.0), 40.0, 1.0, 10.0)
+    found = {}
+    with trip_of(codec) as trip:
+        for space in turning.SPACES:
+            seen = []
+            for view in (first, first.turned("roll", 20.0).turned("yaw", 7.0)):
+                to_view = view.matrix()[:3, :3]
+                mine = (n @ to_view.T).astype(np.float32)
+                seen.append(in_space(trip, space, view)(mine, mine) @ to_view)
+            found[space] = np.abs(seen[0] - seen[1]).max()
+    assert found["world"] < 1e-6 and found["view"] > 1e-3, found
+
+
+def test_a_highlight_is_where_its_light_is():
+    """Two pixels of one sphere, the right one three times as bright; then the brightness moves down by a pixel."""
+    spheres, light = np.zeros((4, 5), int), np.zeros((4, 5, 3))
+    spheres[1:3, 1:4] = 1
+    light[1, 1, 0], light[1, 3, 0] = 1.0, 3.0
+    light[3, 4, 0] = 100.0  # beyond the sphere
+    one, other = highlights.spots(light, spheres), highlights.spots(np.roll(light, 1, axis=0), spheres)
+    assert one.centroids[0, 0].tolist() == [2.5, 1.0] and one.peaks[0, 0] == 3.0
+    assert np.isnan(one.centroids[1:]).all() and np.isnan(one.centroids[0, 1:]).all()
+    lit = [highlights.Spots(spots.centroids[:, :1], spots.peaks[:, :1]) for spots in (one, other, one)]
+    lit[1].peaks[0] = 1.5
+    moved, flickered = highlights.wobble(lit, lit[0])
+    assert moved[0] == 1.0 and flickered[0] == 50.0**2
+
+
+def test_a_difference_counts_where_both_frames_have_a_surface():
+    """A difference of 0.1 that vanishes on one pixel of the two that both frames cover."""
+    one, other = np.full((1, 3, 3), 0.1), np.zeros((1, 3, 3))
+    other[0, 1], other[0, 2] = 0.1, 9.0
+    sums = Differences()
+    sums.add(one, np.array([[True, True, False]]))
+    sums.add(other, np.array([[True, True, True]]))
+    assert sums.wobble_db == pytest.approx(psnr_db(0.01 / 2)) and sums.static[0] == pytest.approx(0.01)
 
 
 def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
