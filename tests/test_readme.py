@@ -49,8 +49,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
-    *("normalbench effects", "normalbench half"),
-    "normalbench mix",
+    *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
 }
 
 
@@ -104,7 +103,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|mix|render|effects|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|mix|render|effects|motion|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -331,6 +330,28 @@ def test_the_mix_table_is_what_is_measured(run):
         for use, verdict, said, share in zip(USES, VERDICTS.values(), shown[::2], shown[1::2], strict=True):
             assert said == line[verdict], (name, use)
             assert float(share) == pytest.approx(line[f"{use}_garbage_percent"], abs=0.1), (name, use)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_the_motion_table_is_what_is_measured(run):
+    """To within a few percent, and exactly 0 in world space."""
+    lines = [re.findall(r"[\w.]+", line) for line in table("normalbench motion").splitlines()[3:]]
+    assert len(lines) == 9
+    names, axes = (",".join(dict.fromkeys(line[at] for line in lines)) for at in (0, 2))
+    status, out, _ = run("motion", "--encoding", names, "--axis", axes, "--format", "json")
+    assert status == 0
+    rows = {(row["encoding"], row["space"], row["axis"], row["turn_deg"]): row for row in json.loads(out)}
+    for *key, static, slowest, slow, usual, half, one, highlight, peak, reprojected in lines:
+        found = [rows[*key, turn]["wobble_deg"] for turn in (0.01, 0.05, 0.25, 0.5, 1.0)]
+        assert list(map(float, (slowest, slow, usual, half, one))) == pytest.approx(found, rel=0.01, abs=2e-3), key
+        row = rows[*key, 0.25]
+        assert float(static) == pytest.approx(row["static_rms_deg"], rel=0.005), key
+        assert float(highlight) == pytest.approx(row["highlight_px"], rel=0.05, abs=6e-4), key
+        assert float(peak) == pytest.approx(row["peak_percent"], rel=0.05, abs=6e-3), key
+        # JSON has no infinity.
+        left = row["reprojected_psnr_db"] or "infinite"
+        assert reprojected == left or float(reprojected) == pytest.approx(left, rel=0.01), key
 
 
 def test_the_light_table_is_what_is_measured():

@@ -307,6 +307,42 @@ def effects(
         flip: FLIP as well, a perceptual difference; a second a row.
     """
 
+def motion(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    space: Names = ...,
+    moves: Names = ...,
+    axis: Names = ...,
+    turn: Names = ...,
+    picture_turn: Names | None = ...,
+    frames: int = ...,
+    count: int = ...,
+    size: Names = ...,
+    lights: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """How much a code's error changes from frame to frame while the camera or an object turns.
+
+    A code in view space is another one in each frame of a turning camera, so highlights wobble; a code in world space stays. Measured of the normals, of highlights and of the displayed image.
+
+    Args:
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        space: view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code is measured in those that it is made for.
+        moves: camera, object: what turns; comma-separated, or all.
+        axis: yaw, pitch, roll; comma-separated, or all.
+        turn: Degrees a frame, comma-separated.
+        picture_turn: Those of --turn that frames are rendered of as well; none: no frames. Default: the one nearest to 0.25.
+        frames: Frames of a sequence.
+        count: Normals whose codes are followed.
+        size: WIDTHxHEIGHT of the image.
+        lights: Point lights.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
 def lights(
     *,
     experiment: Names = ...,

@@ -19,7 +19,7 @@ from ...reports.charts.pareto import Panel, Point, decibels
 from ...reports.page import embedded, library, markdown, page, several
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, SphereMap, plain_text
-from ...reports.page.pixels import Subject
+from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
@@ -207,10 +207,11 @@ def gathered(folder: Path, done: Done) -> Found:
     )
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
-    return replace(found, sections=[_section(found, table, table.name in asked, remarks) for table in shown])
+    sections = [_section(folder, found, table, table.name in asked, remarks) for table in shown]
+    return replace(found, sections=sections)
 
 
-def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Section:
+def _section(folder: Path, found: Found, table: Table, asked: bool, remarks: list[str]) -> Section:
     """A table as the page shows it."""
     said, rows = table.section, found.tables.get(table.name, ())
     return Section(
@@ -230,6 +231,7 @@ def _section(found: Found, table: Table, asked: bool, remarks: list[str]) -> Sec
         drawings=_drawings(found, table, rows, remarks),
         asked=asked,
         leads=said.leads,
+        films=_films(folder, table, rows, remarks),
     )
 
 
@@ -258,6 +260,16 @@ def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []
+
+
+def _films(folder: Path, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[tuple[str, str]]:
+    """A table's animations that are there, as a page holds them."""
+    try:
+        made = list(table.work.films(folder / table.files["images"], rows)) if "images" in table.files else []
+    except UNEXPECTED as error:
+        remarks.append(f"The animations of {table.name} cannot be found from these rows: {type(error).__name__}.")
+        return []
+    return [(film.said, uri) for film in made if (uri := film_uri(film.path))]
 
 
 def _clean(rows: Sequence[Row]) -> list[Row]:

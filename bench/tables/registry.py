@@ -15,6 +15,7 @@ FOLDERS = (
     "mix",
     "cost",
     "effects",
+    "motion",
     "lights",
     "depth",
     "tangent_frames",

@@ -173,6 +173,7 @@ class Work:
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
         drawings: charts of the page, from its contents and the table's rows.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
+        films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
         lacking: what this machine turned out to lack; makes the exit status 3.
         missing: why `run` leaves the table out on this machine; empty where it does not.
@@ -189,6 +190,7 @@ class Work:
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
     drawings: Callable[..., Iterator[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
+    films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     worst: Callable[[Step], Any] = _none
     lacking: Callable[[Measured], Iterable[str]] = _nothing
     missing: Callable[[], str] = str

@@ -13,6 +13,8 @@ from .mesh import Mesh
 Colour = tuple[float, float, float]
 # The order is the Deferred ID's: 0 is the material that the light pass shades in full.
 KINDS = ("general", "skin", "hair", "glossy")
+# About what a camera turns: its right, its up and its back, each counter-clockwise as the axis points at who looks.
+TURNS = ("pitch", "yaw", "roll")
 LIGHT_KINDS = ("point", "spot", "sun")
 
 
@@ -109,6 +111,22 @@ class View:
         matrix[:3, :3], matrix[:3, 3] = axes, -axes @ np.array(self.eye)
         return matrix
 
+    def turned(self, axis: str, degrees: float) -> View:
+        """The camera turned where it stands: to the left, upwards, or its picture clockwise.
+
+        Args:
+            axis: one of TURNS.
+            degrees: how far; any number.
+        """
+        axes, angle = self.matrix()[:3, :3], np.radians(degrees)
+        at = TURNS.index(axis)
+        # Rodrigues: v' = v cos a + (k x v) sin a + k (k . v) (1 - cos a), with k a unit vector
+        k = axes[at]
+        turned = axes * np.cos(angle) + np.cross(k, axes) * np.sin(angle) + np.outer(axes @ k, k) * (1 - np.cos(angle))
+        away = np.linalg.norm(np.subtract(self.target, self.eye))
+        target, up = np.array(self.eye) - turned[2] * away, turned[1]
+        return replace(self, target=_triple(target), up=_triple(up))
+
     def projection(self, aspect: float) -> np.ndarray:
         """View to clip space, (4, 4), for column vectors: GL's, depth from -w to w."""
         f = 1 / np.tan(np.radians(self.fov) / 2)
@@ -178,6 +196,10 @@ class Scene:
     def with_power(self, power: float) -> Scene:
         """The scene with another specular power, 1 to 2048, of all materials."""
         return replace(self, materials=tuple(replace(material, power=power) for material in self.materials))
+
+
+def _triple(v: np.ndarray) -> Colour:
+    return float(v[0]), float(v[1]), float(v[2])
 
 
 def placed(positions: ArrayLike, scales: ArrayLike = 1.0, turns: ArrayLike = 0.0) -> np.ndarray:

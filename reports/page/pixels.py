@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,8 @@ from .codec_key import CodecKey
 
 # A frame of 3840 x 2160 is shown.
 MAX_PIXELS = 2**23
+# What an animation may take inside a page.
+MAX_FILM = 600_000
 # An angle is kept as a byte: 1 is 2^LEAST_LOG2 degrees, each further step an eighth of an octave. 0 is the background.
 LEAST_LOG2, STEPS_PER_OCTAVE = -20, 8
 NOT_A_NUMBER = 255
@@ -90,6 +94,25 @@ class Subject:
     of: str
     original: Callable[[], np.ndarray | None]
     codecs: Sequence[Pictured]
+
+
+@dataclass(frozen=True)
+class Film:
+    """An animation: what it shows, in a sentence, and its file."""
+
+    said: str
+    path: Path
+
+
+def film_uri(path: Path) -> str:
+    """An animated PNG as a data URI; empty where it is damaged, or takes more than MAX_FILM bytes."""
+    try:
+        data = path.read_bytes()
+        with Image.open(BytesIO(data), formats=["PNG"]) as image:
+            image.verify()
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return ""
+    return "data:image/png;base64," + base64.b64encode(data).decode("ascii") if len(data) <= MAX_FILM else ""
 
 
 def read_png(path: Path) -> np.ndarray | None:

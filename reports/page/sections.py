@@ -47,6 +47,7 @@ class Section:
         better: which way a column is better, "more" or "less"; empty where it has none.
         drawings: its charts.
         asked: whether the run was asked for it.
+        films: its animations, each a sentence and a data URI.
         leads: whether it is the page's first screen.
     """
 
@@ -66,6 +67,7 @@ class Section:
     drawings: Sequence[Drawing]
     asked: bool
     leads: bool = False
+    films: Sequence[tuple[str, str]] = ()
 
     def sheets(self, domains: Mapping[str, str]) -> Iterator[Sheet]:
         """Its tables: those that people look at first, then every row."""

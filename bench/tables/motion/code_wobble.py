@@ -1,0 +1,155 @@
+"""The wobble of a code alone: no renderer, and no light.
+
+e_t is the decoded normal less the true one at frame t, on the surface: in the space that the surface is fixed in. The
+wobble is W = RMS over points and frames of |e_{t+1} - e_t|. Where the errors of two frames have nothing to do with each
+other, W is sqrt(2) times the RMS of |e_t|.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import turning
+from .trips import Trip
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What became of points in a frame.
+
+    Attributes:
+        error: decoded less true normal on the surface, both of length 1, float64 of shape (count, 3).
+        codes: what was stored, (count, numbers).
+        counts: whether the encoding is made for the normal, bool of shape (count,).
+    """
+
+    error: np.ndarray
+    codes: np.ndarray
+    counts: np.ndarray
+
+
+@dataclass
+class Total:
+    """What pairs of frames add up to; angles are small, so that a difference of unit vectors is one, in radians."""
+
+    points: int = 0
+    squares: float = 0.0
+    invalid: int = 0
+    pairs: int = 0
+    changes: float = 0.0
+    jumps: int = 0
+    jump_sum: float = 0.0
+
+    def add(self, frame: Frame) -> None:
+        """A frame by itself."""
+        self.points += int(np.count_nonzero(frame.counts))
+        self.squares += float(np.sum(frame.error[frame.counts] ** 2))
+
+    def add_pair(self, one: Frame, other: Frame) -> None:
+        """A frame and the next."""
+        both = one.counts & other.counts
+        change = np.linalg.norm(other.error[both] - one.error[both], axis=1)
+        jumped = np.any(other.codes[both] != one.codes[both], axis=1)
+        self.pairs += len(change)
+        self.changes += float(np.sum(change**2))
+        self.jumps += int(np.count_nonzero(jumped))
+        self.jump_sum += float(np.sum(change[jumped]))
+
+    def row(self) -> Row:
+        """The figures; none where there was nothing to follow."""
+        if not self.pairs:
+            return {"invalid": self.invalid}
+        static = math.degrees(math.sqrt(self.squares / self.points))
+        wobble = math.degrees(math.sqrt(self.changes / self.pairs))
+        row: Row = {"static_rms_deg": static, "wobble_deg": wobble, "invalid": self.invalid, "exact": static == 0}
+        row["ratio"] = wobble / (math.sqrt(2) * static) if static else None
+        row["jumps_percent"] = 100.0 * self.jumps / self.pairs
+        row["jump_deg"] = math.degrees(self.jump_sum / self.jumps) if self.jumps else 0.0
+        return row
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What turns, and how.
+
+    Attributes:
+        space, moves: of turning.SPACES and turning.MOVES.
+        axis: of gbuffer's TURNS.
+        turn: degrees a frame.
+        frames: how many, 2 or more.
+    """
+
+    space: str
+    moves: str
+    axis: str
+    turn: float
+    frames: int
+
+    @property
+    def is_still(self) -> bool:
+        """Whether every frame has the same codes: normals on a still surface, encoded in world space."""
+        return (self.space, self.moves) == ("world", "camera")
+
+    def matrices(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """What turns normals and positions in each frame, (3, 3) each. Of a still code two frames say all."""
+        turned = turning.rotations(self.axis, self.turn, 2 if self.is_still else self.frames)
+        still = np.broadcast_to(np.eye(3), turned.shape)
+        yield from zip(still if self.is_still else turned, turned if self.moves == "camera" else still, strict=True)
+
+    def followed(self, count: int) -> int:
+        """How many normals are followed where `count` are asked for: more in the two frames of a still code."""
+        return count * max(self.frames // 2, 1) if self.is_still else count
+
+
+def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) -> Row:
+    """The columns of a code that is followed while something turns.
+
+    Args:
+        trip: the codec.
+        domain: what its encoding is made for; other normals do not count.
+        motion: what turns.
+        count, seed: of turning.points.
+    """
+    total, followed = Total(), motion.followed(count)
+    for points in turning.points(motion.space, followed, seed):
+        before: Frame | None = None
+        for of_normals, of_positions in motion.matrices():
+            n = (points.normals @ of_normals.T).astype(np.float32)
+            view = (points.positions @ of_positions.T).astype(np.float32)
+            now = _frame(trip, domain, n, view, of_normals, total)
+            total.add(now)
+            if before:
+                total.add_pair(before, now)
+            before = now
+    return total.row() | {"count": followed}
+
+
+def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.ndarray, total: Total) -> Frame:
+    codes, decoded = trip(n, view)
+    n, decoded = _unit(n.astype(np.float64)), decoded.astype(np.float64)
+    valid = np.isfinite(decoded).all(axis=1) & np.any(decoded != 0, axis=1)
+    decoded = np.where(valid[:, None], _unit(np.where(valid[:, None], decoded, n)), -n)
+    counts = in_domain(domain, n, view)
+    total.invalid += int(np.count_nonzero(~valid & counts))
+    # In the space that the surface is fixed in: the difference is small, and turning it loses nothing.
+    return Frame((decoded - n) @ matrix, codes, counts)
+
+
+def _unit(v: np.ndarray) -> np.ndarray:
+    return v / np.linalg.norm(v, axis=1, keepdims=True)
+
+
+def in_domain(domain: str, n: np.ndarray, view: np.ndarray) -> np.ndarray:
+    """Whether an encoding is made for normals, bool of shape (count,), from normals and view positions, (count, 3)."""
+    if domain == "hemisphere":
+        return n[:, 2] >= 0
+    if domain == "view":
+        return np.sum(n * view, axis=1) <= 0
+    return np.ones(len(n), bool)

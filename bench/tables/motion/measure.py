@@ -1,0 +1,304 @@
+"""Rows of the motion table: the code alone, then highlights and images that are rendered with its decodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.display import CLIPPED_ALONE, Display
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import Keeps, Rendering, rendering
+from ....gbuffer.scenes.catalogue import SCENES
+from ....gbuffer.scenes.gloss import POWERS
+from ....gbuffer.scenes.scene import Scene, View
+from ....gbuffer.scenes.setting import Setting
+from ...metrics.meter import psnr_db
+from ..quality.measure import UNMEASURABLE
+from . import highlights, turning
+from .code_wobble import Motion, code_wobble
+from .highlights import Spots
+from .table import TABLE
+from .trips import Trip, backend_of, trip_of
+
+# Rendered turns go as far to either side of the scene's own camera, in degrees, so that it stays in the picture.
+PICTURE_SWING_DEG = 8.0
+SCENE, PIPELINE = "gloss", "deferred"
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class FrameSequence:
+    """Frames to render.
+
+    Attributes:
+        axis, turn, frames: how the camera turns.
+        size: width and height in pixels.
+        setting: of the scene.
+    """
+
+    axis: str
+    turn: float
+    frames: int
+    size: tuple[int, int]
+    setting: Setting
+
+    def views(self, view: View) -> Iterator[View]:
+        """The camera of each frame, about the scene's own."""
+        angles = turning.angles(self.turn, self.frames, PICTURE_SWING_DEG)
+        for angle in angles - np.max(angles) / 2:
+            yield view.turned(self.axis, float(angle))
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure.
+
+    Attributes:
+        codec: what is measured.
+        motion: what turns.
+        count, seed: of the normals that are followed.
+        pictures: the frames to render; None for none.
+    """
+
+    codec: Codec
+    motion: Motion
+    count: int
+    seed: int
+    pictures: FrameSequence | None = None
+
+    @property
+    def name(self) -> str:
+        motion = self.motion
+        return f"{self.codec.name} {motion.space} {motion.moves} {motion.axis} {motion.turn:g}"
+
+
+@dataclass
+class Filmed:
+    """A sequence as rendered.
+
+    Attributes:
+        shown: the displayed image of each frame, float32 of shape (height, width, 3); of exact normals alone.
+        covered: where a frame has a surface, bool of shape (height, width).
+        still, still_covered: the same two of the scene's own camera.
+        spheres: which sphere a pixel shows, see highlights.spheres_of.
+        lit: the highlights as displayed: a frame of exact normals, or all frames of a code where somebody keeps them.
+        spots: where they are.
+        display: how they are displayed.
+        worst: of a code, the sphere whose highlights move the most, counted as `spheres` does; 0 for none.
+    """
+
+    shown: list[np.ndarray] = field(default_factory=list)
+    covered: list[np.ndarray] = field(default_factory=list)
+    still: np.ndarray | None = None
+    still_covered: np.ndarray = field(default_factory=lambda: np.zeros((1, 1), bool))
+    spheres: np.ndarray | None = None
+    lit: list[np.ndarray] = field(default_factory=list)
+    spots: list[Spots] = field(default_factory=list)
+    display: Display = CLIPPED_ALONE
+    worst: int = 0
+
+
+class Bench:
+    """Measures cases, each reference once.
+
+    Args:
+        device: where frames are rendered; None where there is no need.
+        keeps_frames: whether what is rendered is wanted afterwards.
+    """
+
+    def __init__(self, device: Device | None, keeps_frames: bool):
+        self._device, self._keeps_frames = device, keeps_frames
+        self._references: dict[FrameSequence, Filmed] = {}
+
+    def measure(self, case: Case) -> tuple[Row, Filmed | None]:
+        """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
+        row = TABLE.empty([f"{power:g}" for power in POWERS]) | _described(case)
+        try:
+            with trip_of(case.codec) as trip:
+                row |= code_wobble(trip, case.codec.encoding.domain, case.motion, case.count, case.seed)
+                if not case.pictures or not self._device:
+                    return row, None
+                filmed, found = self._filmed(case, case.pictures, trip)
+        except UNMEASURABLE as error:
+            return row | {"skipped": str(error)}, None
+        return row | found | {"device": self._device.renderer}, filmed
+
+    def reference(self, case: Case) -> Filmed:
+        """The frames of exact normals. Raises ValueError for a case without frames."""
+        if not case.pictures or not self._device:
+            raise ValueError(f"{case.name} has no frames")
+        pictures = case.pictures
+        if pictures not in self._references:
+            with _projector(self._device, pictures) as projector:
+                self._references[pictures] = _exact(projector)
+        return self._references[pictures]
+
+    def _filmed(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
+        assert self._device
+        exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
+        assert exact.spheres is not None and exact.still is not None
+        with _projector(self._device, pictures) as projector:
+            for at, view in enumerate(projector.views()):
+                image = projector.image(view, in_space(trip, case.motion.space, view))
+                sums.add(image - exact.shown[at], exact.covered[at])
+            for matrices in case.motion.matrices():
+                keeps = on_surfaces(trip, *matrices)
+                fixed.add(projector.image(projector.scene.view, keeps) - exact.still, exact.still_covered)
+                light = projector.highlights(keeps)
+                found.spots.append(highlights.spots(light, exact.spheres))
+                if self._keeps_frames:
+                    found.lit.append(exact.display.image(light).astype(np.float32))
+        row = {"static_psnr_db": sums.static_db, "wobble_psnr_db": sums.wobble_db}
+        return found, row | {"reprojected_psnr_db": fixed.wobble_db} | _of_highlights(found, exact)
+
+
+@dataclass
+class Differences:
+    """What a code changes of the displayed images of a sequence, and how that changes from one to the next."""
+
+    static: list[float] = field(default_factory=list)
+    moving: list[float] = field(default_factory=list)
+    _before: tuple[np.ndarray, np.ndarray] | None = None
+
+    def add(self, difference: np.ndarray, covered: np.ndarray) -> None:
+        """A frame's image less that of exact normals, (height, width, 3), and where it has a surface."""
+        # What is no number is as far off as can be.
+        difference = np.where(np.isfinite(difference), difference, 1.0)
+        self.static.append(float(np.mean(difference[covered] ** 2)))
+        if self._before:
+            both = covered & self._before[1]
+            self.moving.append(float(np.mean((difference[both] - self._before[0][both]) ** 2)))
+        self._before = difference, covered
+
+    @property
+    def static_db(self) -> float:
+        """PSNR of the images, peak 1."""
+        return psnr_db(float(np.mean(self.static)))
+
+    @property
+    def wobble_db(self) -> float:
+        """PSNR of what changes of their differences."""
+        return psnr_db(float(np.mean(self.moving)))
+
+
+@dataclass(frozen=True)
+class Projector:
+    """A sequence about to be rendered: scene gloss, and the same with nothing but highlights."""
+
+    pictures: FrameSequence
+    scene: Scene
+    of_scene: Rendering
+    of_lit: Rendering
+
+    def views(self) -> Iterator[View]:
+        """The camera of each frame."""
+        return self.pictures.views(self.scene.view)
+
+    def image(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
+        """A frame as displayed, float32 of shape (height, width, 3)."""
+        self.of_scene.draw(replace(self.scene, view=view, previous=view), keeps)
+        return Display(SCENES[SCENE].exposure or 0.0).image(self.of_scene.image()).astype(np.float32)
+
+    def highlights(self, keeps: Keeps | None = None) -> np.ndarray:
+        """A frame of highlights in linear light, (height, width, 3): one light in each channel."""
+        self.of_lit.draw(keeps=keeps)
+        return self.of_lit.image()
+
+
+@contextmanager
+def _projector(device: Device, pictures: FrameSequence) -> Iterator[Projector]:
+    scene, pipeline = SCENES[SCENE].make(pictures.setting), PIPELINES[PIPELINE]
+    lit = highlights.lit_scene(scene)
+    plan = Plan(pictures.size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
+    with rendering(device, pipeline, scene, plan) as one, rendering(device, pipeline, lit, plan) as other:
+        yield Projector(pictures, scene, one, other)
+
+
+def _exact(projector: Projector) -> Filmed:
+    found = Filmed()
+    for view in projector.views():
+        found.shown.append(projector.image(view))
+        found.covered.append(projector.of_scene.gbuffer()[0][..., 2] != 0)
+    found.still = projector.image(projector.scene.view)
+    found.still_covered = projector.of_scene.gbuffer()[0][..., 2] != 0
+    light = projector.highlights()
+    position, _, albedo, _ = projector.of_lit.gbuffer()
+    covered = position[..., 2] != 0
+    found.spheres = highlights.spheres_of(albedo[..., 3], covered)
+    # The brightest highlight is just not clipped.
+    found.display = Display(-math.log2(peak)) if (peak := float(light.max())) > 0 else CLIPPED_ALONE
+    found.spots.append(highlights.spots(light, found.spheres))
+    found.lit.append(found.display.image(light).astype(np.float32))
+    return found
+
+
+def in_space(trip: Trip, space: str, view: View) -> Keeps:
+    """What the G-buffer of a turned camera keeps in place of normals: what comes back of them, in view space again."""
+    to_view = view.matrix()[:3, :3] if space == turning.SPACES[1] else np.eye(3)
+
+    def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
+        return turned(trip(turned(n, to_view.T), position)[1], to_view)
+
+    return keeps
+
+
+def on_surfaces(trip: Trip, of_normals: np.ndarray, of_positions: np.ndarray) -> Keeps:
+    """What the G-buffer of a still camera keeps where a turned one's codes lie on the same surfaces.
+
+    So a frame is seen as if the picture turned with the camera, every surface at its pixel: what changes is the code's
+    doing, and not that of the raster of pixels.
+
+    Args:
+        trip: the codec.
+        of_normals, of_positions: as code_wobble.Motion gives them.
+    """
+
+    def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
+        return turned(trip(turned(n, of_normals), turned(position, of_positions))[1], of_normals.T)
+
+    return keeps
+
+
+def turned(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Vectors under a matrix, float32 of shape (count, 3)."""
+    return (rows.astype(np.float64) @ matrix.T).astype(np.float32)
+
+
+def _of_highlights(found: Filmed, exact: Filmed) -> Row:
+    """The columns of highlights; `found.worst` is the sphere whose highlights move the most."""
+    moved, flickered = highlights.wobble(found.spots, exact.spots[0])
+    if not np.isfinite(moved).any():
+        return {}
+    found.worst = int(np.nanargmax(moved)) + 1
+    row: Row = {"highlight_px": _root(moved), "peak_percent": _root(flickered)}
+    for power, pixels, percent in zip(POWERS, moved, flickered, strict=True):
+        row |= {f"highlight_px_{power:g}": _root([pixels]), f"peak_percent_{power:g}": _root([percent])}
+    return row
+
+
+def _root(squares: Sequence[float] | np.ndarray) -> float | None:
+    """The root of the mean of what is a number; None where nothing is."""
+    finite = np.asarray(squares)[np.isfinite(squares)]
+    return float(np.sqrt(np.mean(finite))) if len(finite) else None
+
+
+def _described(case: Case) -> Row:
+    codec, motion, pictures = case.codec, case.motion, case.pictures
+    row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
+    row |= {"space": motion.space, "moves": motion.moves, "axis": motion.axis, "turn_deg": motion.turn}
+    row |= {"bits": codec.bits, "frames": motion.frames, "count": case.count, "seed": case.seed}
+    row |= {"backend": backend_of(codec)}
+    if pictures:
+        row |= {"size": f"{pictures.size[0]}x{pictures.size[1]}", "lights": pictures.setting.lights}
+    return row

@@ -1,0 +1,54 @@
+"""Animations of the highlight that wobbles most: written into a folder, and found there again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ....gbuffer.scenes.gloss import POWERS
+from ....reports.charts import motion as chart
+from ....reports.page.pixels import Film
+from ...output.writing import files_of, whole_file
+from ..charts import having
+from ..table import Row
+from .measure import Filmed
+
+# Pixels around a sphere.
+MARGIN = 3
+
+
+def _stem(row: Row) -> str:
+    words = ("encoding", "storage", "rounding", "space", "axis")
+    return "-".join([*(str(row[name]) for name in words), f"{row['turn_deg']:g}"])
+
+
+def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
+    """The sphere whose highlights move the most: the code next to exact normals next to their difference."""
+    if exact.spheres is None or not np.any(where := exact.spheres == filmed.worst) or not filmed.worst:
+        return
+    window = _window(where)
+    title = f"{row['encoding']} {row['storage']}, {row['space']} space, power {POWERS[filmed.worst - 1]:g}"
+    frames = [chart.beside(one[window], exact.lit[0][window], title) for one in filmed.lit]
+    with whole_file(folder / f"{_stem(row)}.png") as partial:
+        chart.write_animation(partial, frames)
+
+
+def _window(where: np.ndarray) -> tuple[slice, slice]:
+    """The part of a picture around what is marked, bool of shape (height, width)."""
+    spans = [np.flatnonzero(where.any(axis=axis)) for axis in (1, 0)]
+    y, x = (slice(max(int(span[0]) - MARGIN, 0), int(span[-1]) + MARGIN + 1) for span in spans)
+    return y, x
+
+
+def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
+    """The animation of the row whose highlights move the most. A name is looked up, so that none leads out of it."""
+    there = files_of(folder)
+    usable = sorted(having(rows, "highlight_px", "turn_deg"), key=lambda row: -row["highlight_px"])
+    for row in usable[:1]:
+        if path := there.get(f"{_stem(row)}.png"):
+            code = f"{row['encoding']} {row['storage']} in {row['space']} space"
+            said = f"The highlight that moves the most, of {code}, at {row['turn_deg']:g} degrees a frame of "
+            said += f"{row['axis']}: the code, exact normals, and {chart.GAIN:g} times their difference."
+            yield Film(said, path)

@@ -1,0 +1,105 @@
+"""A codec as a function of normals: by JAX, or by GLSL where the encoding has no Python half."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+import jax
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.rounding import Scale, fixed, scales_of
+from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.vec import Vec3
+from ....gbuffer.codecs.codec_passes import CodecPasses
+from ...machine.devices import require_device
+from ...worst_case.exact_figures import has_twin
+
+WIDTH = 256
+CHUNK = 2**15
+
+# From unit normals and view positions, float32 of shape (count, 3), to codes (count, numbers) and decodes (count, 3).
+Trip = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+@contextmanager
+def trip_of(codec: Codec) -> Iterator[Trip]:
+    """A codec made ready.
+
+    Raises:
+        MissingError: the encoding is in GLSL only, and there is no GL device.
+        ShaderError, FormatError: the device cannot have it.
+    """
+    if has_twin(codec.encoding):
+        yield _in_chunks(_by_jax(codec))
+        return
+    with CodecPasses(require_device(), codec) as passes:
+        yield _in_chunks(_by_glsl(codec, passes))
+
+
+def backend_of(codec: Codec) -> str:
+    """By what `trip_of` measures: "jax" or "glsl"."""
+    return "jax" if has_twin(codec.encoding) else "glsl"
+
+
+@cache
+def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
+    """Codes and decodes. Fixed-point formats share it and give it their scales: it is compiled once for all."""
+
+    def through(n: Vec3, view: Vec3, *scales: Scale) -> tuple[Any, Vec3]:
+        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        stored = codec.stored(n, view)
+        return stored, encoding.decode(stored, view)
+
+    return jax.jit(through)
+
+
+def _by_jax(codec: Codec) -> Trip:
+    storage, encoding = codec.storage, codec.encoding
+    if storage.kind == "float" or storage.curved:
+        program, scales = _program(encoding, storage, codec.rounding), ()
+    else:
+        like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
+        program, scales = _program(encoding, like, codec.rounding), scales_of(storage)[: encoding.components]
+
+    def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        codes, decoded = program(_planes(n), _planes(view), *scales)
+        return _rows(codes), _rows(decoded)
+
+    return trip
+
+
+def _planes(rows: np.ndarray) -> Vec3:
+    return Vec3(*np.ascontiguousarray(rows.T))
+
+
+def _rows(planes: Any) -> np.ndarray:
+    return np.stack([np.asarray(plane) for plane in planes], axis=1)
+
+
+def _by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
+    size = codec.encoding.components + codec.encoding.sign_bits
+
+    def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        found = passes.round_trip(*(np.pad(a, ((0, 0), (0, 1))).reshape(-1, WIDTH, 4) for a in (n, view)))
+        return found.codes.reshape(-1, 4)[:, :size], found.normals.reshape(-1, 3)
+
+    return trip
+
+
+def _in_chunks(trip: Trip) -> Trip:
+    """The same for any count, CHUNK rows at a time: compiled once, and a rectangle of pixels."""
+
+    def whole(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        codes, decoded = zip(*(part(n, view, at) for at in range(0, len(n), CHUNK)), strict=True)
+        return np.concatenate(codes)[: len(n)], np.concatenate(decoded)[: len(n)]
+
+    def part(n: np.ndarray, view: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:
+        rows = (a[at : at + CHUNK] for a in (n, view))
+        return trip(*(np.pad(a, ((0, CHUNK - len(a)), (0, 0)), mode="edge") for a in rows))
+
+    return whole

@@ -1,0 +1,75 @@
+"""What turns how, and which normals are followed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....gbuffer.scenes.scene import View
+
+SPACES, MOVES = ("view", "world"), ("camera", "object")
+# A turn goes on for this many degrees and back again: what is followed stays before the camera.
+SWING_DEG = 32.0
+# Normals are spread evenly over z >= LEAST_Z of the first frame's view space. Surfaces that the camera sees more nearly
+# edge-on cover few pixels. Figures depend on it: from 0 on, spheremap at 1 degree a frame wobbles by a tenth more.
+LEAST_Z = 0.2
+# Half the picture's height and width at distance 1: 46 degrees high, 4 by 3.
+HALF_HEIGHT = math.tan(math.radians(23.0))
+HALF_WIDTH = HALF_HEIGHT * 4 / 3
+CHUNK = 2**15
+# Additive recurrence in four dimensions, which covers evenly however many are taken: powers of 1/g with g^5 = g + 1
+# (M. Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018).
+STEPS = 1.1673039782614187 ** -np.arange(1.0, 5.0)
+AHEAD = View(eye=(0.0, 0.0, 0.0), target=(0.0, 0.0, -1.0), fov=46.0, near=0.1, far=10.0)
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points on surfaces as the first frame has them.
+
+    Attributes:
+        normals: unit, float64 of shape (count, 3).
+        positions: in view space, at distance 1 along the line of sight, float64 of shape (count, 3).
+    """
+
+    normals: np.ndarray
+    positions: np.ndarray
+
+
+def angles(turn: float, frames: int, swing: float = SWING_DEG) -> np.ndarray:
+    """Degrees at each frame, (frames,): `turn` more each frame, up to `swing`, and back, and so on."""
+    steps = max(1, math.floor(swing / turn + 1e-9))
+    at = np.arange(frames) % (2 * steps)
+    return turn * np.minimum(at, 2 * steps - at)
+
+
+def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
+    """From the first frame's view space to that of each frame of a turning camera, float64 of shape (frames, 3, 3).
+
+    An object that turns the other way does the same to its normals.
+    """
+    return np.stack([AHEAD.turned(axis, angle).matrix()[:3, :3] for angle in angles(turn, frames)])
+
+
+def points(space: str, count: int, seed: int) -> Iterator[Points]:
+    """Points in chunks of at most CHUNK.
+
+    A camera may look anywhere in the world: in world space normals are of all directions.
+
+    Args:
+        space: one of SPACES.
+        count: of points, 1 or more.
+        seed: of where the sequence begins; the first points of a larger count are the same.
+    """
+    least = LEAST_Z if space == SPACES[0] else -1.0
+    low, high = np.array([least, 0, -HALF_WIDTH, -HALF_HEIGHT]), np.array([1, 2 * np.pi, HALF_WIDTH, HALF_HEIGHT])
+    shift = np.random.default_rng(seed).uniform(size=len(STEPS))
+    for start in range(0, count, CHUNK):
+        at = np.arange(start, min(start + CHUNK, count))
+        z, turn, x, y = (low + (high - low) * ((shift + at[:, None] * STEPS) % 1)).T
+        out = np.sqrt(1 - z * z)
+        normals = np.stack([out * np.cos(turn), out * np.sin(turn), z], axis=1)
+        yield Points(normals, np.stack([x, y, np.full_like(x, -1.0)], axis=1))

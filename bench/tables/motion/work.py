@@ -1,0 +1,203 @@
+"""How the motion table is measured and shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.gl.device import Device
+from ....gbuffer.scenes.scene import TURNS
+from ....reports.charts import motion as chart
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import check_twin, codecs_named, fitting
+from ...machine.devices import found_device, require_jax
+from ...options.counts import check_seed, checked_numbers, in_range
+from ...options.targets import checked_setting, checked_target, what_is_left
+from ...output.errors import UsageError, by_reason, pick, tell
+from ...output.writing import check_folder, check_plot, save_plot
+from ..charts import drawing, having
+from ..shots import Shot, by_shots
+from ..table import Measured, Row, Sheet, Step, Tick, Work
+from . import pictures, turning
+from .code_wobble import Motion
+from .measure import PICTURE_SWING_DEG, Bench, Case, FrameSequence
+from .table import TABLE, MotionOptions, MotionOutputs
+
+LEAST_TURN_DEG, MOST_TURN_DEG = 1e-4, 45.0
+# One pixel or so of the default picture.
+USUAL_PICTURE_TURN_DEG = 0.25
+MAX_FRAMES, MAX_POINTS = 1000, 2**24
+# A code that wobbles by less of its static error stays but for float32's rounding.
+LEAST_PLOTTED = 0.01
+NO_PICTURES = "none"
+OTHER_DOMAIN = "in world space normals have all directions, and it is made for those that face the camera"
+
+
+def motions(options: MotionOptions) -> list[Motion]:
+    """What turns, and how, in each row. Raises UsageError."""
+    in_range("--frames", options.frames, 2, MAX_FRAMES)
+    chosen = [
+        pick(what, given, {name: name for name in known})
+        for what, given, known in (
+            ("space", options.space, turning.SPACES),
+            ("thing that moves", options.moves, turning.MOVES),
+            ("axis", options.axis, TURNS),
+        )
+    ]
+    turns = checked_numbers("--turn", options.turn, float, LEAST_TURN_DEG, MOST_TURN_DEG)
+    return [
+        Motion(space, moves, axis, turn, options.frames)
+        for space in chosen[0]
+        for moves in chosen[1]
+        for axis in chosen[2]
+        for turn in turns
+    ]
+
+
+def codecs(options: MotionOptions) -> list[Codec]:
+    """The codecs asked for; those that do not fit are named on standard error. Raises UsageError."""
+    chosen, left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
+    for encoding in dict.fromkeys(codec.encoding for codec in chosen):
+        check_twin(encoding)
+    return what_is_left(chosen, left_out)
+
+
+def picture_turns(options: MotionOptions) -> tuple[float, ...]:
+    """The turns that frames are rendered of. Raises UsageError."""
+    turns = checked_numbers("--turn", options.turn, float, LEAST_TURN_DEG, MOST_TURN_DEG)
+    possible = tuple(turn for turn in turns if turn <= PICTURE_SWING_DEG)
+    if options.picture_turn is None:
+        return tuple(sorted(possible, key=lambda turn: abs(math.log(turn / USUAL_PICTURE_TURN_DEG)))[:1])
+    if options.picture_turn.strip().lower() == NO_PICTURES:
+        return ()
+    asked = checked_numbers("--picture-turn", options.picture_turn, float, LEAST_TURN_DEG, PICTURE_SWING_DEG)
+    if missing := [turn for turn in asked if turn not in turns]:
+        raise UsageError(f"--picture-turn {missing[0]:g}: not among --turn {options.turn}; name it there, or none")
+    return asked
+
+
+def cases(options: MotionOptions, device: Device | None) -> list[Case]:
+    """One case for each row; what cannot be is named on standard error.
+
+    Raises:
+        UsageError: unknown names, numbers out of range, or nothing left.
+    """
+    in_range("--count", options.count, 1, MAX_POINTS)
+    check_seed(options.seed)
+    setting = checked_setting(1, options.lights, options.seed)
+    chosen, rendered = motions(options), picture_turns(options)
+    size, _ = checked_target(options.size, 1, options.frames, device) if device else ((0, 0), 0)
+    made: list[Case] = []
+    outside: list[str] = []
+    for codec in codecs(options):
+        suited = [motion for motion in chosen if is_suited(codec, motion)]
+        outside += [] if suited else [codec.name]
+        for motion in suited:
+            # A smooth sphere that turns looks the same: images are of turning cameras.
+            is_rendered = device and motion.moves == turning.MOVES[0] and motion.turn in rendered
+            shots = FrameSequence(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
+            made.append(Case(codec, motion, options.count, options.seed, shots))
+    return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in outside))
+
+
+def is_suited(codec: Codec, motion: Motion) -> bool:
+    """Whether an encoding is made for a space: in world space normals have all directions."""
+    return motion.space != turning.SPACES[1] or codec.encoding.domain == "sphere"
+
+
+def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
+    require_jax()
+    device, missing = found_device()
+    made = cases(options, device)
+    if not device and picture_turns(options):
+        tell(f"no frames are rendered, so columns of highlights and images stay empty: {missing}")
+    check_plot(outputs.plot)
+    if outputs.images:
+        check_folder(outputs.images)
+    bench = Bench(device, outputs.images is not None)
+    return [Step(_key(case), Shot(bench, case, outputs.images), case.name) for case in made]
+
+
+def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:
+    if outputs.images and not any(step.case.case.pictures for step in made):
+        raise UsageError("--images needs rendered frames: a moving camera, a --picture-turn, and a GL device")
+
+
+def _key(case: Case) -> Row:
+    motion, shots = case.motion, case.pictures
+    key: Row = {"codec": case.codec.name, "space": motion.space, "moves": motion.moves, "axis": motion.axis}
+    key |= {"turn": motion.turn, "frames": motion.frames, "count": case.count, "seed": case.seed}
+    return key | ({"size": list(shots.size), "lights": shots.setting.lights} if shots else {})
+
+
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["invalid"]:
+            yield f"{TABLE.name_of(row)}: {row['invalid']} decodes are NaN or infinite"
+
+
+IMAGE = ("static_psnr_db", "wobble_psnr_db", "reprojected_psnr_db")
+LINE = ("encoding", "storage", "rounding", "space", "moves", "axis")
+
+
+def _lines(rows: Sequence[Row]) -> list[list[Row]]:
+    """Rows that differ in the turn alone, together."""
+    lines: dict[tuple, list[Row]] = {}
+    for row in having(rows, "wobble_deg", "turn_deg"):
+        lines.setdefault(tuple(row.get(name) for name in LINE), []).append(row)
+    return list(lines.values())
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """The worst turn of each code, and what was rendered."""
+    codes, images = [], []
+    for line in _lines(rows):
+        worst = max(line, key=lambda row: row["wobble_deg"])
+        named = {name: worst[name] for name in LINE if name not in ("rounding", "moves")}
+        if len({row["moves"] for row in rows}) > 1:
+            named["moves"] = worst["moves"]
+        found = {name: worst[name] for name in ("static_rms_deg", "ratio", "jumps_percent")}
+        turn = worst["turn_deg"] if worst["wobble_deg"] else None
+        codes.append(named | {"worst_turn_deg": turn, "worst_wobble_deg": worst["wobble_deg"]} | found)
+        for row in line:
+            if row.get("highlight_px") is not None:
+                names = ("turn_deg", "highlight_px", "peak_percent", *IMAGE)
+                images.append(named | {name: row[name] for name in names})
+    if codes:
+        yield Sheet("the code alone, at the turn where it wobbles most", codes)
+    if images:
+        yield Sheet("highlights and the displayed image", images)
+
+
+def _write(done: Measured, _: Tick) -> None:
+    if done.outputs.plot:
+        save_plot(done.outputs.plot, chart.motion_chart(_plotted(done.rows)))
+
+
+def _plotted(rows: Sequence[Row]) -> list[Row]:
+    """Rows in lines over the turn, less those of codes that stay: on a logarithmic axis they would squash the rest."""
+    return [row for line in _lines(rows) if any((row["ratio"] or 0) > LEAST_PLOTTED for row in line) for row in line]
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    if usable := _plotted(rows):
+        said = "RMS change of a code's error from one frame to the next over the degrees that the camera or the object "
+        said += (
+            "turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
+        )
+        said += "are in the table below."
+        yield drawing("motion", "How much codes wobble", said, usable, chart.motion_chart, chart.motion_specs)
+
+
+WORK = Work(
+    steps=_steps,
+    check=_check,
+    measure=by_shots(pictures.write),
+    summary=_summary,
+    warnings=_warnings,
+    write=_write,
+    drawings=_drawings,
+    films=pictures.films,
+)

@@ -1,0 +1,422 @@
+"""`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
+
+import itertools
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.metrics.meter import psnr_db
+from normalbench.bench.results.measuring import Nothing, asked, measured
+from normalbench.bench.tables.motion import highlights, turning
+from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
+from normalbench.bench.tables.motion.measure import Differences, FrameSequence, in_space, on_surfaces
+from normalbench.bench.tables.motion.table import MotionOptions
+from normalbench.bench.tables.motion.trips import trip_of
+from normalbench.bench.tables.motion.work import motions, picture_turns
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from normalbench.gbuffer.display import displayed
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.gloss import POWERS
+from normalbench.gbuffer.scenes.scene import TURNS, View
+from normalbench.gbuffer.scenes.setting import Setting
+from normalbench.reports.page.pixels import MAX_FILM, film_uri
+
+COUNT, FRAMES, SEED = 2**14, 8, 0
+SMALL = ("--count", "2048", "--frames", "4", "--size", "96x72", "--lights", "2")
+
+
+def wobble(name, space="view", moves="camera", axis="yaw", turn=0.25, frames=32, count=COUNT, seed=SEED):
+    (codec,) = codecs_named(name, "rgba8", "nearest")
+    with trip_of(codec) as trip:
+        return code_wobble(trip, codec.encoding.domain, Motion(space, moves, axis, turn, frames), count, seed)
+
+
+# Static RMS in degrees, and the wobble at 0.01, 0.05, 0.25 and 1 degree a frame: of a prototype in NumPy that this
+# table was made after, with two channels of 8 bits in view space.
+PROTOTYPE = {
+    "octahedral": (0.380, (0.095, 0.206, 0.418, 0.476)),
+    "spheremap": (0.374, (0.089, 0.197, 0.399, 0.418)),
+}
+
+
+@pytest.mark.parametrize("name", PROTOTYPE)
+def test_the_wobble_is_that_of_the_prototype(name):
+    """Within 3 %: normals over z >= 0.2 of the first frame, 32 frames of yaw."""
+    static, wobbles = PROTOTYPE[name]
+    rows = [wobble(name, turn=turn, count=2**16) for turn in (0.01, 0.05, 0.25, 1.0)]
+    assert rows[0]["static_rms_deg"] == pytest.approx(static, rel=0.03)
+    assert [row["wobble_deg"] for row in rows] == pytest.approx(wobbles, rel=0.03)
+
+
+def ramp(step):
+    """A code that is a linear ramp: the angle about y in steps of so many degrees."""
+
+    def trip(n, _):
+        angle = np.degrees(np.arctan2(n[:, 0].astype(float), n[:, 2]))
+        code = np.rint(angle / step)
+        stored, out = np.radians(code * step), np.hypot(n[:, 0], n[:, 2]).astype(float)
+        return code[:, None], np.stack([np.sin(stored) * out, n[:, 1], np.cos(stored) * out], axis=1)
+
+    return trip
+
+
+@pytest.mark.parametrize("codes_a_frame", [0.05, 0.25, 0.5, 7.1])
+def test_a_linear_ramp_wobbles_as_a_sawtooth_does(codes_a_frame):
+    """A sawtooth's autocorrelation at a lag of f periods is 1 - 6 f (1 - f), so the ratio is sqrt(6 f (1 - f)); and a
+    share f of the codes changes in a frame, or all."""
+    step = 0.5
+    motion = Motion("view", "camera", "yaw", codes_a_frame * step, 8)
+    row = code_wobble(ramp(step), "sphere", motion, COUNT, SEED)
+    f = codes_a_frame % 1
+    assert row["ratio"] == pytest.approx(math.sqrt(6 * f * (1 - f)), rel=0.03)
+    assert row["jumps_percent"] == pytest.approx(100 * min(codes_a_frame, 1), rel=0.03)
+    assert row["static_rms_deg"] < step / math.sqrt(12)
+
+
+def linear_colour(n, _):
+    """x as a channel of 8 bits keeps a linear ramp; y and z are exact."""
+    code = np.rint(n[:, 0].astype(float) * 127.5)
+    return code[:, None], np.stack([code / 127.5, n[:, 1], n[:, 2]], axis=1)
+
+
+def test_a_ramp_of_many_codes_a_frame_is_noise():
+    """A linear colour ramp at up to 18 codes a frame, each point at its own speed: a ratio of 1, within 5 %. Of three
+    such channels, yaw leaves y where it is: a third of the squared error stays."""
+    motion = Motion("view", "camera", "yaw", 8.0, 16)
+    assert code_wobble(linear_colour, "sphere", motion, COUNT, SEED)["ratio"] == pytest.approx(1, rel=0.05)
+    assert wobble("xyz_renormalised", turn=8.0, frames=16)["ratio"] == pytest.approx(math.sqrt(2 / 3), rel=0.03)
+
+
+@pytest.mark.parametrize("axis", TURNS)
+@pytest.mark.parametrize("name", ["octahedral", "spheremap", "best_fit"])
+def test_a_code_in_world_space_stays_while_a_camera_turns(name, axis):
+    """To the bit; and it does not while an object turns."""
+    row = wobble(name, "world", "camera", axis, frames=4, count=4096)
+    assert (row["wobble_deg"], row["jumps_percent"], row["ratio"]) == (0, 0, 0) and row["static_rms_deg"] > 0
+    assert wobble(name, "world", "object", axis, frames=4, count=4096)["ratio"] > 0.3
+
+
+def test_a_frame_of_the_pixels_own_turns_along_with_a_yaw():
+    """Its axes are level, so that a camera that yaws turns them with the surface; one that rolls does not."""
+    yaw, roll = (wobble("per_pixel_view", axis=axis, count=4096) for axis in ("yaw", "roll"))
+    assert yaw["ratio"] < 0.02 and roll["ratio"] > 0.5, (yaw, roll)
+
+
+@pytest.mark.parametrize("name", ["octahedral", "spheremap", "per_pixel_view"])
+def test_figures_are_the_same_for_every_seed(name):
+    """Within 2 % of their mean, at the usual count."""
+    found = [wobble(name, axis="roll", frames=6, count=MotionOptions().count, seed=seed) for seed in range(4)]
+    for column in ("static_rms_deg", "wobble_deg", "ratio", "jumps_percent", "jump_deg"):
+        values = np.array([row[column] for row in found])
+        assert np.max(np.abs(values / values.mean() - 1)) < 0.02, (column, values)
+
+
+def test_only_what_an_encoding_is_made_for_counts():
+    """Normals of z < 0 would come back from `xy` mirrored, some 100 degrees off."""
+    row = wobble("xy", turn=1.0, count=4096)
+    assert row["static_rms_deg"] < 5 and 0 < row["wobble_deg"] < 5
+
+
+@pytest.mark.parametrize("axis", TURNS)
+def test_an_error_that_turns_with_the_surface_is_no_wobble(axis):
+    """An offset along n x k stays on a surface that turns about k, and turns by 40 degrees a frame in view space."""
+    k = np.eye(3)[TURNS.index(axis)]
+
+    def swirl(n, _):
+        return np.zeros((len(n), 1)), n + 1e-3 * np.cross(n, k)
+
+    row = code_wobble(swirl, "sphere", Motion("view", "camera", axis, 40.0, 3), 1000, SEED)
+    assert row["ratio"] < 1e-3 < row["static_rms_deg"] and row["jumps_percent"] == 0, row
+
+
+def test_what_is_no_number_counts_as_the_opposite_direction():
+    def broken(n, _):
+        return np.zeros((len(n), 1)), np.where(np.arange(len(n))[:, None] % 2, np.nan, n)
+
+    row = code_wobble(broken, "sphere", Motion("view", "camera", "yaw", 1.0, 2), 1000, SEED)
+    assert row["invalid"] == 1000 and row["static_rms_deg"] == pytest.approx(math.degrees(math.sqrt(2)), rel=1e-5)
+
+
+def test_a_turn_goes_to_and_fro():
+    """Never farther than its swing, always by as much; a step beyond the swing goes there and back."""
+    assert turning.angles(10.0, 8).tolist() == [0, 10, 20, 30, 20, 10, 0, 10]
+    assert turning.angles(45.0, 4).tolist() == [0, 45, 0, 45]
+    found = turning.angles(0.25, 1000)
+    assert found.max() == turning.SWING_DEG and set(np.abs(np.diff(found)).round(9)) == {0.25}
+
+
+@pytest.mark.parametrize(
+    "axis, forward, up",
+    [("yaw", (-1, 0, 0), (0, 1, 0)), ("pitch", (0, 1, 0), (0, 0, 1)), ("roll", (0, 0, -1), (-1, 0, 0))],
+)
+def test_a_camera_turns_left_up_and_counter_clockwise(axis, forward, up):
+    """By 90 degrees, where it stands; all the way around it is as before."""
+    view = View((1.0, 2.0, 3.0), (1.0, 2.0, 0.0), 40.0, 1.0, 10.0)
+    turned = view.turned(axis, 90.0)
+    assert np.subtract(turned.target, turned.eye) / 3 == pytest.approx(forward, abs=1e-12)
+    assert turned.matrix()[1, :3] == pytest.approx(up, abs=1e-12) and turned.eye == view.eye
+    assert view.turned(axis, 360.0).matrix() == pytest.approx(view.matrix(), abs=1e-12)
+
+
+@pytest.mark.usefixtures("gl")
+def test_an_encoding_in_glsl_alone_is_measured(run, tmp_path):
+    """By GLSL, with the figures of its twin in the catalogue."""
+    text = (ENCODINGS["octahedral"].glsl.parents[1] / "vec.glsl").as_posix()
+    text = ENCODINGS["octahedral"].glsl.read_text().replace("octahedral_", "mine_").replace("../vec.glsl", text)
+    (tmp_path / "mine.glsl").write_text(text)
+    words = ("motion", "--encoding", f"octahedral,{tmp_path / 'mine.glsl'}", "--picture-turn", "none", *SMALL)
+    status, out, err = run(*words, "--space", "view", "--format", "json")
+    rows = json.loads(out)
+    assert status == 0, err
+    by_jax, by_glsl = ([row for row in rows if row["backend"] == backend] for backend in ("jax", "glsl"))
+    assert len(by_jax) == len(by_glsl) == 5
+    for one, other in zip(by_jax, by_glsl, strict=True):
+        for column in ("static_rms_deg", "wobble_deg", "jumps_percent"):
+            assert one[column] == pytest.approx(other[column], rel=0.01), column
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    return tmp_path_factory.mktemp("pictures")
+
+
+@pytest.fixture(scope="module")
+def rows(gl, pictures):  # noqa: ARG001 # a device is needed
+    """Two codes of 16 bits, rendered while the camera rolls by a quarter of a degree."""
+    table = TABLES["motion"]
+    options = {"encoding": "octahedral,per_pixel_view", "axis": "roll", "turn": "0.25,2", "count": 4096}
+    options |= {"frames": FRAMES, "size": "160x120", "lights": 3}
+    return measured(asked(table, table.options(**options), table.outputs(images=pictures)), Nothing()).rows
+
+
+def test_rows_have_the_columns_of_the_table(rows):
+    assert all(tuple(row) == tuple(TABLES["motion"].empty([f"{power:g}" for power in POWERS])) for row in rows)
+    names = [(row["encoding"], row["space"], row["turn_deg"]) for row in rows]
+    spaces = [("octahedral", "view"), ("octahedral", "world"), ("per_pixel_view", "view")]
+    assert names == [(*space, turn) for space in spaces for turn in (0.25, 2.0)]
+
+
+def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
+    """Of the rendered turn alone; sharp highlights more than dull ones."""
+    view, _, world, _, pixel, _ = rows
+    assert all(row["highlight_px"] is row["wobble_psnr_db"] is None for row in rows if row["turn_deg"] == 2)
+    assert world["highlight_px"] == world["peak_percent"] == 0 and world["reprojected_psnr_db"] == math.inf
+    assert view["reprojected_psnr_db"] == pytest.approx(view["wobble_psnr_db"], abs=4)
+    for row in (view, pixel):
+        assert row["highlight_px"] > 0.005 and row["peak_percent"] > 0.5, row
+        assert row["peak_percent_1024"] > 10 * row["peak_percent_4"], row
+
+
+def test_the_image_is_that_of_a_real_target(gl, rows):
+    """Drawn anew by GLSL, which encodes into a texture of RG8 and decodes from it: the same static and moving PSNR."""
+    (codec,) = codecs_named("octahedral", "rg8", "nearest")
+    shots = FrameSequence("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
+    images = [drawn(gl, shots, layout) for layout in (LAYOUTS["fp32"].with_codec(codec), LAYOUTS["fp32"])]
+    covered = images[1][1]
+    apart = images[0][0] - images[1][0]
+    static = np.mean([np.mean(one[where] ** 2) for one, where in zip(apart, covered, strict=True)])
+    both = covered[1:] & covered[:-1]
+    moving = np.mean([np.mean(one[where] ** 2) for one, where in zip(np.diff(apart, axis=0), both, strict=True)])
+    assert rows[0]["static_psnr_db"] == pytest.approx(psnr_db(static), abs=0.1)
+    assert rows[0]["wobble_psnr_db"] == pytest.approx(psnr_db(moving), abs=0.1)
+
+
+def drawn(gl, shots, layout):
+    """The displayed images of a sequence, and where there is a surface, by the renderer alone."""
+    pipeline, scene = PIPELINES["deferred"], gloss(shots.setting)
+    plan = Plan(shots.size, 1, layout, LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
+    images, covered = [], []
+    for view in shots.views(scene.view):
+        with rendering(gl, pipeline, gloss(shots.setting, view), plan) as made:
+            made.draw()
+            images.append(displayed(made.image()))
+            covered.append(made.gbuffer()[0][..., 2] != 0)
+    return np.stack(images), np.stack(covered)
+
+
+def gloss(setting, view=None):
+    scene = SCENES["gloss"].make(setting)
+    return replace(scene, view=view, previous=view) if view else scene
+
+
+def test_codes_on_surfaces_are_those_of_a_turned_camera():
+    """A normal and its position, turned, encoded, decoded and turned back."""
+    (codec,) = codecs_named("octahedral", "rg8", "nearest")
+    n = np.array([[0.48, 0.6, 0.64]], np.float32)
+    matrix = turning.rotations("roll", 30.0, 2)[1]
+    with trip_of(codec) as trip:
+        found = on_surfaces(trip, matrix, matrix)(n, n)
+        by_hand = trip((n @ matrix.T).astype(np.float32), n)[1] @ matrix
+    assert found == pytest.approx(by_hand, abs=1e-6)
+
+
+def test_a_code_in_world_space_is_the_same_from_every_camera():
+    """What the G-buffer keeps of a normal is the same in world space from two cameras, and another in view space."""
+    (codec,) = codecs_named("octahedral", "rg8", "nearest")
+    n = np.array([[0.48, 0.6, 0.64], [-0.36, 0.48, 0.8]])
+    first = View((0.0, 0.0, 5.0), (0.0, 1.0, 0.0), 40.0, 1.0, 10.0)
+    found = {}
+    with trip_of(codec) as trip:
+        for space in turning.SPACES:
+            seen = []
+            for view in (first, first.turned("roll", 20.0).turned("yaw", 7.0)):
+                to_view = view.matrix()[:3, :3]
+                mine = (n @ to_view.T).astype(np.float32)
+                seen.append(in_space(trip, space, view)(mine, mine) @ to_view)
+            found[space] = np.abs(seen[0] - seen[1]).max()
+    assert found["world"] < 1e-6 and found["view"] > 1e-3, found
+
+
+def test_a_highlight_is_where_its_light_is():
+    """Two pixels of one sphere, the right one three times as bright; then the brightness moves down by a pixel."""
+    spheres, light = np.zeros((4, 5), int), np.zeros((4, 5, 3))
+    spheres[1:3, 1:4] = 1
+    light[1, 1, 0], light[1, 3, 0] = 1.0, 3.0
+    light[3, 4, 0] = 100.0  # beyond the sphere
+    one, other = highlights.spots(light, spheres), highlights.spots(np.roll(light, 1, axis=0), spheres)
+    assert one.centroids[0, 0].tolist() == [2.5, 1.0] and one.peaks[0, 0] == 3.0
+    assert np.isnan(one.centroids[1:]).all() and np.isnan(one.centroids[0, 1:]).all()
+    lit = [highlights.Spots(spots.centroids[:, :1], spots.peaks[:, :1]) for spots in (one, other, one)]
+    lit[1].peaks[0] = 1.5
+    moved, flickered = highlights.wobble(lit, lit[0])
+    assert moved[0] == 1.0 and flickered[0] == 50.0**2
+
+
+def test_a_difference_counts_where_both_frames_have_a_surface():
+    """A difference of 0.1 that vanishes on one pixel of the two that both frames cover."""
+    one, other = np.full((1, 3, 3), 0.1), np.zeros((1, 3, 3))
+    other[0, 1], other[0, 2] = 0.1, 9.0
+    sums = Differences()
+    sums.add(one, np.array([[True, True, False]]))
+    sums.add(other, np.array([[True, True, True]]))
+    assert sums.wobble_db == pytest.approx(psnr_db(0.01 / 2)) and sums.static[0] == pytest.approx(0.01)
+
+
+def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
+    """As many frames as were rendered, none black, no two the same; the page's is that of the worst row."""
+    path = pictures / "octahedral-rg8-nearest-view-roll-0.25.png"
+    assert len(list(pictures.iterdir())) == 3
+    with Image.open(path) as image:
+        frames = []
+        for at in range(image.n_frames):
+            image.seek(at)
+            frames.append(np.asarray(image.convert("RGB")).astype(int))
+    assert len(frames) == FRAMES and all(frame.max() == 255 and frame.std() > 20 for frame in frames)
+    assert all(np.abs(one - other).max() > 8 for one, other in itertools.pairwise(frames))
+    (film,) = TABLES["motion"].work.films(pictures, rows)
+    worst = max((row for row in rows if row["highlight_px"] is not None), key=lambda row: row["highlight_px"])
+    assert worst["encoding"] in film.said and worst["encoding"] in film.path.name
+    assert 1000 < len(film_uri(film.path)) < 300_000
+
+
+def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
+    damaged, large = tmp_path / "damaged.png", tmp_path / "large.png"
+    damaged.write_bytes(b"\x89PNG\r\n")
+    noise = np.random.default_rng(SEED).integers(0, 256, (600, 600, 3), np.uint8)
+    Image.fromarray(noise).save(large)
+    assert large.stat().st_size > MAX_FILM
+    assert film_uri(damaged) == film_uri(large) == film_uri(tmp_path / "none.png") == ""
+
+
+def test_a_page_holds_its_charts_and_its_animation(run, tmp_path):
+    """And `compare` finds no difference between a run and itself."""
+    one = tmp_path / "one"
+    words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1")
+    status, _, err = run(*words, "-o", str(one))
+    assert status == 0, err
+    page = (one / "report.html").read_text()
+    assert "What wobbles when the camera turns" in page and page.count("data:image/png;base64,") == 1
+    assert 'data-chart="motion"' in page and (one / "charts" / "motion.svg").exists()
+    assert "How much codes wobble" in page and "The highlight that moves the most, of spheremap rg8" in page
+    status, _, err = run("compare", str(one), str(one))
+    assert status == 0, err
+
+
+def test_a_plot_is_drawn(run, tmp_path):
+    plot = tmp_path / "plot.png"
+    words = ("motion", "--encoding", "octahedral,spheremap", "--axis", "yaw,roll", "--picture-turn", "none", *SMALL)
+    status, _, err = run(*words, "--space", "all", "--plot", str(plot))
+    assert status == 0, err
+    assert len(np.unique(np.asarray(Image.open(plot).convert("RGB")).reshape(-1, 3), axis=0)) > 50
+
+
+def test_a_still_code_leaves_a_plot_empty_and_is_no_error(run, tmp_path):
+    words = ("motion", "--encoding", "octahedral", "--space", "world", "--picture-turn", "none", *SMALL)
+    status, _, err = run(*words, "--plot", str(tmp_path / "plot.svg"))
+    assert (status, err) == (0, "") and (tmp_path / "plot.svg").exists()
+
+
+def test_a_code_that_stays_is_not_drawn():
+    """float32 moves a few codes in a million of a pixel's own axes that yaw along."""
+    table = TABLES["motion"]
+    options = table.options(picture_turn="none", count=4096, frames=4)
+    done = measured(asked(table, options, table.outputs()), Nothing())
+    (one,) = table.work.drawings(None, done.rows)
+    shown = {point["line"] for spec in one.specs() for point in spec["data"]["values"]}
+    assert shown == {"octahedral rg8", "spheremap rg8"}
+
+
+def test_frames_are_rendered_of_the_turn_nearest_a_quarter_of_a_degree():
+    assert picture_turns(MotionOptions()) == (0.25,)
+    assert picture_turns(MotionOptions(turn="0.01,1,4")) == (1.0,)
+    assert picture_turns(MotionOptions(turn="20")) == ()
+    assert picture_turns(MotionOptions(picture_turn="none")) == ()
+    assert picture_turns(MotionOptions(picture_turn="1,0.01")) == (1.0, 0.01)
+    assert len(motions(MotionOptions(axis="all", moves="all", space="all"))) == 2 * 2 * 3 * 5
+
+
+def test_without_a_device_codes_alone_are_measured(run, monkeypatch):
+    """And a line says so."""
+    from normalbench.bench.tables.motion import work
+
+    monkeypatch.setattr(work, "found_device", lambda: (None, "there is no GL device"))
+    status, out, err = run("motion", "--encoding", "octahedral", *SMALL, "--format", "json")
+    assert status == 0 and err.count("\n") == 1 and "no frames are rendered" in err and "no GL device" in err
+    assert all(row["highlight_px"] is None and row["ratio"] is not None for row in json.loads(out))
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (("--encoding", "octo"), "unknown encoding 'octo'"),
+        (("--space", "screen"), "unknown space 'screen'; known: all, view, world"),
+        (("--moves", "light"), "unknown thing that moves 'light'; known: all, camera, object"),
+        (("--axis", "x"), "unknown axis 'x'; known: all, pitch, yaw, roll"),
+        (("--turn", "0"), "--turn 0: numbers from 0.0001 to 45, comma-separated"),
+        (("--turn", "fast"), "--turn fast: numbers from 0.0001 to 45, comma-separated"),
+        (("--turn", "nan"), "--turn nan: numbers from 0.0001 to 45, comma-separated"),
+        (("--picture-turn", "2"), "--picture-turn 2: not among --turn 0.01,0.05,0.25,0.5,1; name it there, or none"),
+        (("--turn", "20", "--picture-turn", "20"), "--picture-turn 20: numbers from 0.0001 to 8"),
+        (("--frames", "1"), "--frames 1: from 2 to 1000"),
+        (("--count", "0"), "--count 0: from 1 to 16777216"),
+        (("--seed", "-1"), "--seed -1: from 0"),
+        (("--size", "0x5"), "WIDTHxHEIGHT"),
+        (("--lights", "-1"), "--lights -1: from 0"),
+        (("--space", "world", "--encoding", "xy"), "xy/rg8: in world space normals have all directions"),
+        (("--encoding", "xyz"), "xyz/rg8: 3 components, but RG8 has 2 channels"),
+        (("--picture-turn", "none", "--images", "pictures"), "--images needs rendered frames"),
+        (("--plot", "plot.gif"), "a plot's name ends in"),
+        (("--images", "/proc/none"), "cannot write to /proc/none"),
+    ],
+)
+@pytest.mark.usefixtures("gl")
+def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("motion", *words)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_axes_and_spaces_are_those_that_the_help_names(run):
+    _, out, _ = run("motion", "--help")
+    assert all(word in out for word in (*TURNS, *turning.SPACES, *turning.MOVES))
