@@ -25,9 +25,9 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
         ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
     if encoding.before:
-        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; `quality` measures it")
+        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; quality, mix and motion measure it by JAX")
     if encoding.is_half and not as_half:
-        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; `quality` measures half arithmetic")
+        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; quality, mix and motion measure half arithmetic by JAX")
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",
