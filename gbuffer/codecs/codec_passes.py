@@ -15,6 +15,8 @@ from ..gl.device import Device
 from ..gl.shader import ShaderError
 from .harness import Passes, check_functions, exact
 
+# What a renderer of 32 bits does not draw.
+BY_JAX = "quality, mix and motion measure"
 KINDS = ("unorm", "snorm", "float")
 
 
@@ -25,9 +27,9 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
         ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
     if encoding.before:
-        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; quality, mix and motion measure it by JAX")
+        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; {BY_JAX} it by JAX")
     if encoding.is_half and not as_half:
-        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; quality, mix and motion measure half arithmetic by JAX")
+        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; {BY_JAX} half arithmetic by JAX")
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",

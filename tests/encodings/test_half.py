@@ -4,10 +4,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from normalbench.bench.codecs.half import compute
+from normalbench.bench.codecs.half.round_trip import HalfPasses
+from normalbench.bench.codecs.half.source import in_halves
 from normalbench.bench.codecs.names import codecs_named, with_arithmetics
-from normalbench.bench.half import compute
-from normalbench.bench.half.round_trip import HalfPasses
-from normalbench.bench.half.source import in_halves
 from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.tables.quality import half

@@ -23,9 +23,9 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
+from ...codecs.half import compute as half_compute
+from ...codecs.half.round_trip import HalfPasses
 from ...codecs.user_encodings import NoTwinError
-from ...half import compute as half_compute
-from ...half.round_trip import HalfPasses
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays

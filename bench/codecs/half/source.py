@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...gbuffer.gl.shader import Line, Source
+from ....gbuffer.gl.shader import Line, Source
 
 LARGEST = 65504.0
 # A number with a point or an exponent; whole numbers without are integers.

@@ -7,9 +7,9 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
-from ...encodings.codecs.codec import Codec
-from ...encodings.storages.rounding import store_texel
-from ...gbuffer.codecs.codec_passes import encoding_defines
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.rounding import store_texel
+from ....gbuffer.codecs.codec_passes import encoding_defines
 from .compute import computed
 from .source import HalfSource
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ...gbuffer.gl.device import FormatError
-from ...gbuffer.gl.shader import Source
-from ..isa.spirv import compiled
-from ..output.errors import MissingError
+from ....gbuffer.gl.device import FormatError
+from ....gbuffer.gl.shader import Source
+from ...isa.spirv import compiled
+from ...output.errors import MissingError
 
 FEATURE = "shader-f16"
 GROUP = 64
