@@ -65,7 +65,7 @@ COLUMNS = (
     Column("axis", "What it turns about: yaw is about the camera's up, pitch its right, roll its line of sight.", KEY),
     Column("turn_deg", "How far it turns from one frame to the next.", KEY, "degrees"),
     Column("bits", shared.BITS.says, drops=9),
-    Column("static_rms_deg", "RMS angle between normal and decode, over all frames.", HOW, "degrees"),
+    Column("static_rms_deg", "RMS angle between normal and decode, over all frames.", unit="degrees", better="less"),
     Column(
         "wobble_deg",
         "RMS change of the error from one frame to the next, where the error is decoded less true normal on the "
@@ -99,8 +99,8 @@ COLUMNS = (
     Column(
         "static_psnr_db",
         "The displayed image of scene gloss against that of exact normals; covered pixels of all frames, peak 1.",
-        HOW,
-        "dB",
+        unit="dB",
+        better="more",
         drops=7,
     ),
     Column(
