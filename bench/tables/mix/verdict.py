@@ -55,16 +55,13 @@ def _severity(row: Row) -> tuple[bool, float]:
 
 
 def judged(rows: Sequence[Row]) -> list[Row]:
-    """The rows, into which their codec's verdicts are written, by back end; a use is judged where all of its operations
-    were measured. Gates tell rows by their identity, so that these are no copies.
-    """
+    """The rows with the verdicts of their codec and back end; a use is judged where all of its operations were
+    measured."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
     found = {codec: _verdicts(group) for codec, group in groups.items()}
-    for row in rows:
-        row.update(found[codec_of(row)])
-    return list(rows)
+    return [row | found[codec_of(row)] for row in rows]
 
 
 def codec_of(row: Row) -> tuple[str, ...]:
