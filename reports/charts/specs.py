@@ -39,13 +39,13 @@ Spec = dict[str, Any]
 LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "exposure")
 
 
-def _spec(rows: Sequence[Row], description: str, **parts: Any) -> Spec:
+def whole_spec(rows: Sequence[Row], description: str, **parts: Any) -> Spec:
     common = {"description": description, "width": "container", "config": CONFIG}
     params = [PICKED, *parts.pop("params", ())]
     return common | {"data": {"values": list(rows)}, "params": params} | parts
 
 
-def _if_lit(lit: float, other: float) -> Spec:
+def if_lit(lit: float, other: float) -> Spec:
     """A value for what is highlighted, and one for the rest; where nothing is, everything is."""
     return {"condition": {"test": IS_LIT, "value": lit}, "value": other}
 
@@ -67,7 +67,7 @@ def _line(**mark: Any) -> Spec:
     return {"mark": {"type": "line", "clip": True, **mark}}
 
 
-def _tooltip(**fields: str) -> list[Spec]:
+def tooltips(**fields: str) -> list[Spec]:
     return [{"field": name, "title": title} for name, title in fields.items()]
 
 
@@ -88,30 +88,30 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
     }
     y = {"field": "y", "type": "quantitative", "title": "density, % of normals per octave"}
     encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "line"}, "color": _by_bits(points)}
-    tooltip = _tooltip(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
+    tooltip = tooltips(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
     layers = [
-        _line(interpolate="step-after") | {"encoding": {"opacity": _if_lit(1, 0.12), "strokeWidth": _if_lit(1.6, 1)}},
+        _line(interpolate="step-after") | {"encoding": {"opacity": if_lit(1, 0.12), "strokeWidth": if_lit(1.6, 1)}},
         _line(interpolate="step-after", **HIDDEN) | {"encoding": {"tooltip": tooltip}},
     ]
     transform = [{"filter": "bits == 'all' || toString(datum.bits) == bits"}]
     said = "The share of normals over their angle in degrees, a line for each codec."
     parts = {"params": [bits], "transform": transform, "encoding": encoding, "layer": layers, "height": 340}
-    return [_spec(points, said, **parts)]
+    return [whole_spec(points, said, **parts)]
 
 
 def _outline(row: Row) -> list[Row]:
     """A codec's histogram as the points of a line of steps."""
     edges, heights = steps(bins(row["angle_counts"]))
     total = sum(count for *_, count in bins(row["angle_counts"]))
-    figures = {"mean": _rounded(row["angle_mean_deg"]), "largest": _rounded(row.get("angle_max_deg"))}
+    figures = {"mean": four_digits(row["angle_mean_deg"]), "largest": four_digits(row.get("angle_max_deg"))}
     about = {"codec": CodecKey.of(row).label, "bits": row["bits"], **figures}
     return [
-        {"x": _rounded(edge), "y": _rounded(100 * height / total), **about}
+        {"x": four_digits(edge), "y": four_digits(100 * height / total), **about}
         for edge, height in zip(edges, [*heights, 0.0], strict=True)
     ]
 
 
-def _rounded(value: Any) -> float | None:
+def four_digits(value: Any) -> float | None:
     """Four digits; None for what is no finite number."""
     return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
 
@@ -136,15 +136,15 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
         {
             "codec": CodecKey.of(row).label,
             "line": _line_of(row, rows),
-            "image": _rounded(row["psnr_db"]),
-            "normals": _rounded(row["normal_psnr_db"]),
+            "image": four_digits(row["psnr_db"]),
+            "normals": four_digits(row["normal_psnr_db"]),
         }
         for row in sorted(rows, key=lambda row: -row["psnr_db"])
     ]
     y = {"field": "line", "type": "nominal", "sort": list(dict.fromkeys(row["line"] for row in found)), "title": None}
     x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False, "padding": 8}}
-    tooltip = _tooltip(line="codec", image="the image, dB", normals="the normals, dB")
-    lit = {"opacity": _if_lit(1, 0.2)}
+    tooltip = tooltips(line="codec", image="the image, dB", normals="the normals, dB")
+    lit = {"opacity": if_lit(1, 0.2)}
 
     def dots(name: str, shape: str, colour: str) -> Spec:
         mark = {"type": "point", "filled": True, "size": 80, "shape": shape}
@@ -157,7 +157,7 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
     layers = [rule, dots("normals", "square", "the normals"), dots("image", "circle", "the image")]
     encoding = {"y": y, "tooltip": tooltip}
     said = "PSNR of the image and of the normals in the G-buffer, a line for each codec."
-    return [_spec(found, said, encoding=encoding, layer=layers, height=22 * len(y["sort"]))]
+    return [whole_spec(found, said, encoding=encoding, layer=layers, height=22 * len(y["sort"]))]
 
 
 def effects_specs(rows: Sequence[Row]) -> list[Spec]:
@@ -170,8 +170,8 @@ def effects_specs(rows: Sequence[Row]) -> list[Spec]:
         {
             "codec": CodecKey.of(row).label,
             "effect": " on ".join(str(row[name]) for name in ("effect", "scene")),
-            "x": _rounded(row["normal_mean_deg"]),
-            "y": _rounded(row["effect_psnr_db"]),
+            "x": four_digits(row["normal_mean_deg"]),
+            "y": four_digits(row["effect_psnr_db"]),
         }
         for row in rows
         if row["normal_mean_deg"] > 0
@@ -180,12 +180,12 @@ def effects_specs(rows: Sequence[Row]) -> list[Spec]:
     x |= {"title": "mean angle of the normals that it read, degrees"}
     y = {"field": "y", "type": "quantitative", "title": "PSNR of the effect's own image, dB"}
     y |= {"scale": {"zero": False, "padding": 8}}
-    tooltip = [*_tooltip(codec="codec", x="normals, degrees", y="the effect, dB"), {"field": "effect"}]
+    tooltip = [*tooltips(codec="codec", x="normals, degrees", y="the effect, dB"), {"field": "effect"}]
     points: Spec = {"mark": {"type": "point", "filled": True, "size": 55}}
-    points["encoding"] = {"opacity": _if_lit(1, 0.2), "tooltip": tooltip}
+    points["encoding"] = {"opacity": if_lit(1, 0.2), "tooltip": tooltip}
     encoding = {"x": x, "y": y, "color": _named("effect")}
     said = "PSNR of each effect's own image over the mean angle of the normals, a line for each effect."
-    return [_spec(found, said, encoding=encoding, layer=[_line(strokeWidth=1, opacity=0.5), points], height=380)]
+    return [whole_spec(found, said, encoding=encoding, layer=[_line(strokeWidth=1, opacity=0.5), points], height=380)]
 
 
 def mix_specs(rows: Sequence[Row]) -> list[Spec]:
@@ -196,7 +196,7 @@ def mix_specs(rows: Sequence[Row]) -> list[Spec]:
     """
     found = [
         {"codec": CodecKey.of(cell["row"]).label, "operation": cell["operation"], "said": cell["said"]}
-        | {"angle": _rounded(max(cell["angle"], MIX_RANGE[0])), "garbage": _rounded(cell["garbage"])}
+        | {"angle": four_digits(max(cell["angle"], MIX_RANGE[0])), "garbage": four_digits(cell["garbage"])}
         for cell in mix_cells(rows)
     ]
     x = {"field": "operation", "type": "nominal", "title": None, "axis": {"labelAngle": -30}}
@@ -204,12 +204,12 @@ def mix_specs(rows: Sequence[Row]) -> list[Spec]:
     y = {"field": "codec", "type": "nominal", "title": None, "sort": list(dict.fromkeys(row["codec"] for row in found))}
     scale = {"type": "log", "domain": list(MIX_RANGE), "scheme": "viridis"}
     colour = {"field": "angle", "type": "quantitative", "scale": scale, "title": "largest error, degrees"}
-    tooltip = _tooltip(codec="codec", operation="operation", angle="largest error, degrees", garbage="garbage, %")
+    tooltip = tooltips(codec="codec", operation="operation", angle="largest error, degrees", garbage="garbage, %")
     text: Spec = {"mark": {"type": "text", "fontSize": 11}, "encoding": {"text": {"field": "said"}}}
     text["encoding"]["color"] = {"condition": {"test": "datum.angle > 10", "value": "#000000"}, "value": "#ffffff"}
-    layers = [{"mark": "rect", "encoding": {"color": colour, "opacity": _if_lit(1, 0.3), "tooltip": tooltip}}, text]
+    layers = [{"mark": "rect", "encoding": {"color": colour, "opacity": if_lit(1, 0.3), "tooltip": tooltip}}, text]
     said = "The largest error of each operation on mixed codes, a line for each codec, with the share of garbage."
-    return [_spec(found, said, encoding={"x": x, "y": y}, layer=layers, height=24 * len(y["sort"]))]
+    return [whole_spec(found, said, encoding={"x": x, "y": y}, layer=layers, height=24 * len(y["sort"]))]
 
 
 def pareto_specs(panels: Sequence[Panel], error: Error) -> list[Spec]:
@@ -223,8 +223,8 @@ def _pareto(panel: Panel, error: Error) -> Spec:
     log = {} if error.more_is_better else {"type": "log"}
     x = {"field": "cost", "type": "quantitative", "title": panel.unit}
     y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, "padding": 8, **log}}
-    tooltip = _tooltip(codec="codec", bits="bits", cost="instructions", error="error")
-    lit = _if_lit(1, 0.15)
+    tooltip = tooltips(codec="codec", bits="bits", cost="instructions", error="error")
+    lit = if_lit(1, 0.15)
     best = [{"filter": "datum.best"}]
     line = {"type": "line", "interpolate": "step-after", "strokeWidth": 1, "opacity": 0.5}
     named = [{"filter": "datum.best && picked == '' || picked != '' && " + IS_PICKED}]
@@ -239,12 +239,12 @@ def _pareto(panel: Panel, error: Error) -> Spec:
         {"transform": named, "mark": text, "encoding": {"text": {"field": "name"}}},
     ]
     parts = {"encoding": {"x": x, "y": y}, "layer": layers, "height": 380, "title": _title(panel.title)}
-    return _spec(rows, f"{panel.title}: each codec's {error.label} over {panel.unit}.", **parts)
+    return whole_spec(rows, f"{panel.title}: each codec's {error.label} over {panel.unit}.", **parts)
 
 
 def _point(point: Point, is_best: bool) -> Row:
     name = point.name + "*" * point.is_starred
-    about = {"codec": point.codec, "name": name, "cost": _rounded(point.cost), "error": _rounded(point.error)}
+    about = {"codec": point.codec, "name": name, "cost": four_digits(point.cost), "error": four_digits(point.error)}
     return about | {"bits": point.bits, "best": is_best}
 
 
@@ -255,7 +255,7 @@ def passes_specs(rows: Sequence[Row]) -> list[Spec]:
         rows: as `charts.passes_chart` takes them.
     """
     found = [
-        {"pipeline": row["pipeline"], "pass": name, "ms": _rounded(milliseconds), "at": at}
+        {"pipeline": row["pipeline"], "pass": name, "ms": four_digits(milliseconds), "at": at}
         for row in rows
         for at, (name, milliseconds) in enumerate(passes_of(row).items())
     ]
@@ -270,11 +270,11 @@ def passes_specs(rows: Sequence[Row]) -> list[Spec]:
         "mark": "bar",
         "encoding": {"x": x | {"stack": True, "title": title}, "y": y, "color": colour, "order": {"field": "at"}},
     }
-    bars["encoding"]["tooltip"] = [*_tooltip(pipeline="pipeline", ms="ms"), {"field": "pass"}]
+    bars["encoding"]["tooltip"] = [*tooltips(pipeline="pipeline", ms="ms"), {"field": "pass"}]
     text = {"type": "text", "align": "left", "dx": 4, "color": INK}
     labels = {"data": {"values": totals}, "mark": text, "encoding": {"x": x, "y": y, "text": {"field": "said"}}}
     said = "Milliseconds of a frame by pass, a bar for each pipeline."
-    return [_spec(found, said, layer=[bars, labels], height=34 * len(rows))]
+    return [whole_spec(found, said, layer=[bars, labels], height=34 * len(rows))]
 
 
 def depth_specs(rows: Sequence[Row]) -> list[Spec]:
@@ -290,7 +290,7 @@ def depth_specs(rows: Sequence[Row]) -> list[Spec]:
 def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
     columns = ("depth", "storage", "rebuilt")
     found = [
-        {name: row[name] for name in columns} | {"x": row["distance"], "y": _rounded(row["error_max"])}
+        {name: row[name] for name in columns} | {"x": row["distance"], "y": four_digits(row["error_max"])}
         for row in sorted(rows, key=lambda row: row["distance"])
         if row["error_max"] > 0
     ]
@@ -299,10 +299,12 @@ def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
     y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "title": "worst position error, same unit"}
     detail = [{"field": name} for name in columns]
     encoding = {"x": x, "y": y | {"axis": {"format": "~e"}}, "color": _named("depth"), "strokeDash": _named("storage")}
-    encoding |= {"detail": detail, "tooltip": [*detail, *_tooltip(x="distance", y="error")]}
+    encoding |= {"detail": detail, "tooltip": [*detail, *tooltips(x="distance", y="error")]}
     said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
     title = _title(f"near {near:g}, far {far:g}")
-    return _spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
+    return whole_spec(
+        found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title
+    )
 
 
 def _named(column: str) -> Spec:
@@ -325,8 +327,8 @@ def _lights(title: str, lines: Lines) -> Spec:
         {
             "light_buffer": name,
             "x": count,
-            "y": max(_rounded(error) or 0.0, LEAST_ERROR),
-            "bound": _rounded(bound) or None,
+            "y": max(four_digits(error) or 0.0, LEAST_ERROR),
+            "bound": four_digits(bound) or None,
         }
         for name, line in lines.items()
         for count, error, bound in sorted(line)
@@ -335,7 +337,7 @@ def _lights(title: str, lines: Lines) -> Spec:
     y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "axis": {"format": "~e"}}
     y["title"] = "error in light, by the model"
     encoding = {"x": x, "color": _named("light_buffer")}
-    tooltip = _tooltip(light_buffer="light buffer", x="lights", y="error", bound="the most it can be")
+    tooltip = tooltips(light_buffer="light buffer", x="lights", y="error", bound="the most it can be")
     layers = [
         {"mark": {"type": "line", "strokeWidth": 1.8, "point": True}, "encoding": {"y": y, "tooltip": tooltip}},
         {
@@ -345,4 +347,4 @@ def _lights(title: str, lines: Lines) -> Spec:
         },
     ]
     said = f"Error over the number of lights: {title}. Dotted: the most it can be. Errors below 1e-6 are drawn at 1e-6."
-    return _spec(found, said, encoding=encoding, layer=layers, height=380, title=_title(title))
+    return whole_spec(found, said, encoding=encoding, layer=layers, height=380, title=_title(title))
