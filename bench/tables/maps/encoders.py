@@ -50,9 +50,14 @@ class Encoder:
     undo: Callable[[Sequence[Any], bytes, tuple[int, int]], np.ndarray] | None = None
 
     @property
+    def release(self) -> str:
+        """Package and version; empty for none."""
+        return f"{self.package} {version(self.package)}" if self.package else ""
+
+    @property
     def name(self) -> str:
         """Package, version and effort."""
-        return f"{self.package} {version(self.package)}, {self.said}" if self.package else self.said
+        return ", ".join(filter(None, (self.release, self.said)))
 
     @property
     def missing(self) -> str:

@@ -217,7 +217,8 @@ def _figures(s: Statistics, clock: Clock) -> Row:
 
 def _how(case: Case) -> Row:
     by_device = case.decoder == "device" and case.block.is_compressed
-    by_package = case.block.decode is None and case.block.encoder.name
+    # What there is no decoder of here is decoded by the package that encodes it.
+    by_package = case.block.encoder.release if case.block.decode is None else ""
     name = device().renderer if by_device else by_package or "NumPy, exact"
     figures: Row = {"encoder": case.block.encoder.name, "device": name}
     # What is not compressed takes no time and loses nothing of its 8 bits.

@@ -41,14 +41,16 @@ def cases(options: MapsOptions) -> list[Case]:
     require_jax()
     if decoders == ["device"]:
         require_device()
-    complaints: list[str] = []
+    complaints, no_room = list[str](), list[str]()
     fitting = [
         (encoding, block, swizzle)
         for encoding in encodings
         if _is_possible(encoding, complaints)
         for block in blocks
-        for swizzle in _swizzles(encoding, block, asked, complaints)
+        for swizzle in _swizzles(encoding, block, asked, no_room)
     ]
+    # Where all formats are asked for, those with room for a code are meant.
+    complaints += [] if fitting and _names_all(options.block) else no_room
     sets = _images(options, any(encoding.domain == "view" for encoding in encodings))
     left = what_is_left(fitting, complaints)
     return [Case(*one, normals, decoder) for normals in sets for one in left for decoder in decoders]
@@ -58,13 +60,16 @@ def _blocks(names: str) -> list[BlockFormat]:
     """The formats asked for. Of "all" those are left out whose encoder is not installed."""
     chosen = pick("block format", names, FORMATS)
     missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
-    if missing and (
-        "all" not in names.split(",") or not any(b.is_compressed and b.name not in missing for b in chosen)
-    ):
+    left = [block for block in chosen if block.name not in missing]
+    if missing and not (_names_all(names) and any(block.is_compressed for block in left)):
         raise MissingError("; ".join(f"{name}: {why}" for name, why in missing.items()))
     for name, why in missing.items():
         leave_out(f"{name}: {why}")
-    return [block for block in chosen if block.name not in missing]
+    return left
+
+
+def _names_all(names: str) -> bool:
+    return "all" in map(str.strip, names.split(","))
 
 
 def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
