@@ -50,6 +50,7 @@ HELD = {
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
+    "normalbench maps",
 }
 
 
@@ -103,7 +104,7 @@ def test_every_example_is_used():
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|mix|render|effects|motion|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
@@ -352,6 +353,27 @@ def test_the_motion_table_is_what_is_measured(run):
         # JSON has no infinity.
         left = row["reprojected_psnr_db"] or "infinite"
         assert reprojected == left or float(reprojected) == pytest.approx(left, rel=0.01), key
+
+
+@pytest.mark.slow
+def test_the_maps_table_is_what_is_measured(run):
+    """To the digits shown, by the encoders that CI pins; and what it says of codes in tangent space."""
+    shape = r"^\| `(\w+)` +\| `(\w+)` +\|" + r" +([\d.]+) \|" * 6 + "$"
+    lines = re.findall(shape, table("normalbench maps"), re.M)
+    assert len(lines) == 7
+    rows = {}
+    for encoding, normals in (("xy,hemi_octahedral,octahedral", "bumps,grain"), ("octahedral", "playground")):
+        status, out, _ = run("maps", "--encoding", encoding, "--normals", normals, "--format", "json")
+        assert status == 0
+        rows |= {
+            tuple(row[name] for name in ("encoding", "normals", "block", "swizzle")): row for row in json.loads(out)
+        }
+    for block, swizzle, *figures in lines:
+        codes = (("xy", "bumps"), ("xy", "grain"), ("octahedral", "playground"))
+        found = [rows[*code, block, swizzle][f"angle_{name}_deg"] for code in codes for name in ("mean", "max")]
+        assert [float(text) for text in figures] == pytest.approx(found, rel=2e-3), (block, swizzle)
+    means = [rows[name, "bumps", "bc5", "rg"]["angle_mean_deg"] for name in ("xy", "hemi_octahedral", "octahedral")]
+    assert means == pytest.approx([0.463, 0.504, 0.574], abs=6e-4)
 
 
 def test_the_light_table_is_what_is_measured():

@@ -227,6 +227,46 @@ def mix(
         size: WIDTHxHEIGHT of the picture of a mesh.
     """
 
+def maps(
+    *,
+    encoding: Names = ...,
+    block: Names = ...,
+    swizzle: Names = ...,
+    normals: Names = ...,
+    decoder: Names = ...,
+    channels: Names | None = ...,
+    unpack: bool | None = ...,
+    curve: Names = ...,
+    normalise: bool = ...,
+    space: Names = ...,
+    view_matrix: Names | None = ...,
+    mask: Names | None = ...,
+    nan_share: float = ...,
+    fov: float | None = ...,
+    size: Names = ...,
+) -> Rows:
+    """What block compression loses of a normal map: BC5, BC7, EAC RG11 and ASTC 4x4.
+
+    A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: pip install normalbench[maps].
+
+    Args:
+        encoding: Encodings or GLSL files, comma-separated, or all; `normalbench list` shows them.
+        block: none, bc5, bc7, eac_rg11, astc_4x4; comma-separated, or all.
+        swizzle: rg, rrrg, dxt5nm, rgb; those with room for the code are used.
+        normals: Image files of normals, or bumps (smooth), grain (noise), playground; comma-separated.
+        decoder: model, device; comma-separated, or all.
+        channels: Captures: a layer, or the channels of x,y,z by name.
+        unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
+        curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
+        normalise: Captures: accept normals of any length.
+        space: Captures: view, view-left-handed, world.
+        view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
+        mask: Captures: a file or a channel that is 0 on the background.
+        nan_share: Captures: the share of NaN that is masked and counted.
+        fov: Captures: vertical degrees, for per-pixel view space.
+        size: WIDTHxHEIGHT of the picture of a mesh.
+    """
+
 def cost(
     *,
     encoding: Names = ...,

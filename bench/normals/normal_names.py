@@ -70,7 +70,10 @@ def _check_kind(word: str) -> None:
 
 def say_count_is_unused(options: Any) -> None:
     """Say that --count changes nothing where it is given for files alone."""
-    if not isinstance(options, Reading) or getattr(options, "count", None) == fields_of(type(options))["count"].default:
+    known = fields_of(type(options))
+    if not isinstance(options, Reading) or "count" not in known:
+        return
+    if getattr(options, "count", None) == known["count"].default:
         return
     words = [word.strip() for word in getattr(options, "normals", "").split(",")]
     if all(Path(word).suffix.lower() in ENDINGS for word in words):

@@ -13,6 +13,7 @@ FOLDERS = (
     "quality",
     "render",
     "mix",
+    "maps",
     "cost",
     "effects",
     "motion",

@@ -25,6 +25,7 @@ _SIGNATURES = {
     "glBindTexture": "ui",
     "glTexStorage2D": "uiuii",
     "glGetTexLevelParameteriv": "uiup",
+    "glCompressedTexImage2D": "uiuiiiip",
     "glTexStorage2DMultisample": "uiuiib",
     "glFramebufferTexture2D": "uuuui",
     "glFramebufferTexture": "uuui",
@@ -115,6 +116,21 @@ class DepthBuffer:
     def release(self) -> None:
         """Free it on the device."""
         function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(self._number)))
+
+
+def compressed_texture(size: tuple[int, int], internal_format: int, blocks: bytes) -> int:
+    """A texture of compressed blocks, row by row; its GL number. An unknown format leaves a GL error, and no texels."""
+    number = ctypes.c_uint()
+    function("glGenTextures")(1, ctypes.byref(number))
+    function("glBindTexture")(TEXTURE_2D, number.value)
+    function("glCompressedTexImage2D")(TEXTURE_2D, 0, internal_format, *size, 0, len(blocks), blocks)
+    function("glBindTexture")(TEXTURE_2D, 0)
+    return number.value
+
+
+def delete_texture(number: int) -> None:
+    """Free a texture by its GL number."""
+    function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(number)))
 
 
 def attach_slice(index: int, volume: int, at: int | None) -> None:

@@ -286,7 +286,7 @@ class RoundTrip:
     covered: np.ndarray
 
 
-def _planes(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
+def planes_of(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
     """Normals, view positions and coverage of a set that is an image, pixel by pixel."""
     assert normals.shape
     count, chunks = math.prod(normals.shape), [load() for load in normals.loads()]
@@ -296,14 +296,14 @@ def _planes(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
 def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
     """A set that is an image: normals of shape (height, width, 3), and which pixels are covered."""
     assert normals.shape
-    n, _, covered = _planes(normals)
+    n, _, covered = planes_of(normals)
     return np.stack([np.asarray(p) for p in n], axis=-1).reshape(*normals.shape, 3), covered.reshape(normals.shape)
 
 
 def image_round_trip(case: Case) -> RoundTrip:
     """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
     height, width = case.normal_set.shape or (0, 0)
-    n, view, covered = _planes(case.normal_set)
+    n, view, covered = planes_of(case.normal_set)
 
     def image(planes) -> np.ndarray:
         return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)

@@ -42,7 +42,9 @@ CODECS = [
         else storage.channels > 2
     )
 ]
-CODECS = [codec for codec in CODECS if codec.fits and codec.storage.name != "rgb8_12_12_snorm"]
+# Signed words are not rounded precisely by a layout.
+CODECS = [c for c in CODECS if c.fits and c.storage.name != "rgb8_12_12_snorm"]
+CODECS = [c for c in CODECS if not (c.encoding.is_precise and c.storage.is_packed and c.storage.kind == "snorm")]
 
 
 def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):

@@ -1,0 +1,1 @@
+"""The maps table: what block compression loses of a normal map."""

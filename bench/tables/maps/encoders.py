@@ -1,0 +1,141 @@
+"""Encoders of blocks: packages, which are imported when they are used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from ...output.errors import MissingError
+
+# How hard encoders try: etcpak's BC7 from 0 to 4, quicktex' BC5 from 0 to its largest search, astcenc from 0 to 100.
+BC7_EFFORT, ASTC_EFFORT = 4, 60
+
+
+@dataclass(frozen=True)
+class Texels:
+    """What an encoder is given.
+
+    Attributes:
+        texels: RGBA of 8 bits, row by row.
+        size: width and height, multiples of 4.
+        used: the channels that matter.
+    """
+
+    texels: bytes
+    size: tuple[int, int]
+    used: str
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """A package that compresses textures.
+
+    Attributes:
+        package: what pip calls it; empty for none.
+        modules: what is imported.
+        said: its effort, as a row says it.
+        make: (the modules, texels) -> blocks, row by row.
+        undo: (the modules, blocks, size) -> texels, float32 of shape (height, width, 4); None where nobody needs it.
+    """
+
+    package: str
+    modules: tuple[str, ...]
+    said: str
+    make: Callable[[Sequence[Any], Texels], bytes]
+    undo: Callable[[Sequence[Any], bytes, tuple[int, int]], np.ndarray] | None = None
+
+    @property
+    def release(self) -> str:
+        """Package and version; empty for none."""
+        return f"{self.package} {version(self.package)}" if self.package else ""
+
+    @property
+    def name(self) -> str:
+        """Package, version and effort."""
+        return ", ".join(filter(None, (self.release, self.said)))
+
+    @property
+    def missing(self) -> str:
+        """Why it cannot be used; empty where it can."""
+        try:
+            self._modules()
+        except ImportError as error:
+            return f"it needs {self.package} ({error}); pip install {self.package}"
+        return ""
+
+    def encoded(self, given: Texels) -> bytes:
+        """The blocks of an image, row by row. Raises MissingError where the package is not installed."""
+        return self.make(self._found(), given)
+
+    def decoded(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+        """The texels of blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError as `encoded`."""
+        assert self.undo
+        return self.undo(self._found(), blocks, size)
+
+    def _modules(self) -> list[Any]:
+        return [import_module(name) for name in self.modules]
+
+    def _found(self) -> list[Any]:
+        if missing := self.missing:
+            raise MissingError(missing)
+        return self._modules()
+
+
+def _as_it_is(_: Sequence[Any], given: Texels) -> bytes:
+    return given.texels
+
+
+def _as_it_was(_: Sequence[Any], texels: bytes, size: tuple[int, int]) -> np.ndarray:
+    return np.frombuffer(texels, np.uint8).reshape(size[1], size[0], 4).astype(np.float32) / np.float32(255)
+
+
+def _bc5(modules: Sequence[Any], given: Texels) -> bytes:
+    quicktex, bc5 = modules
+    return bc5.BC5Encoder().encode(quicktex.RawTexture.frombytes(given.texels, *given.size)).tobytes()
+
+
+def _bc7(modules: Sequence[Any], given: Texels) -> bytes:
+    (etcpak,) = modules
+    effort = etcpak.BC7CompressBlockParams()
+    effort.init_linear_weights()
+    effort.m_weights = [int(channel in given.used) for channel in "rgba"]
+    effort.m_uber_level = BC7_EFFORT
+    return etcpak.compress_bc7(given.texels, *given.size, effort)
+
+
+def _rg11(modules: Sequence[Any], given: Texels) -> bytes:
+    (etcpak,) = modules
+    return etcpak.compress_eac_rg(given.texels, *given.size)
+
+
+def _astc_context(astc: Any, used: str) -> Any:
+    settings = astc.ASTCConfig(astc.ASTCProfile.LDR, 4, 4, quality=ASTC_EFFORT)
+    for channel in "rgba":
+        setattr(settings, f"cw_{channel}_weight", float(channel in used))
+    return astc.ASTCContext(settings)
+
+
+def _astc(modules: Sequence[Any], given: Texels) -> bytes:
+    (astc,) = modules
+    image = astc.ASTCImage(astc.ASTCType.U8, *given.size, data=given.texels)
+    return _astc_context(astc, given.used).compress(image, astc.ASTCSwizzle())
+
+
+def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+    """In the precision that the specification asks for, 16-bit floats."""
+    (astc,) = modules
+    image = astc.ASTCImage(astc.ASTCType.F32, *size)
+    _astc_context(astc, "rgba").decompress(blocks, image, astc.ASTCSwizzle())
+    return np.frombuffer(image.data, np.float32).reshape(size[1], size[0], 4)
+
+
+NONE = Encoder("", (), "uncompressed", _as_it_is, _as_it_was)
+QUICKTEX = Encoder("quicktex", ("quicktex", "quicktex.s3tc.bc5"), "rgbcx, default search", _bc5)
+BC7 = Encoder("etcpak", ("etcpak",), f"bc7enc, effort {BC7_EFFORT} of 4", _bc7)
+RG11 = Encoder("etcpak", ("etcpak",), "EAC", _rg11)
+ASTC = Encoder("astc-encoder-py", ("astc_encoder",), f"astcenc, effort {ASTC_EFFORT} of 100", _astc, _astc_texels)

@@ -1,0 +1,124 @@
+"""Block formats and swizzles, as values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from ....encodings.blocks.bits import SIDE
+from ....encodings.blocks.bptc import ONE, decode_bc7
+from ....encodings.blocks.eac import decode_rg11
+from ....encodings.blocks.rgtc import decode_bc5
+from .encoders import ASTC, BC7, NONE, QUICKTEX, RG11, Encoder
+
+# Blocks that are decoded at once, for memory's sake.
+TOGETHER = 2**14
+CHANNELS = "rgba"
+
+
+@dataclass(frozen=True)
+class Swizzle:
+    """Where the numbers of a code lie in a texel.
+
+    Attributes:
+        name: the catalogue's key.
+        laid: what each channel is given: the first, second or third number as `r`, `g` and `b`, or 0 or 1.
+        read: the channel that each number is read from.
+    """
+
+    name: str
+    laid: str
+    read: str
+
+    def texels(self, numbers: np.ndarray) -> np.ndarray:
+        """Numbers, uint8 of shape (height, width, components), as texels, (height, width, 4)."""
+        full = np.full(numbers.shape[:2], ONE, np.uint8)
+        planes = {"0": 0 * full, "1": full, **{CHANNELS[i]: numbers[..., i] for i in range(numbers.shape[-1])}}
+        return np.ascontiguousarray(np.stack([planes[letter] for letter in self.laid], axis=-1))
+
+    def numbers(self, texels: np.ndarray) -> np.ndarray:
+        """The channels of texels, (height, width, 2 or 4), that hold the numbers."""
+        return texels[..., [CHANNELS.index(letter) for letter in self.read]]
+
+
+SWIZZLES: Mapping[str, Swizzle] = MappingProxyType(
+    {
+        "rg": Swizzle("rg", "rg01", "rg"),
+        "rrrg": Swizzle("rrrg", "rrrg", "ra"),
+        "dxt5nm": Swizzle("dxt5nm", "1g1r", "ag"),
+        "rgb": Swizzle("rgb", "rgb1", "rgb"),
+    }
+)
+
+
+@dataclass(frozen=True)
+class BlockFormat:
+    """A format of textures.
+
+    Attributes:
+        name: the catalogue's key.
+        title: what a reader calls it.
+        channels: how many it has.
+        encoder: makes blocks of images.
+        decode: from blocks, uint8 of shape (count, 16), to texels in [0, 1], (count, 16, channels), as the
+            specification says; None where the encoder's package does that.
+        internal_format: the GL enum.
+    """
+
+    name: str
+    title: str
+    channels: int
+    encoder: Encoder
+    decode: Callable[[np.ndarray], np.ndarray] | None = None
+    internal_format: int = 0
+
+    @property
+    def is_compressed(self) -> bool:
+        """Whether texels lie in blocks."""
+        return bool(self.internal_format)
+
+    def bits(self, components: int) -> int:
+        """Bits of a texel: 128 a block, or 8 for each of two channels or four."""
+        return 8 if self.is_compressed else 16 if components == 2 else 32
+
+    def by_specification(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+        """The texels of an image of blocks, row by row, float32 of shape (height, width, channels) in [0, 1].
+
+        Args:
+            size: width and height, multiples of 4.
+        """
+        if self.decode is None:
+            return self.encoder.decoded(blocks, size)
+        given = np.frombuffer(blocks, np.uint8).reshape(-1, 16)
+        parts = [self.decode(given[at : at + TOGETHER]) for at in range(0, len(given), TOGETHER)]
+        width, height = size
+        texels = np.concatenate(parts).reshape(height // SIDE, width // SIDE, SIDE, SIDE, self.channels)
+        return texels.transpose(0, 2, 1, 3, 4).reshape(height, width, self.channels)
+
+
+def _bc7(blocks: np.ndarray) -> np.ndarray:
+    return decode_bc7(blocks).astype(np.float32) / np.float32(ONE)
+
+
+FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
+    {
+        "none": BlockFormat("none", "8 bits", 4, NONE),
+        "bc5": BlockFormat("bc5", "BC5", 2, QUICKTEX, decode_bc5, 0x8DBD),
+        "bc7": BlockFormat("bc7", "BC7", 4, BC7, _bc7, 0x8E8C),
+        "eac_rg11": BlockFormat("eac_rg11", "EAC RG11", 2, RG11, decode_rg11, 0x9272),
+        "astc_4x4": BlockFormat("astc_4x4", "ASTC 4x4", 4, ASTC, None, 0x93B0),
+    }
+)
+
+
+def swizzles_of(made: BlockFormat, components: int, asked: list[Swizzle]) -> list[Swizzle]:
+    """The swizzles to measure a code of so many numbers by; none where it has no room."""
+    if made.channels < components:
+        return []
+    fit = [swizzle for swizzle in asked if len(swizzle.read) == components]
+    # Where there is nothing to choose, the numbers lie in the channels in their order.
+    is_plain = not made.is_compressed or made.channels == components
+    return [s for s in SWIZZLES.values() if s.read == CHANNELS[:components]] if is_plain else fit

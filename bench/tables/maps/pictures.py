@@ -1,0 +1,41 @@
+"""Pictures of what blocks make of a normal map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from ....reports.charts import pictures
+from ...output.writing import whole_file
+from .measure import UNMEASURABLE, Case, Clock, bands, through
+
+# Of the pictures of a codec those that a code in channels of its own does not need.
+KINDS = ("decoded", "error")
+
+
+def stem(case: Case) -> str:
+    """What the files of a case are called, without what they show."""
+    parts = (case.normal_set.name, case.encoding.name, case.block.name, case.swizzle.name, case.decoder)
+    return "-".join(parts).replace("/", "_in_")
+
+
+def write(cases: Iterable[Case], folder: Path) -> None:
+    """The decoded normals and their error, times `pictures.GAIN`, of each case. Raises OSError."""
+    for case in cases:
+        try:
+            found = _drawn(case)
+        except UNMEASURABLE:
+            continue
+        for kind in KINDS:
+            with whole_file(folder / f"{stem(case)}-{kind}.png") as partial:
+                pictures.write_png(partial, found[kind])
+
+
+def _drawn(case: Case) -> dict[str, np.ndarray]:
+    parts = list(bands(case.normal_set))
+    decoded = np.concatenate([through(case, band, Clock()) for band in parts])
+    n = np.concatenate([band.n[: band.real[0], : band.real[1]] for band in parts])
+    covered = np.concatenate([band.covered for band in parts])
+    return pictures.codec_pictures(n, np.zeros_like(n), decoded, covered)

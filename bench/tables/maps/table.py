@@ -1,0 +1,146 @@
+"""The maps table: what block compression loses of a normal map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Annotated
+
+from ...options.option import Encodings, Images, Option, Plot, Reading
+from .. import shared_columns as shared
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+# By format, what it is.
+BLOCKS: Mapping[str, str] = MappingProxyType(
+    {
+        "none": "8 bits a channel, uncompressed: RG8 or RGBA8",
+        "bc5": "two channels of BC4, also called RGTC2, ATI2 and 3Dc",
+        "bc7": "RGBA in one of eight modes, also called BPTC",
+        "eac_rg11": "two channels of EAC, of 11 bits",
+        "astc_4x4": "RGBA in one of many modes, LDR",
+    }
+)
+# By swizzle, which channels hold the numbers of a code.
+SWIZZLES: Mapping[str, str] = MappingProxyType(
+    {
+        "rg": "red and green",
+        "rrrg": "all of red, green and blue, and alpha: what astcenc does with normal maps",
+        "dxt5nm": "alpha and green, the others 1: Unity's",
+        "rgb": "three numbers in red, green and blue",
+    }
+)
+DECODERS: Mapping[str, str] = MappingProxyType(
+    {
+        "model": "as the specification says; ASTC by astcenc",
+        "device": "the GL device, from a texture of the blocks",
+    }
+)
+
+
+def _listed(known: Mapping[str, str]) -> str:
+    return "; ".join(f"{name}: {said}" for name, said in known.items())
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapsOptions(Reading):
+    """What `maps` measures. Names are comma-separated."""
+
+    encoding: Encodings = "xy,hemi_octahedral,octahedral,xyz"
+    block: Annotated[str, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = "all"
+    swizzle: Annotated[str, Option("--swizzle", f"{', '.join(SWIZZLES)}; those with room for the code are used.")] = (
+        "rg,rrrg,rgb"
+    )
+    normals: Annotated[
+        str,
+        Option(
+            "--normals",
+            "Image files of normals, or bumps (smooth), grain (noise), playground; comma-separated.",
+            files=True,
+        ),
+    ] = "bumps,grain"
+    decoder: Annotated[str, Option("--decoder", "model, device; comma-separated, or all.")] = "model"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapsOutputs:
+    """What `maps` writes beside its rows."""
+
+    images: Images = None
+    plot: Plot = None
+
+
+def _angle(name: str, says: str, drops: int = 0) -> Column:
+    return Column(name, says, unit="degrees", better="less", drops=drops)
+
+
+COLUMNS = (
+    shared.ENCODING,
+    Column("block", f"The texture format. {_listed(BLOCKS)}.", KEY),
+    Column("swizzle", f"The channels that hold the code. {_listed(SWIZZLES)}.", KEY),
+    Column("normals", "The image of normals that was measured.", KEY),
+    Column("decoder", f"What decoded the blocks. {_listed(DECODERS)}.", KEY, drops=5),
+    Column("bits_per_texel", "Bits that a texel takes in memory.", unit="bits", better="less"),
+    _angle("angle_mean_deg", "Mean angle between normal and decode."),
+    _angle("angle_rms_deg", "Root of the mean squared angle."),
+    _angle("angle_p99_deg", "99 % of the angles are below it."),
+    _angle("angle_max_deg", "The largest angle."),
+    Column(
+        "psnr_db",
+        "Peak signal-to-noise ratio of the normals, peak 1; decodes are compared as they come, not renormalised.",
+        unit="dB",
+        better="more",
+    ),
+    Column(
+        "code_psnr_db",
+        "Peak signal-to-noise ratio of the channels that hold the code, peak 1, against the 8 bits that were given to "
+        "the encoder; over every texel of the image. It is what texture tools report.",
+        unit="dB",
+        better="more",
+        drops=3,
+    ),
+    Column(
+        "invalid", "Decodes that are NaN or infinite; each counts as the opposite direction.", better="less", drops=2
+    ),
+    Column(
+        "encode_ms_per_megatexel",
+        "Milliseconds that the encoder takes for 2^20 texels, with the threads that its package uses.",
+        Role.TIME,
+        "ms",
+        "less",
+        drops=4,
+    ),
+    Column("count", "How many normals were measured.", HOW, drops=6),
+    Column("background", "Texels without a surface. They hold (0, 0, 1) and do not count.", HOW, drops=7),
+    Column("encoder", "The package that encoded the blocks, and its effort.", HOW, drops=1),
+    Column("device", "What decoded the blocks.", HOW, drops=1),
+    shared.EXACT,
+    shared.SKIPPED,
+)
+
+TABLE = Table(
+    name="maps",
+    package=__package__ or "",
+    help="What block compression loses of a normal map: BC5, BC7, EAC RG11 and ASTC 4x4.\n\n"
+    "A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: "
+    "pip install normalbench[maps].",
+    example="normalbench maps --normals frame.png --encoding xy,octahedral --block bc5,bc7",
+    options=MapsOptions,
+    outputs=MapsOutputs,
+    columns=COLUMNS,
+    usual=(
+        {"encoding": "xy,octahedral,xyz", "normals": "bumps"},
+        {"encoding": "octahedral,xyz", "normals": "playground"},
+    ),
+    single={"encoding": "xy", "block": "bc5", "swizzle": "rg", "normals": "bumps"},
+    section=Section(
+        title="What block compression loses of normal maps",
+        short="Normal maps",
+        intro="BC5, BC7, EAC or ASTC: which format keeps a normal map best, with which code in which channels?",
+        method="Each normal is encoded in 8 bits a channel, the image is compressed by an encoder package, decoded as "
+        "the specification of the format says, and each decoded normal is compared with the one that went in. Images "
+        "whose sides are no multiples of 4 are padded with their edge; only real texels count. Blocks are 4 x 4 "
+        "texels, and a block that crosses the fold of an octahedral code holds both sides of it.",
+    ),
+)

@@ -1,0 +1,193 @@
+"""How the maps table is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....encodings.codecs.encoding import Encoding
+from ....reports.charts import maps as charts
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import check_twin
+from ...codecs.user_encodings import encodings_named
+from ...machine.devices import require_device, require_jax
+from ...metrics import published
+from ...normals.normal_names import normal_sets_named
+from ...normals.normal_sets import NormalSet
+from ...options.counts import DEFAULT_COUNT
+from ...options.targets import what_is_left
+from ...options.words import Words, given_in
+from ...output.errors import MissingError, UsageError, leave_out, pick
+from ...output.writing import check_folder, check_plot, save_plot
+from ..charts import drawing, having
+from ..table import Measured, Row, Sheet, Step, Work, each
+from . import measure, pictures
+from .formats import FORMATS, SWIZZLES, BlockFormat, swizzles_of
+from .measure import Case
+from .sets import MAPS
+from .table import TABLE, MapsOptions, MapsOutputs
+
+
+def cases(options: MapsOptions) -> list[Case]:
+    """One case for each row; what does not fit is named on standard error.
+
+    Raises:
+        UsageError: unknown names, a file that cannot be read, no image, or nothing that fits.
+        MissingError: an encoder that is asked for is not installed, or there is no GL device to decode by.
+    """
+    blocks, asked = _blocks(options.block), pick("swizzle", options.swizzle, SWIZZLES)
+    decoders = pick("decoder", options.decoder, {name: name for name in measure.DECODERS})
+    encodings = encodings_named(options.encoding)
+    require_jax()
+    if decoders == ["device"]:
+        require_device()
+    complaints, no_room = list[str](), list[str]()
+    fitting = [
+        (encoding, block, swizzle)
+        for encoding in encodings
+        if _is_possible(encoding, complaints)
+        for block in blocks
+        for swizzle in _swizzles(encoding, block, asked, no_room)
+    ]
+    # Where all formats are asked for, those with room for a code are meant.
+    complaints += [] if fitting and _names_all(options.block) else no_room
+    sets = _images(options, any(encoding.domain == "view" for encoding in encodings))
+    left = what_is_left(fitting, complaints)
+    return [Case(*one, normals, decoder) for normals in sets for one in left for decoder in decoders]
+
+
+def _blocks(names: str) -> list[BlockFormat]:
+    """The formats asked for. Of "all" those are left out whose encoder is not installed."""
+    chosen = pick("block format", names, FORMATS)
+    missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
+    left = [block for block in chosen if block.name not in missing]
+    if missing and not (_names_all(names) and any(block.is_compressed for block in left)):
+        raise MissingError("; ".join(f"{name}: {why}" for name, why in missing.items()))
+    for name, why in missing.items():
+        leave_out(f"{name}: {why}")
+    return left
+
+
+def _names_all(names: str) -> bool:
+    return "all" in map(str.strip, names.split(","))
+
+
+def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
+    """Whether the numbers of a code can be compressed: two or three that may be a little off."""
+    check_twin(encoding)
+    why = ""
+    if encoding.sign_bits:
+        why = "its sign bit has no channel in a normal map"
+    elif encoding.components == 1 or any(map(encoding.levels_of, range(encoding.components))):
+        why = "compression changes its numbers a little, and it needs them exact"
+    if why:
+        complaints.append(f"{encoding.name}: {why}")
+    return not why
+
+
+def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complaints: list[str]) -> list[Any]:
+    found = swizzles_of(block, encoding.components, asked)
+    if not found and block.channels < encoding.components:
+        complaints.append(
+            f"{encoding.name}: {encoding.components} components, but {block.title} has {block.channels} channels"
+        )
+    elif not found:
+        names = ", ".join(swizzle.name for swizzle in asked)
+        complaints.append(f"{encoding.name} in {block.title}: {encoding.components} components do not lie in {names}")
+    return found
+
+
+def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
+    """The sets that are images. Raises UsageError where one is not."""
+    own = {word: MAPS[word]() for word in map(str.strip, options.normals.split(",")) if word in MAPS}
+    words = Words(options.normals.split(","), {**own, **given_in(options.normals)})
+    found = normal_sets_named(words, DEFAULT_COUNT, 0, options.reading, needs_rays)
+    others = [normals.name for normals in found if not normals.shape]
+    if others:
+        known = ", ".join((*MAPS, published.NORMALS))
+        raise UsageError(f"--normals {', '.join(others)}: not an image; name {known}, or an image file")
+    return found
+
+
+def _steps(options: MapsOptions, outputs: MapsOutputs) -> list[Step]:
+    made = cases(options)
+    check_plot(outputs.plot)
+    if outputs.images:
+        check_folder(outputs.images)
+    return [Step(_key(case), case, case.name) for case in made]
+
+
+def _key(case: Case) -> Row:
+    key: Row = {"encoding": case.encoding.name, "block": case.block.name, "swizzle": case.swizzle.name}
+    return key | {"normals": case.normal_set.name, "decoder": case.decoder, "encoder": case.block.encoder.name}
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by set and decoder, the least RMS angle first; those without figures last."""
+    groups = list(dict.fromkeys(_group(row) for row in rows))
+
+    def place(row: Row) -> tuple[int, bool, float]:
+        rms = row["angle_rms_deg"]
+        return groups.index(_group(row)), rms is None, rms or 0.0
+
+    return sorted(rows, key=place)
+
+
+def _group(row: Row) -> tuple[str, str]:
+    return row["normals"], row["decoder"]
+
+
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["invalid"]:
+            yield f"{TABLE.name_of(row)}: {row['invalid']} decodes are NaN or infinite"
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    names = ("encoding", "block", "swizzle", "bits_per_texel", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg")
+    names += ("angle_max_deg", "psnr_db")
+    for normals, decoder in dict.fromkeys(_group(row) for row in rows):
+        part = [row for row in in_order(rows) if _group(row) == (normals, decoder) and row["angle_rms_deg"] is not None]
+        if part:
+            shown = [{name: row[name] for name in names} for row in part]
+            yield Sheet(f"{normals} in blocks, decoded by {decoder}", shown, keys={"normals": normals})
+
+
+def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = having(rows, "angle_mean_deg", "angle_p99_deg", "angle_max_deg")
+    for at, group in enumerate(dict.fromkeys(_group(row) for row in usable)):
+        part = [row for row in in_order(usable) if _group(row) == group]
+        title = f"What blocks lose of {group[0]}, decoded by {group[1]}"
+        said = (
+            "The mean angle, the angle that 99 % are below, and the largest, in degrees, for each code and format. The "
+        )
+        said += "figures are in the table below."
+        yield drawing(f"maps-{at}", title, said, part, charts.maps_chart, charts.maps_specs)
+
+
+def _write(done: Measured, _: Any) -> None:
+    if done.outputs.images:
+        pictures.write([step.case for step in done.steps], done.outputs.images)
+    if done.outputs.plot:
+        usable = having(in_order(done.rows), "angle_mean_deg", "angle_p99_deg", "angle_max_deg")
+        save_plot(done.outputs.plot, charts.maps_chart(usable))
+
+
+def _missing() -> str:
+    """Why a run leaves the table out: none of the encoders is installed."""
+    compressed = [block for block in FORMATS.values() if block.is_compressed]
+    if all(block.encoder.missing for block in compressed):
+        return "compressed normal maps need encoders; pip install normalbench[maps]"
+    return ""
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(measure.measure),
+    finish=in_order,
+    summary=_summary,
+    warnings=_warnings,
+    write=_write,
+    drawings=_drawings,
+    missing=_missing,
+)

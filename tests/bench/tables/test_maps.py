@@ -1,0 +1,234 @@
+"""`normalbench maps`: what block compression loses of normal maps, and what it refuses."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import texture2ddecoder
+from PIL import Image
+from written import png_bytes
+
+from normalbench.bench.normals.normal_sets import NORMAL_SETS, from_arrays
+from normalbench.bench.tables.maps import encoders
+from normalbench.bench.tables.maps.encoders import Texels
+from normalbench.bench.tables.maps.formats import FORMATS, SWIZZLES, swizzles_of
+from normalbench.bench.tables.maps.measure import Case, Clock, bands, code_texels, measure, through
+from normalbench.bench.tables.maps.sets import MAPS, SIZE
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.gl.device import device
+
+# Each format with the swizzle that suits two numbers, and what an independent tool decodes its blocks by.
+TOOLS = {
+    "bc5": ("rg", texture2ddecoder.decode_bc5),
+    "bc7": ("rrrg", texture2ddecoder.decode_bc7),
+    "eac_rg11": ("rg", texture2ddecoder.decode_eacrg),
+    "astc_4x4": ("rrrg", lambda blocks, width, height: texture2ddecoder.decode_astc(blocks, width, height, 4, 4)),
+}
+
+
+def case(normals, block="bc5", swizzle="rg", encoding="xy", decoder="model"):
+    return Case(ENCODINGS[encoding], FORMATS[block], SWIZZLES[swizzle], normals, decoder)
+
+
+def psnr_db(numbers, given):
+    return 10 * np.log10(1 / np.mean((numbers.astype(np.float64) - given / 255) ** 2))
+
+
+def small(height, width, covered=None):
+    """The corner of the smooth map as a set of its own."""
+    n, _ = quality.image_of(MAPS["bumps"]())
+    n = n[:height, :width]
+    covered = np.ones((height, width), bool) if covered is None else covered
+    return from_arrays("corner", "a corner", n, np.broadcast_to(np.float32([0, 0, -1]), n.shape), covered, n.shape[:2])
+
+
+@pytest.mark.parametrize("name", MAPS)
+@pytest.mark.parametrize("block", TOOLS)
+def test_the_psnr_of_the_channels_is_what_another_tool_gives(block, name):
+    """The same blocks by texture2ddecoder, which gives 8 bits: the same of BC7. EAC has 11 bits, BC5 is exact between
+    its ends and ASTC is in 16-bit floats: on noise 8 bits hardly matter, on the smooth map they are 0.2 and 0.7 dB."""
+    swizzle, tool = TOOLS[block]
+    one = case(MAPS[name](), block, swizzle)
+    (band,) = bands(one.normal_set)
+    given = code_texels(one.codec, band)
+    texels = Texels(one.swizzle.texels(given).tobytes(), (SIZE, SIZE), one.swizzle.read)
+    blocks = one.block.encoder.encoded(texels)
+    theirs = np.frombuffer(tool(blocks, SIZE, SIZE), np.uint8).reshape(SIZE, SIZE, 4)[..., [2, 1, 0, 3]]
+    ours = one.swizzle.numbers(one.block.by_specification(blocks, (SIZE, SIZE)))
+    (row,) = measure(one)
+    assert row["code_psnr_db"] == pytest.approx(psnr_db(ours, given), abs=1e-9)
+    apart = row["code_psnr_db"] - psnr_db(one.swizzle.numbers(theirs) / 255, given)
+    most = {"bc7": 1e-4}.get(block, 0.1 if name == "grain" else {"astc_4x4": 0.7, "bc5": 0.2}.get(block, 0.1))
+    assert abs(apart) < most, f"{apart} dB"
+    if block == "bc5":
+        cut = np.floor(ours.astype(np.float64) * 255 + 1e-3) / 255
+        assert psnr_db(cut, given) == pytest.approx(psnr_db(one.swizzle.numbers(theirs) / 255, given), abs=1e-6)
+
+
+@pytest.mark.parametrize(("encoding", "swizzle", "storage"), [("octahedral", "rg", "rg8"), ("xyz", "rgb", "rgba8")])
+def test_what_is_not_compressed_is_a_row_of_quality(encoding, swizzle, storage):
+    """But for the last place of float32."""
+    normals = NORMAL_SETS["playground"](0, 0)
+    (row,) = measure(case(normals, "none", swizzle, encoding))
+    same = quality.measure(quality.Case(Codec(ENCODINGS[encoding], STORAGES[storage]), normals, "jax"))
+    for column in ("psnr_db", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg", "angle_max_deg", "count"):
+        assert row[column] == pytest.approx(same[column], rel=1e-4), column
+    assert row["bits_per_texel"] == same["bits"] + (8 if encoding == "xyz" else 0)
+
+
+def test_the_angles_are_those_of_the_decoded_normals():
+    one = case(MAPS["bumps"]())
+    (band,) = bands(one.normal_set)
+    found = through(one, band, Clock()).astype(np.float64)
+    n = band.n.astype(np.float64)
+    cosines = np.sum(n * found, axis=-1) / np.linalg.norm(found, axis=-1) / np.linalg.norm(n, axis=-1)
+    angles = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    (row,) = measure(one)
+    figures = [row[f"angle_{name}_deg"] for name in ("mean", "rms", "p99", "max")]
+    expected = [angles.mean(), np.sqrt(np.mean(angles**2)), np.percentile(angles, 99), angles.max()]
+    assert figures == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("block", FORMATS)
+def test_only_real_texels_count_and_the_edge_is_repeated(block):
+    """7 x 5 texels give the same as the real ones of 8 x 8 whose edge is repeated by hand."""
+    odd = case(small(7, 5), block)
+    (band,) = bands(odd.normal_set)
+    assert band.n.shape[:2] == (8, 8) and np.array_equal(band.n[7, :5], band.n[6, :5])
+    n = np.pad(quality.image_of(odd.normal_set)[0], [(0, 1), (0, 3), (0, 0)], mode="edge")
+    view = np.broadcast_to(np.float32([0, 0, -1]), n.shape)
+    even = from_arrays("even", "", n, view, np.ones((8, 8), bool), (8, 8))
+    whole = through(replace(odd, normal_set=even), next(bands(even)), Clock())
+    clock = Clock()
+    assert np.array_equal(through(odd, band, clock), whole[:7, :5])
+    assert (clock.texels, clock.numbers) == (64, 7 * 5 * 2) and measure(odd)[0]["count"] == 35
+
+
+def test_texels_without_a_surface_are_flat_and_do_not_count():
+    covered = np.ones((8, 8), bool)
+    covered[:, 4:] = False
+    one = case(small(8, 8, covered))
+    (band,) = bands(one.normal_set)
+    assert (band.n[:, 4:] == [0, 0, 1]).all()
+    (row,) = measure(one)
+    assert (row["count"], row["background"], row["invalid"]) == (32, 32, 0)
+
+
+def test_a_large_image_is_compressed_in_bands_of_whole_blocks():
+    parts = list(bands(from_arrays("large", "", *[np.ones((601, 1001, 3), np.float32)] * 2, np.ones((601, 1001), bool),
+                                   (601, 1001))))  # fmt: skip
+    assert len(parts) == 3 and sum(band.real[0] for band in parts) == 601
+    assert all(band.n.shape[0] % 4 == band.n.shape[1] % 4 == 0 and band.n.size <= 3 * 2**18 for band in parts)
+
+
+def test_a_swizzle_gives_back_the_numbers_it_was_given():
+    numbers = np.random.default_rng(7).integers(0, 256, (4, 4, 3), np.uint8)
+    for swizzle in SWIZZLES.values():
+        given = numbers[..., : len(swizzle.read)]
+        assert np.array_equal(swizzle.numbers(swizzle.texels(given)), given), swizzle.name
+
+
+def test_two_channels_leave_nothing_to_choose():
+    rrrg = [SWIZZLES["rrrg"]]
+    assert [s.name for s in swizzles_of(FORMATS["bc5"], 2, rrrg)] == ["rg"]
+    assert [s.name for s in swizzles_of(FORMATS["bc7"], 2, rrrg)] == ["rrrg"]
+    assert not swizzles_of(FORMATS["eac_rg11"], 3, rrrg) and not swizzles_of(FORMATS["astc_4x4"], 3, rrrg)
+
+
+def test_blocks_that_cross_the_fold_of_an_octahedral_code_are_the_long_tail():
+    """Of the scene with silhouettes: the mean grows by half, the largest angle more than tenfold."""
+    none, bc5 = (
+        measure(case(NORMAL_SETS["playground"](0, 0), block, encoding="octahedral"))[0] for block in ("none", "bc5")
+    )
+    assert bc5["angle_mean_deg"] < 1.6 * none["angle_mean_deg"], bc5["angle_mean_deg"]
+    assert bc5["angle_max_deg"] > 10 * none["angle_max_deg"], bc5["angle_max_deg"]
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_device_decodes_bc7_as_the_model_does():
+    model, decoded = (measure(case(MAPS["bumps"](), "bc7", decoder=name))[0] for name in ("model", "device"))
+    for column in ("psnr_db", "angle_mean_deg", "angle_max_deg", "code_psnr_db"):
+        assert decoded[column] == pytest.approx(model[column], rel=1e-6), column
+    assert decoded["device"] == device().renderer and model["device"] == "NumPy, exact"
+
+
+def test_the_command_measures_a_file_and_names_its_rows(run, tmp_path):
+    n = quality.image_of(small(30, 22))[0]
+    (tmp_path / "map.png").write_bytes(png_bytes(np.rint((n * 0.5 + 0.5) * 65535).astype(np.uint16)))
+    words = ("--normals", str(tmp_path / "map.png"), "--encoding", "xy,xyz")
+    status, out, err = run("maps", *words, "--format", "json")
+    rows = json.loads(out)
+    assert (status, err.count("left out")) == (0, 0), "of all formats, those with room are meant"
+    assert all(tuple(row) == tuple(TABLES["maps"].empty()) for row in rows)
+    assert len(rows) == 10 == len({TABLES["maps"].name_of(row) for row in rows})
+    rms = [row["angle_rms_deg"] for row in rows]
+    assert rms == sorted(rms) and {row["count"] for row in rows} == {660}
+    (bc5,) = [row for row in rows if row["block"] == "bc5"]
+    assert bc5["encoder"].startswith("quicktex 0.") and bc5["encode_ms_per_megatexel"] > 0
+
+
+def test_what_a_named_format_has_no_room_for_is_said(run):
+    status, out, err = run("maps", "--normals", "bumps", "--encoding", "xy,xyz", "--block", "bc5", "--format", "json")
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["xy"]
+    assert "left out: xyz: 3 components, but BC5 has 2 channels" in err
+
+
+@pytest.mark.slow
+def test_pictures_and_the_plot_show_something(run, tmp_path):
+    words = ("--normals", "bumps", "--encoding", "xy", "--block", "bc5,bc7", "--images", str(tmp_path / "p"))
+    status, *_ = run("maps", *words, "--plot", str(tmp_path / "plot.png"))
+    found = sorted(path.name for path in (tmp_path / "p").iterdir())
+    assert status == 0 and len(found) == 6 and "bumps-xy-bc7-rrrg-model-error.png" in found
+    for path in [*(tmp_path / "p").iterdir(), tmp_path / "plot.png"]:
+        pixels = np.asarray(Image.open(path).convert("RGB"))
+        assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 50 and pixels.mean() > 5, path.name
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--normals", "sphere"), "--normals sphere: not an image; name bumps, grain, playground, or an image file"),
+        (("--block", "bc6"), "unknown block format 'bc6'"),
+        (("--swizzle", "bgr"), "unknown swizzle 'bgr'"),
+        (("--decoder", "gpu"), "unknown decoder 'gpu'"),
+        (("--encoding", "xy_sign"), "xy_sign: its sign bit has no channel in a normal map"),
+        (("--encoding", "spherical_fibonacci"), "compression changes its numbers a little, and it needs them exact"),
+        (("--encoding", "xyz", "--block", "bc5"), "xyz: 3 components, but BC5 has 2 channels"),
+        (("--encoding", "xy", "--block", "bc7", "--swizzle", "rgb"), "xy in BC7: 2 components do not lie in rgb"),
+        (("--normals", "none.png"), "none.png: there is no such file"),
+    ],
+)
+def test_bad_input_is_one_line(run, words, said):
+    status, out, err = run("maps", *words)
+    assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
+
+
+def test_a_missing_encoder_is_named(run, monkeypatch):
+    """Asked for, it is exit status 3; of all formats the others are measured."""
+    there = encoders.import_module
+
+    def import_module(name):
+        if name.startswith("quicktex"):
+            raise ImportError("No module named 'quicktex'")
+        return there(name)
+
+    monkeypatch.setattr(encoders, "import_module", import_module)
+    status, out, err = run("maps", "--block", "bc5")
+    assert (status, out, err.count("\n")) == (3, "", 1) and "pip install quicktex" in err
+    status, out, err = run("maps", "--encoding", "xy", "--normals", "bumps", "--format", "json")
+    assert status == 0 and "left out: bc5: it needs quicktex" in err
+    assert {row["block"] for row in json.loads(out)} == set(FORMATS) - {"bc5"}
+    monkeypatch.setattr(encoders, "import_module", lambda name: there("no_such_module_as_" + name))
+    assert "pip install normalbench[maps]" in TABLES["maps"].work.missing()
+
+
+def test_a_gate_may_hold_a_row(run, tmp_path):
+    gate = '[[gate]]\ntable = "maps"\nencoding = "xy"\nblock = "{}"\nangle_mean_deg = "at most 0.5"\n'
+    for block, status in (("bc5", 0), ("eac_rg11", 1)):
+        (tmp_path / "gates.toml").write_text(gate.format(block))
+        assert run("check", str(tmp_path / "gates.toml"))[0] == status, block

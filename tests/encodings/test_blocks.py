@@ -1,0 +1,101 @@
+"""Decoders of compressed blocks, against texture2ddecoder's and the GL device's, and against values by hand."""
+
+import numpy as np
+import pytest
+import texture2ddecoder
+from blocks import bc7_blocks, by_block, from_bgra, random_blocks
+
+from normalbench.encodings.blocks.bptc import decode_bc7
+from normalbench.encodings.blocks.eac import eac_r11
+from normalbench.encodings.blocks.rgtc import PARTS, bc4_parts, decode_bc5
+from normalbench.gbuffer.gl.compressed import device_texels
+from normalbench.gbuffer.gl.device import FormatError
+
+COUNT = 10_000
+# GL enums: BC7, BC5 and EAC RG11, the last two unsigned and signed.
+BC7, BC5, BC5_SIGNED, RG11, RG11_SIGNED = 0x8E8C, 0x8DBD, 0x8DBE, 0x9272, 0x9273
+
+
+def halves(decode, blocks, *options):
+    """Both halves of 16 bytes by a decoder of 8, (count, 16, 2)."""
+    return np.stack([decode(np.ascontiguousarray(blocks[:, at : at + 8]), *options) for at in (0, 8)], axis=2)
+
+
+def on_device(gl, blocks, internal_format):
+    """Blocks as the GL device decodes them, (count, 16, 4); a row of blocks at a time."""
+    rows = blocks.reshape(-1, 1000, 16)
+    images = (device_texels(gl, row.tobytes(), (4000, 4), internal_format) for row in rows)
+    return np.concatenate([by_block(image) for image in images])
+
+
+def test_bc7_is_what_an_independent_decoder_gives():
+    """Bit for bit, all eight modes and the reserved one."""
+    blocks = bc7_blocks(COUNT, seed=1)
+    expected = from_bgra(texture2ddecoder.decode_bc7(blocks.tobytes(), 4 * COUNT, 4), COUNT)
+    wrong = np.flatnonzero((decode_bc7(blocks) != expected).any(axis=(1, 2)))
+    # What texture2ddecoder does with the reserved mode is its own; the specification says 0.
+    wrong = wrong[wrong != COUNT - 1]
+    assert not len(wrong), f"{len(wrong)} blocks differ, the first of mode {wrong[0] % 8}: {blocks[wrong[0]]}"
+    assert not decode_bc7(blocks)[-1].any()
+
+
+def test_bc7_is_what_the_device_decodes(gl):
+    """Bit for bit: a float of the device is a whole number of 255ths."""
+    blocks = bc7_blocks(COUNT, seed=2)
+    found = on_device(gl, blocks, BC7)[:-1] * 255
+    apart = np.abs(found - decode_bc7(blocks)[:-1])
+    assert apart.max() < 1e-3, f"{apart.max()} of 255, block {blocks[apart.max(axis=(1, 2)).argmax()]}"
+
+
+def test_bc5_is_what_an_independent_decoder_gives_before_it_rounds():
+    """texture2ddecoder cuts off to 8 bits, the specification does not: the whole steps agree bit for bit."""
+    blocks = random_blocks(COUNT, seed=3)
+    expected = from_bgra(texture2ddecoder.decode_bc5(blocks.tobytes(), 4 * COUNT, 4), COUNT)[..., :2]
+    wrong = (halves(bc4_parts, blocks) // PARTS != expected).any(axis=(1, 2))
+    assert not wrong.any(), f"{wrong.sum()} blocks differ, the first: {blocks[wrong.argmax()]}"
+
+
+def test_the_device_decodes_bc5_within_two_steps(gl):
+    """llvmpipe keeps 8 bits and is a step too low between ends in ascending order; the specification rounds nothing."""
+    blocks = random_blocks(COUNT, seed=4)
+    for internal_format, is_signed, one in ((BC5, False, 255), (BC5_SIGNED, True, 127)):
+        apart = np.abs(on_device(gl, blocks, internal_format)[..., :2] - decode_bc5(blocks, is_signed)) * one
+        assert apart.max() < 2, f"{apart.max()} steps, signed: {is_signed}"
+
+
+def test_values_between_the_ends_of_bc4_are_exact():
+    """Of the ends 255 and 0 the eight values are 1, 0 and six sevenths, of 0 and 255 fifths, 0 and 1."""
+    codes = sum(k % 8 << 3 * k for k in range(16)).to_bytes(6, "little")
+    blocks = np.frombuffer(bytes([255, 0]) + codes + bytes([0, 255]) + codes, np.uint8).reshape(2, 8)
+    down, up = bc4_parts(blocks)[:, :8] / (255 * PARTS)
+    assert down == pytest.approx([1, 0, 6 / 7, 5 / 7, 4 / 7, 3 / 7, 2 / 7, 1 / 7])
+    assert up == pytest.approx([0, 1, 1 / 5, 2 / 5, 3 / 5, 4 / 5, 0, 1])
+
+
+def test_the_lowest_end_of_signed_bc4_is_minus_one():
+    """-128 is -1, as -127 is; and it is compared before that."""
+    blocks = np.frombuffer(bytes([0x80, 0x81]) + bytes(6), np.uint8).reshape(1, 8)
+    assert (bc4_parts(blocks, True) == -127 * PARTS).all()
+
+
+def test_eac_is_what_an_independent_decoder_gives():
+    """texture2ddecoder keeps the upper 8 of 11 bits."""
+    blocks = random_blocks(COUNT, seed=5)
+    expected = from_bgra(texture2ddecoder.decode_eacrg(blocks.tobytes(), 4 * COUNT, 4), COUNT)[..., :2]
+    wrong = (halves(eac_r11, blocks) >> 3 != expected).any(axis=(1, 2))
+    assert not wrong.any(), f"{wrong.sum()} blocks differ, the first: {blocks[wrong.argmax()]}"
+
+
+@pytest.mark.parametrize(("internal_format", "is_signed", "one"), [(RG11, False, 2047), (RG11_SIGNED, True, 1023)])
+def test_eac_is_what_the_device_decodes(gl, internal_format, is_signed, one):
+    """In 11 bits, of which the device makes 16: a thirtieth of a step is its own rounding."""
+    blocks = random_blocks(COUNT, seed=6)
+    apart = np.abs(on_device(gl, blocks, internal_format)[..., :2] * one - halves(eac_r11, blocks, is_signed))
+    assert apart.max() < 0.04, f"{apart.max()} steps of {one}"
+
+
+def test_a_format_that_the_device_lacks_is_named(gl):
+    with pytest.raises(FormatError, match="no textures of this compressed format"):
+        device_texels(gl, bytes(16), (4, 4), 0x1234)
+    with pytest.raises(FormatError, match="texels a side"):
+        device_texels(gl, b"", (1 << 20, 4), BC7)
