@@ -18,6 +18,7 @@ FOLDERS = (
     "lights",
     "depth",
     "tangent_frames",
+    "vectors",
     "sweep",
     "tune",
     "published",

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..page.verdict import is_number
-from .plots import COLOURS, drawn_off_screen
+from .plots import COLOURS, DASHES, drawn_off_screen
 
 Row = dict[str, Any]
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
@@ -130,6 +130,42 @@ def effects_chart(rows: Sequence[Row]) -> Any:
     axis.grid(alpha=0.3)
     axis.figure.legend(loc="outside upper center", ncols=4, fontsize=8, frameon=False)
     return axis.figure
+
+
+def vectors_chart(rows: Sequence[Row]) -> Any:
+    """The mean error of motion vectors over their speed: a panel for each number of bits, a line for each code.
+
+    Args:
+        rows: of the vectors table, one back end: encoding, storage, bits, speed, error_mean_px.
+    """
+    encodings, all_bits = (list(dict.fromkeys(row[name] for row in rows)) for name in ("encoding", "bits"))
+    figure, panels = _figure((1.4 + 3.6 * len(all_bits), 5.6), ncols=len(all_bits), sharey=True, squeeze=False)
+    for axis, bits in zip(panels[0], all_bits, strict=True):
+        part = [row for row in rows if row["bits"] == bits]
+        for at, (name, line) in enumerate(vector_lines(part).items()):
+            colour = COLOURS[encodings.index(line[0]["encoding"]) % len(COLOURS)]
+            errors = [row["error_mean_px"] for row in line]
+            dash = DASHES[at % len(DASHES)]
+            axis.plot([row["speed"] for row in line], errors, color=colour, linestyle=dash, marker=".", label=name)
+        speeds = sorted({row["speed"] for row in part})
+        axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1)
+        axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
+        axis.xaxis.set_major_formatter("{x:g}")
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
+    panels[0][0].set_ylabel("mean error, pixels")
+    return figure
+
+
+def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """The rows of each code by its name, by speed; without those of no error, which have no logarithm."""
+    several = len({row.get("range") for row in rows if row.get("range")}) > 1
+    lines: dict[str, list[Row]] = {}
+    for row in sorted(rows, key=lambda row: row["speed"]):
+        if row["error_mean_px"] > 0:
+            ending = f" range {row['range']:g}" if several and row.get("range") else ""
+            lines.setdefault(codec_label(row) + ending, []).append(row)
+    return lines
 
 
 # Angles from the least to the largest that the colours of mixes tell apart.
