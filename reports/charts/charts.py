@@ -148,11 +148,11 @@ def vectors_chart(rows: Sequence[Row]) -> Any:
             dash = DASHES[at % len(DASHES)]
             axis.plot([row["speed"] for row in line], errors, color=colour, linestyle=dash, marker=".", label=name)
         speeds = sorted({row["speed"] for row in part})
-        axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1)
+        axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1, label="as large as the motion")
         axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
         axis.xaxis.set_major_formatter("{x:g}")
         axis.grid(alpha=0.3)
-        axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
+        axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False, handlelength=5)
     panels[0][0].set_ylabel("mean error, pixels")
     return figure
 

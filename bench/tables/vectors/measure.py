@@ -178,13 +178,14 @@ def _least(trip: Trip, rest: np.ndarray, case: Case) -> float:
         motions = (tried[..., None] * DIRECTIONS[:, None]).astype(np.float32)
         told = (trip(motions.reshape(-1, NUMBERS)) != rest[0]).any(axis=-1).reshape(tried.shape)
         low, high = _around(tried, told)
-    return float((high * (abs(DIRECTIONS) @ case.paths.size)).max())
+    return float((np.where(high > LEAST, high, 0.0) * (abs(DIRECTIONS) @ case.paths.size)).max())
 
 
 def _around(tried: np.ndarray, told: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of ascending motions in each direction the last that is not told from rest, and the next; 0 where all are."""
-    last = tried.shape[1] - 1 - np.argmax(~told[:, ::-1], axis=1)
-    after = np.minimum(last + 1, tried.shape[1] - 1)
-    low, high = (np.take_along_axis(tried, at[:, None], axis=1)[:, 0] for at in (last, after))
-    everything = told.all(axis=1)
-    return np.where(everything, 0.0, low), np.where(everything, 0.0, high)
+    """Of ascending motions in each direction the last that is not told from rest, and the next; the first where all
+    are told from it."""
+    end, everything = tried.shape[1] - 1, told.all(axis=1)
+    last = np.where(everything, 0, end - np.argmax(~told[:, ::-1], axis=1))
+    after = np.where(everything, 0, np.minimum(last + 1, end))
+    directions = np.arange(len(tried))
+    return tried[directions, last], tried[directions, after]
