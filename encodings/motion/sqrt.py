@@ -25,8 +25,8 @@ ENCODING = MotionEncoding(
     encode=encode,
     decode=decode,
     storages=("rg16", "rg16_centred", "rg16_snorm", "rgb10a2_centred", "rg8", "rg8_centred", "rg8_snorm"),
-    citation="Crytek, CryENGINE 3: UNORM 8:8 with no motion at 127 / 255; Epic Games, Unreal Engine 5, Common.ush: "
-    "UNORM 16:16 with no motion at 32767 / 65535",
+    citation="Epic Games, Unreal Engine 5.7, Common.ush: UNORM 16:16 with no motion at 32767 / 65535; L. Vutner after "
+    "Crytek, CryENGINE 3: UNORM 8:8 with no motion at 127 / 255",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(2, 2),
     ulps_reason="a division and a root, which halves its error; two products",
