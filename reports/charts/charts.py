@@ -138,23 +138,29 @@ def vectors_chart(rows: Sequence[Row]) -> Any:
     Args:
         rows: of the vectors table, one back end: encoding, storage, bits, speed, error_mean_px.
     """
-    encodings, all_bits = (list(dict.fromkeys(row[name] for row in rows)) for name in ("encoding", "bits"))
-    figure, panels = _figure((1.4 + 3.6 * len(all_bits), 5.6), ncols=len(all_bits), sharey=True, squeeze=False)
-    for axis, bits in zip(panels[0], all_bits, strict=True):
-        part = [row for row in rows if row["bits"] == bits]
-        for at, (name, line) in enumerate(vector_lines(part).items()):
+    encodings, all_bits = list(dict.fromkeys(row["encoding"] for row in rows)), sorted({row["bits"] for row in rows})
+    parts = [[row for row in rows if row["bits"] == bits] for bits in all_bits]
+    height = 3.9 + 0.17 * (1 + max(len(vector_lines(part)) for part in parts))
+    figure, panels = _figure((1.4 + 3.6 * len(parts), height), ncols=len(parts), sharey=True, squeeze=False)
+    for axis, part in zip(panels[0], parts, strict=True):
+        storages = list(dict.fromkeys(row["storage"] for row in part))
+        for name, line in vector_lines(part).items():
             colour = COLOURS[encodings.index(line[0]["encoding"]) % len(COLOURS)]
+            dash = DASHES[storages.index(line[0]["storage"]) % len(DASHES)]
             errors = [row["error_mean_px"] for row in line]
-            dash = DASHES[at % len(DASHES)]
             axis.plot([row["speed"] for row in line], errors, color=colour, linestyle=dash, marker=".", label=name)
-        speeds = sorted({row["speed"] for row in part})
-        axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1, label="as large as the motion")
-        axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
-        axis.xaxis.set_major_formatter("{x:g}")
-        axis.grid(alpha=0.3)
-        axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False, handlelength=5)
+        _speeds(axis, sorted({row["speed"] for row in part}), part[0]["bits"])
     panels[0][0].set_ylabel("mean error, pixels")
     return figure
+
+
+def _speeds(axis: Any, speeds: list[float], bits: int) -> None:
+    """A panel's axes, and the line of what is lost."""
+    axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1, label="as large as the motion")
+    axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
+    axis.xaxis.set_major_formatter("{x:g}")
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False, handlelength=5)
 
 
 def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:

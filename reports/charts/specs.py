@@ -311,10 +311,14 @@ def vectors_specs(rows: Sequence[Row]) -> list[Spec]:
     Args:
         rows: as `charts.vectors_chart` takes them.
     """
-    return [_vectors([r for r in rows if r["bits"] == bits], bits) for bits in dict.fromkeys(r["bits"] for r in rows)]
+    # An encoding has one colour in all charts.
+    colour = _named("encoding")
+    colour["scale"] |= {"domain": list(dict.fromkeys(row["encoding"] for row in rows))}
+    all_bits = sorted({row["bits"] for row in rows})
+    return [_vectors([row for row in rows if row["bits"] == bits], bits, colour) for bits in all_bits]
 
 
-def _vectors(rows: Sequence[Row], bits: int) -> Spec:
+def _vectors(rows: Sequence[Row], bits: int, colour: Spec) -> Spec:
     found = [
         {"code": name, "encoding": row["encoding"], "storage": row["storage"]}
         | {"x": row["speed"], "y": _rounded(row["error_mean_px"])}
@@ -324,7 +328,7 @@ def _vectors(rows: Sequence[Row], bits: int) -> Spec:
     x = {"field": "x", "type": "quantitative", "scale": {"type": "log"}, "title": "pixels a frame"}
     y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "title": "mean error, pixels"}
     encoding: Spec = {"x": x | {"axis": {"format": "~g"}}, "y": y | {"axis": {"format": "~g"}}}
-    encoding |= {"color": _named("encoding"), "strokeDash": _named("storage"), "detail": {"field": "code"}}
+    encoding |= {"color": colour, "strokeDash": _named("storage"), "detail": {"field": "code"}}
     encoding["tooltip"] = _tooltip(code="code", x="pixels a frame", y="mean error, pixels")
     lost: Spec = {"mark": {"type": "line", "strokeDash": [1, 4], "color": MUTED}}
     lost["data"] = {"values": [{"x": speed} for speed in sorted({row["speed"] for row in rows})]}

@@ -87,6 +87,13 @@ def _line(row: Row) -> tuple:
     return tuple(row[name] for name in LINE)
 
 
+def _place(row: Row) -> tuple[int, ...]:
+    """Where a code stands in the catalogues; those of other versions last."""
+    lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
+    names = (row["encoding"], row["storage"])
+    return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))
+
+
 def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:
     """A line for each code with a figure at each speed, after some of its columns."""
     lines: dict[tuple, Row] = {}
@@ -124,7 +131,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = one_backend(having(rows, "speed", "error_mean_px"))
+    usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=_place)
     if usable:
         said = (
             "The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic scales, "

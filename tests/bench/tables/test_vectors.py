@@ -212,7 +212,7 @@ def test_the_chart_has_a_line_for_each_code_that_is_not_exact():
     lines = charts.vector_lines(rows)
     assert {name: len(line) for name, line in lines.items()} == {"linear rg16": 2, "sqrt rg8": 2}
     made = specs.vectors_specs(rows)
-    assert [spec["title"]["text"] for spec in made] == ["64 bits", "32 bits", "16 bits"]
+    assert [spec["title"]["text"] for spec in made] == ["16 bits", "32 bits", "64 bits"]
     (usual,) = work.WORK.drawings(None, rows)
     assert usual.name == "vectors"
 
