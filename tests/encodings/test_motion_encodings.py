@@ -11,7 +11,7 @@ from mutants import swapped_calls
 from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.motion.log import OCTAVES, K
-from normalbench.encodings.storages.storage import MOTION_STORAGES, Storage
+from normalbench.encodings.storages.storage import FORMATS, MOTION_STORAGES, STORAGES, Storage
 from normalbench.encodings.vec import Vec2
 from normalbench.gbuffer.codecs.motion_passes import MotionPasses, exact_motions
 from normalbench.gbuffer.gl import shader
@@ -163,3 +163,13 @@ def test_linear_in_32_bit_floats_is_exact_and_needs_no_range(gl):
     codec, given = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rgba32f"]), motions()[-16384:]
     assert not codec.needs_range and not codec.clips
     assert np.array_equal(through_jax(codec, given), given) and np.array_equal(through_gl(gl, codec, given), given)
+
+
+@pytest.mark.parametrize(
+    "storage, why",
+    [(FORMATS["r16f"], "R16F has 1 channels"), (STORAGES["rgb8_8_8_1"], None)],
+    ids=lambda s: str(s)[:12],
+)
+def test_a_storage_needs_two_channels(storage: Storage, why: str | None):
+    found = MotionCodec(MOTION_ENCODINGS["linear"], storage).misfit
+    assert (why in found) if why else found is None, found

@@ -41,7 +41,12 @@ COLUMNS = (
         drops=5,
     ),
     Column("size", "Width and height of the image in pixels.", KEY, drops=4),
-    Column("speed", "Pixels a frame that points move at, with 10 % more or less from point to point.", KEY, "px"),
+    Column(
+        "speed",
+        "Speed of the points in pixels a frame. It differs by up to 10 % from point to point, and by 10 % over time.",
+        KEY,
+        "px",
+    ),
     Column("bits", "Bits of the code: those of two channels."),
     Column(
         "error_mean_px", "Mean length of the decoded motion minus the true one, in pixels.", unit="px", better="less"
@@ -49,12 +54,15 @@ COLUMNS = (
     Column("error_max_px", "Largest length of that difference.", unit="px", better="less"),
     Column(
         "lost_percent",
-        "Share of the motions that come back as exactly what no motion comes back as.",
+        "Share of the motions that decode to exactly the same as no motion.",
         unit="%",
         better="less",
     ),
     Column(
-        "still_px", "Length of what no motion comes back as; above 0, still objects drift.", unit="px", better="less"
+        "still_px",
+        "Length of the motion that no motion decodes to. Above 0, still objects drift.",
+        unit="px",
+        better="less",
     ),
     Column(
         "clipped_percent",
@@ -64,8 +72,8 @@ COLUMNS = (
     ),
     Column(
         "least_px",
-        "From this speed on, a motion along an axis comes back as something else than no motion does; the worst of the "
-        "four directions.",
+        "The slowest motion along an axis that decodes to something else than no motion, in the worst of the four "
+        "directions.",
         unit="px",
         better="less",
     ),
