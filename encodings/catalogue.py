@@ -13,11 +13,12 @@ from typing import Any
 
 from .codecs.depth_encoding import DepthEncoding
 from .codecs.encoding import Encoding
+from .codecs.files import CatalogueError
 from .codecs.frame_encoding import FrameEncoding
-from .codecs.kind import DEPTH, FRAME, LIGHT, NORMAL, AnyEncoding, Kind
+from .codecs.kind import DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .codecs.light_codec import LightCodec
 from .codecs.light_encoding import LightEncoding
-from .errors import CatalogueError
+from .codecs.motion_codec import MotionEncoding
 from .storages.storage import LIGHT_STORAGES
 
 PAIRS = (
@@ -54,6 +55,8 @@ LIGHT_NAMES = ("plain", "linear", "srgb", "log", "rgbm", "nao32", "rgb9e5")
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
 
+MOTION_NAMES = ("linear", "sqrt", "log")
+
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")
 
 
@@ -87,8 +90,15 @@ ENCODINGS: Mapping[str, Encoding] = _with_precise(_load(NORMAL, PAIRS))
 LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load(LIGHT, LIGHT_NAMES)
 DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load(DEPTH, DEPTH_NAMES)
 FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load(FRAME, FRAME_NAMES)
+MOTION_ENCODINGS: Mapping[str, MotionEncoding] = _load(MOTION, MOTION_NAMES)
 BY_KIND: Mapping[Kind, Mapping[str, AnyEncoding]] = MappingProxyType(
-    {NORMAL: ENCODINGS, DEPTH: DEPTH_ENCODINGS, FRAME: FRAME_ENCODINGS, LIGHT: LIGHT_ENCODINGS}
+    {
+        NORMAL: ENCODINGS,
+        DEPTH: DEPTH_ENCODINGS,
+        FRAME: FRAME_ENCODINGS,
+        LIGHT: LIGHT_ENCODINGS,
+        MOTION: MOTION_ENCODINGS,
+    }
 )
 
 # What `--light-buffer` names: each light encoding in each storage that it is made for.

@@ -21,10 +21,11 @@ from normalbench.encodings.catalogue import (
     FRAME_ENCODINGS,
     LIGHT_BUFFERS,
     LIGHT_ENCODINGS,
+    MOTION_ENCODINGS,
     NAMES,
 )
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
-from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, STORAGES
+from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, STORAGES
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -78,7 +79,7 @@ def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
         assert tops - sys.stdlib_module_names <= {"encodings", "jax", "numpy"}, path.name
-        others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth|frame)\.", m)]
+        others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth|frame|motion)\.", m)]
         assert not others, f"{path.name} imports {others}"
 
 
@@ -111,6 +112,8 @@ CATALOGUES = {
     "LIGHT_BUFFERS": LIGHT_BUFFERS,
     "LIGHT_ENCODINGS": LIGHT_ENCODINGS,
     "LIGHT_STORAGES": LIGHT_STORAGES,
+    "MOTION_ENCODINGS": MOTION_ENCODINGS,
+    "MOTION_STORAGES": MOTION_STORAGES,
     "STORAGES": STORAGES,
     "DEPTH_STORAGES": DEPTH_STORAGES,
     "FRAME_STORAGES": FRAME_STORAGES,
@@ -160,6 +163,7 @@ def test_the_list_command_knows_everything_there_is():
     listed = {row["name"] for row in listing.listing("all")}
     there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
+    there |= {*MOTION_ENCODINGS, *MOTION_STORAGES}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 
@@ -174,9 +178,20 @@ def test_rows_have_the_columns_of_the_table():
 def test_no_runner_asks_for_a_variants_name():
     """A variant's special need is a field on it."""
     for path in SOURCES:
-        if path.parts[-2] not in ("normals", "light", "depth", "frame"):
+        if path.parts[-2] not in ("normals", "light", "depth", "frame", "motion"):
             depths = (*DEPTH_NAMES, *DEPTH_STORAGES, *FRAME_ENCODINGS, *FRAME_STORAGES)
-            for name in (*NAMES, *depths, *STORAGES, *PIPELINES, *LAYOUTS, *LIGHT_BUFFERS, *LIGHT_ENCODINGS, *SCENES):
+            motions = (*MOTION_ENCODINGS, *MOTION_STORAGES)
+            for name in (
+                *NAMES,
+                *depths,
+                *motions,
+                *STORAGES,
+                *PIPELINES,
+                *LAYOUTS,
+                *LIGHT_BUFFERS,
+                *LIGHT_ENCODINGS,
+                *SCENES,
+            ):
                 assert not re.search(rf"[=!]= [\"']{name}[\"']", path.read_text()), f"{path.name} asks for {name}"
 
 

@@ -50,7 +50,7 @@ HELD = {
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
-    "normalbench maps",
+    *("normalbench maps", "normalbench vectors"),
 }
 
 
@@ -445,6 +445,21 @@ def test_the_frames_table_is_what_is_measured(run):
     for line, row in zip(lines, rows, strict=True):
         expected = [*(row[name] for name in angles), row["effective_bits"], row["reached_rms_percent"]]
         assert [float(cell) for cell in line[2:]] == pytest.approx(expected, rel=2e-3, abs=6e-5), line
+
+
+def test_the_vectors_table_is_what_is_measured(run):
+    """By JAX to the two digits shown."""
+    shown = table("normalbench vectors").splitlines()[3:]
+    lines = [[cell.strip(" `%") for cell in line.split("|")[1:-1]] for line in shown]
+    status, out, _ = run("vectors", "--backend", "jax", "--speed", "0.05,1,64", "--format", "json")
+    assert status == 0 and len(lines) == 13
+    rows = {(row["encoding"], row["storage"], row["speed"]): row for row in json.loads(out)}
+    for encoding, storage, *cells in lines:
+        slow, middle, fast = (rows[encoding, storage, speed] for speed in (0.05, 1, 64))
+        figures = [slow["still_px"], slow["least_px"], *(row["error_mean_px"] for row in (slow, middle, fast))]
+        assert float(cells[5]) == pytest.approx(slow["lost_percent"], abs=0.6), (encoding, storage)
+        figures.append(middle["drift_px"])
+        assert [float(cell) for cell in cells[:5] + cells[6:]] == pytest.approx(figures, rel=0.06), (encoding, storage)
 
 
 def test_the_cost_table_is_what_is_measured(run):

@@ -473,6 +473,32 @@ def frames(
         seed: The random seed of uniform sets, points and scenes.
     """
 
+def vectors(
+    *,
+    encoding: Names = ...,
+    storage: Names | None = ...,
+    backend: Names = ...,
+    speed: Names = ...,
+    size: Names = ...,
+    range: Names = ...,
+    count: int = ...,
+    seed: int = ...,
+) -> Rows:
+    """How exact motion vectors are in compact targets: errors in pixels over the speed, what slow motion is lost, and how far reprojected points drift.
+
+    A motion is in screens a frame. Fixed-point storages keep motions up to the range. `_centred` is UNORM with an exact code for no motion, as engines store it.
+
+    Args:
+        encoding: Motion codes, comma-separated, or all; `normalbench list` shows them.
+        storage: Motion storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        backend: jax, glsl; comma-separated, or all.
+        speed: Speeds in pixels a frame, comma-separated.
+        size: WIDTHxHEIGHT of the image.
+        range: Largest motions that are kept, in screens a frame, comma-separated.
+        count: Points that move, each for 16 frames.
+        seed: The random seed of uniform sets, points and scenes.
+    """
+
 def sweep(
     *,
     pipeline: Names = ...,

@@ -19,7 +19,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.exceptions import Abort, TyperException
 
-from ...encodings.errors import CatalogueError
+from ...encodings.codecs.files import CatalogueError
 from ...reports.charts.plots import PlotError
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
@@ -66,13 +66,14 @@ def list_command(
     what: Annotated[
         str,
         typer.Argument(
-            help="encodings, storages, depths, frames, normals, layouts, pipelines, effects, scenes, lights, or all."
+            help="encodings, storages, depths, frames, vectors, normals, layouts, pipelines, effects, scenes, lights, "
+            "or all."
         ),
     ] = "all",
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> None:
-    """What there is: encodings, storages, depth codes, frames, sets, layouts, pipelines, effects, scenes, lights."""
+    """What there is: encodings, storages, codes of other kinds, sets, layouts, pipelines, effects, scenes, lights."""
     from ..options.listing import listing
 
     write(listing(what), format_of(format, output), output, SPARED, by="kind")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS
+from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import known_settings
 from ...encodings.storages.depth_storage import DEPTH_STORAGES
-from ...encodings.storages.storage import FRAME_STORAGES, STORAGES
+from ...encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES
 from ...gbuffer.effects.catalogue import EFFECTS
 from ...gbuffer.effects.effect import Choice, Number
 from ...gbuffer.layouts.presets import LAYOUTS
@@ -79,6 +79,19 @@ def _frames() -> list[Row]:
     ]
 
 
+def _vectors() -> list[Row]:
+    return [
+        *(
+            _row("motion", m.name, m.title, holds=f"usually in {', '.join(m.storages)}") | {"from": m.citation}
+            for m in MOTION_ENCODINGS.values()
+        ),
+        *(
+            _row("motion storage", s.name, f"{s.title}, {s.kind}", holds=f"{':'.join(map(str, s.bits))} bits")
+            for s in MOTION_STORAGES.values()
+        ),
+    ]
+
+
 def _normal_sets() -> list[Row]:
     return [_row("normals", name, title) for name, title in NORMAL_SETS.items()]
 
@@ -131,6 +144,7 @@ KINDS = {
     "storages": _storages,
     "depths": _depths,
     "frames": _frames,
+    "vectors": _vectors,
     "normals": _normal_sets,
     "layouts": _layouts,
     "pipelines": _pipelines,

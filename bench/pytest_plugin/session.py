@@ -12,7 +12,7 @@ from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import pytest
 
-from ...encodings.errors import CatalogueError
+from ...encodings.codecs.files import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.limits import Limit, limit, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options

@@ -22,7 +22,7 @@ def _require_parquet() -> None:
 # What there is to do, and what raises MissingError where something is missing for it.
 CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
     {
-        "quality, mix, depth, frames by JAX": require_jax,
+        "quality, mix, depth, frames, vectors by JAX": require_jax,
         "quality and mix by GLSL, render, effects, lights, sweep": require_device,
         "instructions (cost --isa, pick)": require_compilers,
         "render --flip": require_flip,

@@ -20,6 +20,7 @@ FOLDERS = (
     "lights",
     "depth",
     "tangent_frames",
+    "vectors",
     "sweep",
     "tune",
     "published",

@@ -1,4 +1,4 @@
-"""Files that people name: whole, of a bounded size, and never waited for."""
+"""Files that people name: whole, of a bounded size, and never waited for; and what can be wrong with any file here."""
 
 from __future__ import annotations
 
@@ -35,6 +35,10 @@ class FileError(OSError):
 
     def __str__(self) -> str:
         return self.strerror or super().__str__()
+
+
+class CatalogueError(Exception):
+    """An encoding that cannot be imported or is not what the catalogue calls it; one line with its file."""
 
 
 def file_bytes(path: Path, most: int) -> bytes:

@@ -1,4 +1,4 @@
-"""The kinds of encodings: of normals, of depth, of tangent frames and of light."""
+"""The kinds of encodings: of normals, of depth, of tangent frames, of light and of motion."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from .depth_encoding import DepthEncoding
 from .encoding import Encoding
 from .frame_encoding import FrameEncoding
 from .light_encoding import LightEncoding
+from .motion_codec import MotionEncoding
 
 
 class AnyEncoding(Protocol):
@@ -82,4 +83,5 @@ NORMAL = Kind("normal", "normals", Encoding)
 DEPTH = Kind("depth", "depth", DepthEncoding)
 FRAME = Kind("tangent frame", "frame", FrameEncoding)
 LIGHT = Kind("light", "light", LightEncoding)
-KINDS = (NORMAL, DEPTH, FRAME, LIGHT)
+MOTION = Kind("motion", "motion", MotionEncoding)
+KINDS = (NORMAL, DEPTH, FRAME, LIGHT, MOTION)

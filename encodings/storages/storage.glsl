@@ -93,7 +93,7 @@ uint part_of(uint byte, int first, int bits, int channel) {
 #ifdef STORAGE_KIND
 // Of one storage: STORAGE_KIND is its kind, STORAGE_BIASED 1 where a number c is kept as c/2 + 1/2; by channel
 // STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PACKED is 1 where numbers are integers across
-// channels of 8 bits. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
+// channels of 8 bits, STORAGE_CENTRED where SNORM's lie in UNORM channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
 const float storage_scale[] = STORAGE_SCALE;
 const int storage_bits[] = STORAGE_BITS, storage_rounding[] = STORAGE_ROUNDING;
 
@@ -136,6 +136,25 @@ vec4 from_texel(vec4 texel) {
         first += storage_bits[i];
     }
     return unbiased(numbers);
+}
+#elif STORAGE_CENTRED
+// The integers of SNORM, `scale` more than themselves: of 2 scale + 1 steps the one in the middle is 0. What is read is a
+// whole number of steps, so that 0 comes back as it is.
+vec4 to_texel(vec4 code) {
+    vec4 texel;
+    for (int i = 0; i < 4; ++i) {
+        float scale = storage_scale[i], number = clamp(code[i], -1.0, 1.0) * scale;
+        texel[i] = ((SHADER_ROUNDS != 0 ? roundEven(number) : number) + scale) / (2.0 * scale + 1.0);
+    }
+    return texel;
+}
+
+vec4 from_texel(vec4 texel) {
+    const float steps[] = STORAGE_STEP;
+    vec4 code;
+    for (int i = 0; i < 4; ++i)
+        code[i] = (roundEven(texel[i] * (2.0 * storage_scale[i] + 1.0)) - storage_scale[i]) * steps[i];
+    return code;
 }
 #else
 // Numbers in [-1, 1] to what is written to the target, and back from what is read.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -33,6 +33,7 @@ class Storage:
         internal_format: the GL enum.
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
         is_packed: numbers of so many bits lie as integers across the channels of RGBA8.
+        is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Storage:
     internal_format: int
     curved: int = 0
     is_packed: bool = False
+    is_centred: bool = False
 
     @property
     def channels(self) -> int:
@@ -60,7 +62,9 @@ class Storage:
 
     @property
     def target(self) -> Storage:
-        """The format of the render target: another one where numbers are laid across its channels."""
+        """The format of the render target: another one where numbers are laid across its channels, or centred."""
+        if self.is_centred:
+            return STORAGES[self.name.removesuffix(CENTRED)]
         return STORAGES["rgba8"] if self.is_packed else self
 
     def scale(self, channel: int) -> int:
@@ -98,6 +102,12 @@ def _packed(name: str, title: str, kind: str, *bits: int) -> Storage:
     return Storage(name, title, kind, bits, RGBA8, is_packed=True)
 
 
+def _centred(like: Storage) -> Storage:
+    name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
+    return replace(like, name=name, title=title, kind="snorm", is_centred=True)
+
+
+CENTRED = "_centred"
 RGBA8 = 0x8058
 R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
 STORAGES: Mapping[str, Storage] = MappingProxyType(
@@ -133,6 +143,16 @@ FRAME_STORAGES: Mapping[str, Storage] = MappingProxyType(
         **{name: STORAGES[name] for name in ("rgb10a2", "rgba8", "rgba8_snorm", "rgba16f", "rgba32f")},
         **{name: STORAGES[name] for name in ("rgba16", "rgba16_snorm")},
         "rgba8_10_10_11_1": _packed("rgba8_10_10_11_1", "10:10:11:1 in RGBA8", "unorm", 10, 10, 11, 1),
+    }
+)
+
+# What holds a motion vector: two numbers. UNORM has no code for 0, unless it is centred.
+_OF_MOTION = ("rg8", "rg8_snorm", "rgb10a2", "rg16", "rg16_snorm", "rg16f")
+_OF_MOTION += ("rgba8", "rgba8_snorm", "rgba16", "rgba16_snorm", "rgba16f", "rgba32f")
+MOTION_STORAGES: Mapping[str, Storage] = MappingProxyType(
+    {
+        **{name: STORAGES[name] for name in _OF_MOTION},
+        **{s.name: s for s in (_centred(STORAGES[name]) for name in ("rg8", "rgb10a2", "rg16", "rgba8", "rgba16"))},
     }
 )
 

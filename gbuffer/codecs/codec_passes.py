@@ -73,6 +73,7 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
         "STORAGE_KIND": storage_kind(storage),
         "STORAGE_BIASED": int(storage.is_biased),
         "STORAGE_PACKED": int(storage.is_packed),
+        "STORAGE_CENTRED": int(storage.is_centred),
         "STORAGE_CHANNELS": storage.channels,
         "STORAGE_SCALE": tuple(float(scale) for scale in scales),
         "STORAGE_STEP": tuple(float(np.float32(1 / scale)) for scale in scales),

@@ -5,9 +5,9 @@ import pytest
 import texture2ddecoder
 from blocks import bc7_blocks, by_block, from_bgra, random_blocks
 
-from normalbench.encodings.blocks.bptc import decode_bc7
-from normalbench.encodings.blocks.eac import eac_r11
-from normalbench.encodings.blocks.rgtc import PARTS, bc4_parts, decode_bc5
+from normalbench.encodings.storages.blocks.bptc import decode_bc7
+from normalbench.encodings.storages.blocks.eac import eac_r11
+from normalbench.encodings.storages.blocks.rgtc import PARTS, bc4_parts, decode_bc5
 from normalbench.gbuffer.gl.compressed import device_texels
 from normalbench.gbuffer.gl.device import FormatError
 

@@ -12,16 +12,22 @@ from normalbench.encodings.catalogue import BY_KIND, LIGHT_BUFFERS, PRECISE
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
 from normalbench.encodings.codecs.frame_codec import FrameCodec
-from normalbench.encodings.codecs.kind import DEPTH, FRAME, KINDS, LIGHT, NORMAL
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, KINDS, LIGHT, MOTION, NORMAL
 from normalbench.encodings.codecs.light_codec import LightCodec
+from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.rotation import frame_of
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
-from normalbench.encodings.storages.storage import FRAME_STORAGES, LIGHT_STORAGES, STORAGES
-from normalbench.encodings.vec import Vec3, Vec4
+from normalbench.encodings.storages.storage import FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, STORAGES
+from normalbench.encodings.vec import Vec2, Vec3, Vec4
 
 ROOT = Path(__file__).parents[2]
 EVERY = [pytest.param(e, id=f"{kind.name} {e.name}") for kind, found in BY_KIND.items() for e in found.values()]
-USUAL = {DEPTH: (DepthCodec, DEPTH_STORAGES), FRAME: (FrameCodec, FRAME_STORAGES), LIGHT: (LightCodec, LIGHT_STORAGES)}
+USUAL = {
+    DEPTH: (DepthCodec, DEPTH_STORAGES),
+    FRAME: (FrameCodec, FRAME_STORAGES),
+    LIGHT: (LightCodec, LIGHT_STORAGES),
+    MOTION: (MotionCodec, MOTION_STORAGES),
+}
 
 
 def number(x: float):
@@ -40,6 +46,13 @@ CODECS = {
         2**32,
     ),
     LIGHT: (LIGHT_BUFFERS["linear"], (Vec4(*[number(1)] * 4),), 32, 2**32),
+    # SNORM of n bits has 2^n - 1 codes in [-1, 1].
+    MOTION: (
+        MotionCodec(BY_KIND[MOTION]["sqrt"], MOTION_STORAGES["rgb10a2_centred"]),
+        (Vec2(number(0.1), number(-0.2)), 1.0),
+        20,
+        1023**2,
+    ),
 }
 
 

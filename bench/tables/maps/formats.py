@@ -8,10 +8,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ....encodings.blocks.bits import SIDE
-from ....encodings.blocks.bptc import ONE, decode_bc7
-from ....encodings.blocks.eac import decode_rg11
-from ....encodings.blocks.rgtc import decode_bc5
+from ....encodings.storages.blocks.bits import SIDE
+from ....encodings.storages.blocks.bptc import ONE, decode_bc7
+from ....encodings.storages.blocks.eac import decode_rg11
+from ....encodings.storages.blocks.rgtc import decode_bc5
 from .encoders import ASTC, BC7, NONE, QUICKTEX, RG11, Encoder
 
 # Blocks that are decoded at once, for memory's sake.

@@ -14,9 +14,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.blocks.bits import SIDE
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.blocks.bits import SIDE
 from ....encodings.storages.storage import STORAGES
 from ....encodings.vec import Vec3
 from ....gbuffer.gl.compressed import device_texels

@@ -348,5 +348,5 @@ def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
     monkeypatch.setattr(tables, "find_spec", lambda _: None)
     status, out, _ = run("doctor", "--format", "json")
     rows = {row["name"]: row["value"] for row in json.loads(out)}
-    assert status == 0 and rows["quality, mix, depth, frames by JAX"] == "yes"
+    assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
     assert rows["-o FILE.parquet"] == "no: pip install pyarrow"

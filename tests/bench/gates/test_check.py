@@ -108,6 +108,7 @@ TABLES_GATED = {
     "lights": 'light_buffer = "rgbm"\nexperiment = "random"\ncounts = "8"\nmodel_max = "at most {}"',
     "depth": 'depth = "linear"\nstorage = "packed16"\nerror_max = "at most {}"',
     "frames": 'encoding = "qtangent"\nstorage = "rgba8"\ncount = 4096\nrotation_max_deg = "at most {}"',
+    "vectors": 'encoding = "sqrt"\nstorage = "rg8"\ncount = 256\nspeed = 1\nerror_max_px = "at most {}"',
     "pick": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',
     "quality": 'encoding = "octahedral"\narithmetic = "half"\ncount = 4096\nangle_max_deg = "at most {}"',
     "mix": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',

@@ -1,0 +1,191 @@
+"""The vectors table: what motion vectors come back as from a storage, by JAX and by GLSL."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codecs.motion_codec import NUMBERS, MotionCodec, MotionEncoding
+from ....encodings.storages.rounding import fixed, scales_of
+from ....encodings.storages.storage import MOTION_STORAGES, Storage
+from ....encodings.vec import Vec2
+from ....gbuffer.codecs.motion_passes import MotionPasses
+from ....gbuffer.gl.device import FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+from .paths import FRAMES, POINTS, Paths
+from .table import TABLE
+
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
+CHUNK, WIDTH = FRAMES * POINTS, 256
+# Along x and y, both ways: where motions are looked for that are just told from rest, from 2^-60 of a screen on.
+DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+LEAST = 2.0**-60
+
+Row = dict[str, Any]
+# float32 motions of shape (count, 2), in screens, to what they come back as.
+Trip = Callable[[np.ndarray], np.ndarray]
+How = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Case:
+    """The rows of one code by one back end: one for each speed.
+
+    Attributes:
+        largest: the range in screens.
+        speeds: in pixels a frame.
+    """
+
+    codec: MotionCodec
+    backend: str
+    largest: float
+    speeds: tuple[float, ...]
+    paths: Paths
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.backend}" + (f" {self.largest:g}" if self.codec.needs_range else "")
+
+    @property
+    def size(self) -> str:
+        return "x".join(map(str, self.paths.size))
+
+
+# Fixed-point formats of one kind are one program, which is given their scales.
+_LIKE = {s.kind: s for s in MOTION_STORAGES.values() if s.kind != "float"}
+
+
+@cache
+def _compiled(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
+    def trip(motions, largest, scales):
+        lies_in = fixed(storage, scales) if scales else storage
+        return jnp.stack(MotionCodec(encoding, lies_in).round_trip(Vec2(*motions), largest))
+
+    return jax.jit(trip)
+
+
+@contextmanager
+def _by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+    storage = codec.storage
+    compiled = _compiled(codec.encoding, _LIKE.get(storage.kind, storage))
+    scales = () if storage.kind == "float" else scales_of(storage)[:NUMBERS]
+
+    def trip(motions: np.ndarray) -> np.ndarray:
+        return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales)).T
+
+    yield trip, {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+
+
+@contextmanager
+def _by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+    gl = device()
+    with MotionPasses(gl, codec) as passes:
+
+        def trip(motions: np.ndarray) -> np.ndarray:
+            return passes.round_trip(motions.reshape(-1, WIDTH, NUMBERS), largest).reshape(-1, NUMBERS)
+
+        yield trip, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+
+
+Backend = Callable[[MotionCodec, float], AbstractContextManager[tuple[Trip, How]]]
+BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _by_jax, "glsl": _by_glsl})
+
+
+def measure(case: Case) -> list[Row]:
+    """A row for each speed; rows that the device cannot give have the reason in `skipped` and no figures."""
+    rows = [_named(case, speed) for speed in case.speeds]
+    try:
+        with BACKENDS[case.backend](case.codec, case.largest) as (trip, how):
+            trip = _of_any_count(trip)
+            rest = trip(np.zeros((1, NUMBERS), np.float32))
+            both = {"still_px": _length(rest, case.paths.size), "least_px": _least(trip, rest, case)}
+            found = [_figures(case, speed, trip, rest) for speed in case.speeds]
+    except UNMEASURABLE as error:
+        return [row | {"skipped": str(error)} for row in rows]
+    return [row | both | figures | how for row, figures in zip(rows, found, strict=True)]
+
+
+def _named(case: Case, speed: float) -> Row:
+    return TABLE.empty() | {
+        "encoding": case.codec.encoding.name,
+        "storage": case.codec.storage.name,
+        "backend": case.backend,
+        "range": case.largest if case.codec.needs_range else None,
+        "size": case.size,
+        "speed": speed,
+        "bits": case.codec.bits,
+        "count": case.paths.count,
+        "seed": case.paths.seed,
+    }
+
+
+def _of_any_count(trip: Trip) -> Trip:
+    """Chunks of CHUNK motions, the last repeated: compiled once, and a rectangle of pixels."""
+
+    def whole(motions: np.ndarray) -> np.ndarray:
+        padded = np.pad(motions, ((0, CHUNK - len(motions)), (0, 0)), mode="edge")
+        return trip(padded)[: len(motions)]
+
+    return whole
+
+
+def _length(motion: np.ndarray, size: tuple[int, int]) -> float:
+    return math.hypot(*(motion[0].astype(np.float64) * size))
+
+
+def _figures(case: Case, speed: float, trip: Trip, rest: np.ndarray) -> Row:
+    """What comes back of the motions of all points in all frames at a speed.
+
+    The error of a motion v is |decode(v) - v| in pixels. A point that is moved by the stored vectors is off by the sum
+    of its frames' errors, which is its drift.
+    """
+    total, largest, lost, clipped, square = 0.0, 0.0, 0, 0, 0.0
+    for motions in case.paths.chunks(speed):
+        found = trip(motions.reshape(-1, NUMBERS)).reshape(motions.shape)
+        apart = (found.astype(np.float64) - motions) * case.paths.size
+        errors = np.hypot(apart[..., 0], apart[..., 1])
+        total, largest = total + errors.sum(), max(largest, errors.max())
+        lost += np.count_nonzero((found == rest[0]).all(axis=-1))
+        clipped += np.count_nonzero((abs(motions) > np.float32(case.largest)).any(axis=-1))
+        square += (apart.sum(axis=0) ** 2).sum()
+    count = FRAMES * case.paths.count
+    return {
+        "error_mean_px": float(total / count),
+        "error_max_px": float(largest),
+        "lost_percent": 100 * lost / count,
+        "clipped_percent": 100 * clipped / count if case.codec.clips else 0.0,
+        "drift_px": math.sqrt(square / case.paths.count),
+    }
+
+
+def _least(trip: Trip, rest: np.ndarray, case: Case) -> float:
+    """The speed in pixels from which on motions along an axis do not come back as rest does, in the worst of the four
+    directions; 0 where every motion is told from it."""
+    low, high = np.full(len(DIRECTIONS), LEAST), np.full(len(DIRECTIONS), max(case.largest, 1.0))
+    # Each pass divides the ratio of the two ends by many steps; two come to the digits that float32 has.
+    for _ in range(2):
+        tried = np.geomspace(low, high, CHUNK // len(DIRECTIONS), axis=1)
+        motions = (tried[..., None] * DIRECTIONS[:, None]).astype(np.float32)
+        told = (trip(motions.reshape(-1, NUMBERS)) != rest[0]).any(axis=-1).reshape(tried.shape)
+        low, high = _around(tried, told)
+    return float((np.where(high > LEAST, high, 0.0) * (abs(DIRECTIONS) @ case.paths.size)).max())
+
+
+def _around(tried: np.ndarray, told: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of ascending motions in each direction the last that is not told from rest, and the next; the first where all
+    are told from it."""
+    end, everything = tried.shape[1] - 1, told.all(axis=1)
+    last = np.where(everything, 0, end - np.argmax(~told[:, ::-1], axis=1))
+    after = np.where(everything, 0, np.minimum(last + 1, end))
+    directions = np.arange(len(tried))
+    return tried[directions, last], tried[directions, after]

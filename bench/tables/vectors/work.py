@@ -1,0 +1,154 @@
+"""How the table of motion vectors is measured and shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ....encodings.catalogue import MOTION_ENCODINGS
+from ....encodings.codecs.motion_codec import MotionCodec
+from ....encodings.storages.storage import MOTION_STORAGES
+from ....reports.charts import charts, specs
+from ....reports.charts.drawings import Drawing
+from ...machine.devices import require_device, require_jax
+from ...options.counts import check_seed, checked_numbers, checked_sides, in_range
+from ...options.targets import what_is_left
+from ...output.errors import pick
+from ..charts import drawing, having, one_backend
+from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
+from . import measure
+from .paths import Paths
+from .table import VectorsOptions
+
+MAX_SIDE, MAX_POINTS = 2**16, 2**24
+SPEEDS, RANGES = (1e-6, 1e5), (1e-3, 16.0)
+# What tells a line of a sheet or a chart from another.
+LINE = ("encoding", "storage", "backend", "range", "size")
+
+
+def cases(options: VectorsOptions) -> list[measure.Case]:
+    """One case for each code, range and back end; a code that needs no range has one.
+
+    Raises:
+        UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
+        MissingError: only GLSL is asked for and there is no GL device.
+    """
+    check_seed(options.seed)
+    in_range("--count", options.count, 1, MAX_POINTS)
+    paths = Paths(options.count, options.seed, checked_sides(options.size, MAX_SIDE, "pixels"))
+    speeds = checked_numbers("--speed", options.speed, float, *SPEEDS)
+    ranges = checked_numbers("--range", options.range, float, *RANGES)
+    chosen = codecs(options)
+    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    require_jax()
+    if backends == ["glsl"]:
+        require_device()
+    return [
+        measure.Case(codec, backend, largest, speeds, paths)
+        for codec in chosen
+        for largest in (ranges if codec.needs_range else ranges[:1])
+        for backend in backends
+    ]
+
+
+def codecs(options: VectorsOptions) -> list[MotionCodec]:
+    """The codecs asked for; those that do not fit are named on standard error."""
+    made, complaints = list[MotionCodec](), list[str]()
+    for encoding in pick("motion encoding", options.encoding, MOTION_ENCODINGS):
+        names = ",".join(encoding.storages) if options.storage is None else options.storage
+        for storage in pick("motion storage", names, MOTION_STORAGES):
+            codec = MotionCodec(encoding, storage)
+            if codec.misfit:
+                complaints.append(f"{codec.name}: {codec.misfit}")
+            else:
+                made.append(codec)
+    return what_is_left(made, complaints)
+
+
+def _steps(options: VectorsOptions, _: NoOutputs) -> list[Step]:
+    return [Step(_key(case), case, case.name) for case in cases(options)]
+
+
+def _key(case: measure.Case) -> Row:
+    key: Row = {"codec": case.codec.name, "backend": case.backend, "range": case.largest, "size": case.size}
+    return key | {"speeds": list(case.speeds), "count": case.paths.count, "seed": case.paths.seed}
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by bits, the code with the least error at the slowest speed first; each code's by speed."""
+    best: dict[tuple, float] = {}
+    for row in sorted(rows, key=lambda row: row["speed"], reverse=True):
+        error = row["error_mean_px"]
+        best[row["encoding"], row["storage"]] = math.inf if error is None else error
+    return sorted(rows, key=lambda row: (row["bits"], best[row["encoding"], row["storage"]], *map(str, _line(row))))
+
+
+def _line(row: Row) -> tuple:
+    return tuple(row[name] for name in LINE)
+
+
+def _place(row: Row) -> tuple[int, ...]:
+    """Where a code stands in the catalogues; those of other versions last."""
+    lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
+    names = (row["encoding"], row["storage"])
+    return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))
+
+
+def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:
+    """A line for each code with a figure at each speed, after some of its columns."""
+    lines: dict[tuple, Row] = {}
+    for row in rows:
+        line = lines.setdefault(_line(row), {name: _said(row[name]) for name in names})
+        line[f"{row['speed']:g} px"] = row[figure]
+    return list(lines.values())
+
+
+def _said(value: object) -> object:
+    """What was asked for as it was typed, where a figure would have its digits."""
+    return f"{value:g}" if isinstance(value, float) and value >= 1e-3 else value
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    names = ("encoding", "storage", "bits", "backend", "range")
+    sheets = {
+        "error_mean_px": ("mean error in pixels, by speed in pixels a frame", ("still_px", "least_px")),
+        "drift_px": ("drift in pixels after 16 frames, by speed", ()),
+        "lost_percent": ("percent of the motions that come back as no motion, by speed; codes that lose any", ()),
+    }
+    for figure, (title, more) in sheets.items():
+        losing = {_line(row) for row in done.rows if figure != "lost_percent" or row[figure]}
+        part = [row for row in done.rows if _line(row) in losing]
+        if part:
+            yield Sheet(f"{title}; {part[0]['size']}", _by_speed(part, figure, (*names, *more)), ("range",))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
+    if measured:
+        names = ("encoding", "storage", "bits", "still_px", "least_px")
+        title = f"motion vectors, mean error in pixels by speed, {measured[0]['size']}"
+        yield Sheet(title, _by_speed(measured, "error_mean_px", names))
+
+
+def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=_place)
+    if usable:
+        said = (
+            "The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic scales, "
+        )
+        said += (
+            "a line for each code in its storage. The dotted line is an error as large as the motion: what lies on it "
+        )
+        said += "is lost. The figures are in the table."
+        title = "Error of motion vectors over speed"
+        yield drawing("vectors", title, said, usable, charts.vectors_chart, specs.vectors_specs)
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(measure.measure),
+    finish=in_order,
+    shown=_shown,
+    summary=_summary,
+    drawings=_drawings,
+)

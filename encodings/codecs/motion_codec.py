@@ -1,0 +1,118 @@
+"""Motion codecs: what a motion encoding is, a pair of maps between motion vectors and two numbers, written twice; and
+such an encoding in a storage, which is what `normalbench vectors` measures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..storages.rounding import store_number
+from ..storages.storage import Storage
+from ..vec import Vec2
+from .codec import numbers_misfit
+
+NUMBERS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class MotionEncoding:
+    """A pair of maps between motion vectors and codes, in JAX here and in GLSL in the file beside it.
+
+    A motion is in screens a frame: 1 is the width of the image along x, and its height along y. The range is the
+    largest motion that comes to 1 or -1, in screens. The GLSL file defines `vec2 <name>_encode_motion(vec2 motion,
+    float range)` and `vec2 <name>_decode_motion(vec2 e, float range)`. No encoder clips: fixed-point storages do.
+    Motions are finite.
+
+    Attributes:
+        name: the catalogue's key, the file's name and the prefix of the GLSL functions.
+        title: what a reader calls it.
+        encode: (motion, range) -> two numbers, in [-1, 1] for motions up to the range.
+        decode: (numbers, range) -> motion.
+        storages: where it usually lies, names of MOTION_STORAGES.
+        citation: where it comes from.
+        glsl: the GLSL twin.
+        ulps: how far the two languages may differ before storage, encode in 2^-23, decode in 2^-23 of the range; both
+            for motions up to the range.
+        ulps_reason: why it is that many.
+        own_units: whether float formats hold the motion in screens, which is a range of 1: they need no range.
+        constants: numbers that both languages need, by their GLSL name.
+    """
+
+    name: str
+    title: str
+    encode: Callable[[Vec2, Any], Vec2]
+    decode: Callable[[Vec2, Any], Vec2]
+    storages: tuple[str, ...]
+    citation: str
+    glsl: Path
+    ulps: tuple[int, int]
+    ulps_reason: str
+    own_units: bool = False
+    constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        return (
+            f"vec2 {self.name}_encode_motion(vec2 motion, float range)",
+            f"vec2 {self.name}_decode_motion(vec2 e, float range)",
+        )
+
+
+@dataclass(frozen=True)
+class MotionCodec:
+    """A motion encoding and the storage of its two numbers, the first of the storage's channels."""
+
+    encoding: MotionEncoding
+    storage: Storage
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name}/{self.storage.name}"
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can."""
+        if self.storage.channels < NUMBERS:
+            return f"{NUMBERS} components, but {self.storage.title} has {self.storage.channels} channels"
+        return numbers_misfit(self.storage, [0] * NUMBERS)
+
+    @property
+    def bits(self) -> int:
+        """The bits it needs: those of two channels."""
+        return sum(self.storage.bits[:NUMBERS])
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: whatever its numbers in [-1, 1] can be."""
+        return math.prod(map(self.storage.count, range(NUMBERS)))
+
+    @property
+    def needs_range(self) -> bool:
+        """Whether its numbers depend on the range: floats may hold the motion itself."""
+        return not (self.encoding.own_units and self.storage.kind == "float")
+
+    @property
+    def clips(self) -> bool:
+        """Whether motions beyond the range come back as the range."""
+        return self.storage.kind != "float"
+
+    def stored(self, motion: Vec2, largest) -> Vec2:
+        """The code of motions as it comes back from the storage.
+
+        Args:
+            motion: screens a frame, float32 of any shape.
+            largest: the range, float32 scalar; not used where `needs_range` is not.
+        """
+        code = self.encoding.encode(motion, self._range(largest))
+        return Vec2(*(store_number(c, self.storage, i) for i, c in enumerate(code)))
+
+    def round_trip(self, motion: Vec2, largest) -> Vec2:
+        """Motions encoded, stored and decoded; see `stored`."""
+        return self.encoding.decode(self.stored(motion, largest), self._range(largest))
+
+    def _range(self, largest):
+        return largest if self.needs_range else 1.0

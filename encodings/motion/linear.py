@@ -1,0 +1,36 @@
+"""Linear: a motion as a share of the range. Floats hold the motion itself."""
+
+from pathlib import Path
+
+from ..codecs.motion_codec import MotionEncoding
+from ..vec import Vec2
+
+
+def encode(motion: Vec2, range) -> Vec2:
+    """Motion to [-1, 1] up to the range, and beyond."""
+    # c = v / range
+    return motion / range
+
+
+def decode(e: Vec2, range) -> Vec2:
+    """The motion of two numbers."""
+    # v = c range
+    return e * range
+
+
+ENCODING = MotionEncoding(
+    name="linear",
+    title="a share of the range; in floats the motion itself",
+    encode=encode,
+    decode=decode,
+    storages=(
+        *("rg16f", "rg16", "rg16_centred", "rg16_snorm", "rgb10a2", "rgb10a2_centred"),
+        *("rg8", "rg8_centred", "rg8_snorm"),
+    ),
+    citation="Unity, HDRP, BuiltinData.hlsl: 16:16 float as it is; Epic Games, Unreal Engine 4.18, Common.ush: UNORM "
+    "16:16 with no motion at 32767 / 65535",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(1, 1),
+    ulps_reason="one division; one product",
+    own_units=True,
+)

@@ -1,0 +1,44 @@
+"""Logarithm: steps of one size below range / k, and above it steps of one share of the motion.
+
+k is where the two meet. With k = 2^11 - 1 and a range of one screen they meet at 1 / 2047 of the screen, which is a
+pixel of an image 2047 pixels wide: a motion below a pixel is kept to a distance, and a motion above it to a share of
+itself. 2^11 makes the divisor log2(1 + k) a whole number, 11.
+"""
+
+from pathlib import Path
+
+from ..codecs.motion_codec import MotionEncoding
+from ..elementary import CONSTANTS, exp2_of, log2_of
+from ..vec import Vec2, sign_not_zero
+
+OCTAVES = 11.0
+K = 2.0**OCTAVES - 1.0
+
+
+def encode(motion: Vec2, range) -> Vec2:
+    """Motion to [-1, 1] up to the range, and beyond."""
+    # c = sign(v) log2(1 + k |v| / range) / log2(1 + k)
+    x = 1.0 + abs(motion) / range * K
+    return sign_not_zero(motion) * Vec2(log2_of(x.x), log2_of(x.y)) / OCTAVES
+
+
+def decode(e: Vec2, range) -> Vec2:
+    """The motion of two numbers."""
+    # v = sign(c) (2^(|c| log2(1 + k)) - 1) range / k
+    x = abs(e) * OCTAVES
+    return sign_not_zero(e) * (Vec2(exp2_of(x.x), exp2_of(x.y)) - 1.0) * (range / K)
+
+
+ENCODING = MotionEncoding(
+    name="log",
+    title="the logarithm of 1 and 2047 times the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("rg16", "rg16_centred", "rg16_snorm", "rgb10a2_centred", "rg8", "rg8_centred", "rg8_snorm"),
+    citation="the mu-law of ITU-T G.711 (1972) with mu = 2047 instead of 255",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(3, 6),
+    ulps_reason="a logarithm of up to 11 within two of its own units, over 11; a power of two within two of its own "
+    "units, a difference and two products",
+    constants={"MOTION_LOG_OCTAVES": OCTAVES, "MOTION_LOG_K": K, **CONSTANTS},
+)

@@ -1,0 +1,33 @@
+"""Square root: steps grow with the root of the motion, and around no motion they are finest."""
+
+from pathlib import Path
+
+from ..codecs.motion_codec import MotionEncoding
+from ..vec import Vec2, sign_not_zero, sqrt
+
+
+def encode(motion: Vec2, range) -> Vec2:
+    """Motion to [-1, 1] up to the range, and beyond."""
+    # c = sign(v) sqrt(|v| / range)
+    share = abs(motion) / range
+    return sign_not_zero(motion) * Vec2(sqrt(share.x), sqrt(share.y))
+
+
+def decode(e: Vec2, range) -> Vec2:
+    """The motion of two numbers."""
+    # v = c |c| range
+    return e * abs(e) * range
+
+
+ENCODING = MotionEncoding(
+    name="sqrt",
+    title="the root of the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("rg16", "rg16_centred", "rg16_snorm", "rgb10a2_centred", "rg8", "rg8_centred", "rg8_snorm"),
+    citation="Epic Games, Unreal Engine 5.7, Common.ush: UNORM 16:16 with no motion at 32767 / 65535; L. Vutner after "
+    "Crytek, CryENGINE 3: UNORM 8:8 with no motion at 127 / 255",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 2),
+    ulps_reason="a division and a root, which halves its error; two products",
+)

@@ -1,0 +1,80 @@
+"""Motion vectors through a real render target: encoded by one fragment pass, decoded from the texture by a second."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...encodings import vec
+from ...encodings.codecs.motion_codec import MotionCodec, MotionEncoding
+from ...encodings.storages.storage import STORAGES
+from ..gl.device import Device
+from .codec_passes import storage_defines
+from .harness import Passes, check_functions, exact, set_uniforms
+
+ROUNDING = "nearest"
+
+
+def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, object]:
+    """The macros that make `motion_code.glsl` speak of an encoding.
+
+    Raises:
+        ShaderError: its GLSL file cannot be read or lacks one of its functions.
+    """
+    check_functions(encoding.glsl, encoding.signatures)
+    return {
+        "MOTION_ENCODE": f"{encoding.name}_encode_motion",
+        "MOTION_DECODE": f"{encoding.name}_decode_motion",
+        "MOTION_NEEDS_RANGE": int(needs_range),
+        **vec.CONSTANTS,
+        **encoding.constants,
+    }
+
+
+class MotionPasses(Passes):
+    """A motion codec on a GL device; a context manager that releases what it holds there.
+
+    Attributes:
+        rounded_by: "device" where the format's own conversion rounds to nearest, else "shader".
+
+    Raises:
+        ShaderError: the encoding's GLSL does not compile.
+        FormatError: the device cannot render to the storage's format.
+    """
+
+    def __init__(self, device: Device, codec: MotionCodec):
+        storage = codec.storage
+        is_native = device.native_rounding(storage.target) == ROUNDING
+        self.rounded_by = "device" if is_native else "shader"
+        roundings = [ROUNDING] * storage.channels
+        defines = motion_defines(codec.encoding, codec.needs_range)
+        defines |= storage_defines(storage, roundings, not is_native)
+        shaders, names = ("motion_encode.frag", "motion_decode.frag"), {"MOTION_ENCODING": codec.encoding.glsl}
+        super().__init__(device, shaders, defines, names, {"texels": storage.target})
+
+    def round_trip(self, motions: np.ndarray, largest: float) -> np.ndarray:
+        """Motions in screens a frame, float32 of shape (height, width, 2), encoded, stored and decoded.
+
+        Args:
+            largest: the range in screens.
+
+        Raises:
+            FormatError: the device cannot render to the storage's format.
+        """
+        for program in (self._encode.program, self._decode.program):
+            set_uniforms(program, {"range": largest})
+        (found,) = self._through([STORAGES["rgba32f"]], motions=motions)
+        return found[..., :2]
+
+
+def exact_motions(device: Device, encoding: MotionEncoding, largest: float, given: np.ndarray) -> np.ndarray:
+    """Codes of motions, and motions of codes, by a compute shader and without storage.
+
+    Args:
+        given: a motion and a code; float32 of shape (count, 4).
+
+    Returns:
+        the motion's code and the code's motion, likewise.
+    """
+    defines, names = motion_defines(encoding, True), {"MOTION_ENCODING": encoding.glsl}
+    (found,) = exact(device, "motion_parity.comp", defines, names, [given], 1, range=largest)
+    return found
