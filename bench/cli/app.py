@@ -40,6 +40,8 @@ SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "e
 INTERRUPTED, TERMINATED = 130, 143
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02
+# A part of the paths of moderngl's own files.
+MODERNGL = f"{os.sep}moderngl{os.sep}"
 
 
 def _version(is_asked: bool) -> None:
@@ -210,8 +212,9 @@ def _say(message: str) -> None:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    """Raise what ends the program, once no module is being imported: a library in C++ would not survive it there."""
-    if _imports(frame):
+    """Raise what ends the program, once no module is being imported and no call of moderngl is under way: libraries in
+    C++ would not survive it there."""
+    if _is_delicate(frame):
         signal.signal(signal.SIGALRM, lambda _, later: _end(number, later))
         signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
         return
@@ -221,10 +224,12 @@ def _end(number: int, frame: FrameType | None) -> None:
     raise by
 
 
-def _imports(frame: FrameType | None) -> bool:
-    """Whether a module is being imported."""
+def _is_delicate(frame: FrameType | None) -> bool:
+    """Whether an exception that is raised here could pass through C++ that does not expect one: imports, and moderngl,
+    whose compiled half calls Python back."""
     while frame:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
+        file = frame.f_code.co_filename
+        if file.startswith("<frozen importlib") or MODERNGL in file:
             return True
         frame = frame.f_back
     return False

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import typer
 
-from normalbench.bench.cli.app import app
+from normalbench.bench.cli.app import _is_delicate, app
 from normalbench.bench.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports import tables
@@ -350,3 +350,19 @@ def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
     rows = {row["name"]: row["value"] for row in json.loads(out)}
     assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
     assert rows["-o FILE.parquet"] == "no: pip install pyarrow"
+
+
+@pytest.mark.parametrize(
+    "file, is_delicate",
+    [
+        ("/venv/site-packages/moderngl/__init__.py", True),
+        ("<frozen importlib._bootstrap>", True),
+        ("/mine/scene.py", False),
+    ],
+)
+def test_an_interruption_waits_for_imports_and_for_moderngl(file, is_delicate):
+    """An exception that passes through their C++ ends the process without a word: exit status -11."""
+    found = []
+    namespace = {"look": lambda: found.append(_is_delicate(sys._getframe()))}
+    exec(compile("look()", file, "exec"), namespace)
+    assert found == [is_delicate]
