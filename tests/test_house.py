@@ -1,6 +1,7 @@
 """The house: rooms and who knows whom, the package list, the catalogue, and twins."""
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
@@ -216,3 +217,15 @@ def test_the_folders_of_bench_import_each_other_one_way():
         for room in free:
             del known[room]
     assert not known, f"a circle among {sorted(known)}"
+
+
+def test_what_the_set_up_imports_is_there():
+    """A script that asks for a name of an older version installs everything anew, and says that it is missing."""
+    asked = [
+        (script.name, module, name)
+        for script in sorted((ROOT / ".ci").glob("prepare-*"))
+        for module, name in re.findall(r"from (normalbench[\w.]*) import (\w+)", script.read_text())
+    ]
+    assert asked
+    for script, module, name in asked:
+        assert hasattr(importlib.import_module(module), name), f".ci/{script}: {module} has no {name}"
