@@ -100,7 +100,7 @@ def _layouts() -> list[Row]:
     return [
         _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
         | {"engine": layout.engine or None, "year": layout.year or None, "from": layout.source}
-        | {"holds": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets)}
+        | {"holds": layout.summary}
         for layout in sorted(LAYOUTS.values(), key=lambda layout: (layout.engine.lower(), layout.year))
     ]
 
