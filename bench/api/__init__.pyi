@@ -377,7 +377,7 @@ def motion(
         turn: Degrees a frame, comma-separated.
         picture_turn: Those of --turn that frames are rendered of as well; none: no frames. Default: the one nearest to 0.25.
         frames: Frames of a sequence.
-        count: Normals whose codes are followed.
+        count: Normals whose codes are followed. Frames take longer; --picture-turn none leaves them out.
         size: WIDTHxHEIGHT of the image.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_type_hints
 
 from ...encodings.codecs.files import called
 from ...gbuffer.scenes.files import read as files
 from ..options.counts import checked_sides
-from ..options.option import Reading, fields_of
+from ..options.option import Count, Reading, fields_of
 from ..options.scene_names import mesh_file, say_notes
 from ..options.words import given_in
 from ..output.errors import UsageError, names_a_folder, pick_or_read, tell
@@ -73,11 +73,16 @@ def say_count_is_unused(options: Any) -> None:
     known = fields_of(type(options))
     if not isinstance(options, Reading) or "count" not in known:
         return
-    if getattr(options, "count", None) == known["count"].default:
+    if getattr(options, "count", None) == known["count"].default or not _is_of_normals(type(options)):
         return
     words = [word.strip() for word in getattr(options, "normals", "").split(",")]
     if all(Path(word).suffix.lower() in ENDINGS for word in words):
         tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
+
+
+def _is_of_normals(options: type) -> bool:
+    """Whether its count is that of normals in a set, and not of what is made of them."""
+    return get_type_hints(options, include_extras=True)["count"] == Count
 
 
 def given(made: NormalSet) -> Callable[[int, int], NormalSet]:

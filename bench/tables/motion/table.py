@@ -42,7 +42,10 @@ class MotionOptions:
         ),
     ] = None
     frames: Annotated[int, Option("--frames", "Frames of a sequence.")] = 32
-    count: Annotated[int, Option("--count", "Normals whose codes are followed.")] = 2**16
+    count: Annotated[
+        int,
+        Option("--count", "Normals whose codes are followed. Frames take longer; --picture-turn none leaves them out."),
+    ] = 2**16
     size: Size = "320x240"
     lights: Lights = 16
     seed: Seed = 0

@@ -83,8 +83,13 @@ def _next(row: Row, best: Row) -> str:
     count = "" if row["instructions"] is None else f", {row['instructions']:g} instructions"
     if aim == "cost":
         return f"{_aimed(row, aim)} instructions"
-    worst = "" if aim == "worst" else f", largest {degrees(largest(row))}"
+    worst = "" if aim == "worst" else f", {_largest(row)}"
     return f"{AIM_TITLES[aim]} {_aimed(row, aim)}{by}{worst}{count}"
+
+
+def _largest(row: Row) -> str:
+    """The supremum where it was searched, else what was met, which may be less."""
+    return f"largest {'met ' if row['angle_sup_deg'] is None else ''}{degrees(largest(row))}"
 
 
 def _more(ratio: float) -> str:
@@ -112,7 +117,7 @@ def _cheaper(places: dict[str, Row], best: Row) -> Iterator[str]:
         return
     row = places[CHEAPER]
     again = row is places.get(RUNNER_UP)
-    figures = f"mean error {degrees(row['angle_mean_deg'])}, largest {degrees(largest(row))}"
+    figures = f"mean error {degrees(row['angle_mean_deg'])}, {_largest(row)}"
     pictured = f", {images(row)}" if images(row) else ""
     yield f"Cheaper: {row['encoding']}" + (
         ", too." if again else f" for {row['instructions']:g} instructions{_bits(row, best)}, {figures}{pictured}."
