@@ -184,7 +184,8 @@ def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened
     button = sheet.locator("[data-copy=markdown]")
     button.focus()
     opened.page.keyboard.press("Enter")
-    opened.page.wait_for_function("document.querySelector('#quality [data-copied]').textContent === 'Copied'")
+    # A function that waits is evaluated anew, which the page's policy forbids; a locator is not.
+    opened.page.locator("#quality [data-copied]:text-is('Copied')").first.wait_for()
     lines = opened.page.evaluate("navigator.clipboard.readText()").splitlines()
     assert (
         len(lines) == 4
