@@ -33,11 +33,9 @@ def tuned(word: str) -> Encoding:
         encoding = variant(encoding, values)
     except ValueError as error:
         raise UsageError(f"{word}: {error}") from error
-    return encoding if table is None else encoding.with_table(_read_table(Path(table), encoding), _said(table))
-
-
-def _said(table: str) -> str:
-    return called(Path(table).name)
+    if table is None:
+        return encoding
+    return encoding.with_table(_read_table(Path(table), encoding), called(Path(table).name))
 
 
 def _example(encoding: Encoding) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from collections.abc import Iterable
+from typing import Protocol, TypeVar
 
 from ...gbuffer.gl.device import Device
 from ...gbuffer.scenes.setting import Setting
@@ -48,6 +49,25 @@ def _check_budget(size: tuple[int, int], samples: int) -> None:
             f"--size {size[0]}x{size[1]}: with samples and frames {math.prod(size) * samples} in all; "
             f"the most is {MAX_SAMPLES} (2^25)"
         )
+
+
+class Fitted(Protocol):
+    """What may not fit the storage that it is asked for in."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def misfit(self) -> str | None: ...
+
+
+F = TypeVar("F", bound=Fitted)
+
+
+def that_fit(codecs: Iterable[F]) -> list[F]:
+    """The codecs of any kind that fit; the rest is named on standard error. Raises UsageError where nothing is left."""
+    made = list(codecs)
+    complaints = [f"{codec.name}: {codec.misfit}" for codec in made if codec.misfit]
+    return what_is_left([codec for codec in made if not codec.misfit], complaints)
 
 
 def what_is_left(made: list[T], complaints: list[str]) -> list[T]:

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..vec import jnp, maximum, minimum, select
-from .storage import MANTISSA, Storage
+from .storage import MANTISSA, STORAGES, Storage
 
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
@@ -139,9 +139,17 @@ def scales_of(storage: Storage) -> tuple[Scale, ...]:
     return tuple(Scale(*map(np.float32, scale)) for scale in scales)
 
 
+def shared(storage: Storage, count: int) -> tuple[Storage, tuple[Scale, ...]]:
+    """What a traced function is given to serve every fixed-point format of a kind: a format that stands for all of
+    them, and this one's scales of the first `count` channels. Others stand for themselves, and have no scales."""
+    if storage.kind == "float" or storage.curved:
+        return storage, ()
+    return STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], scales_of(storage)[:count]
+
+
 def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:
-    """A format of the same kind with scales of its own, one for each channel in use."""
-    return Fixed(**vars(like), scales=scales)
+    """A format of the same kind with scales of its own, one for each channel in use; itself where none are given."""
+    return Fixed(**vars(like), scales=scales) if scales else like
 
 
 def _scale(storage: Storage, channel: int) -> Scale:

@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from ...encodings.catalogue import ENCODINGS
-from .engines import ENGINES
+from . import engines
+from .engines import ENGINES, targets_of
 from .layout import Layout
 from .words import Target
 
-MATERIAL = (
-    Target("rgba8", "albedo.r albedo.g albedo.b kind"),
-    Target("rgba8", "specular.r specular.g specular.b power"),
-)
+MATERIAL = targets_of(engines.MATERIAL)
 
 _ARTICLES = (
     Layout(

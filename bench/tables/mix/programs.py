@@ -12,8 +12,8 @@ import numpy as np
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.rounding import fixed, scales_of
-from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.storages.rounding import fixed, shared
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2, Vec3, direction_or_forward
 
 
@@ -22,7 +22,7 @@ def _encoder(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
     """From normals to the code as it is, or as it is rounded precisely, and as it comes back from the storage."""
 
     def encode(n: Vec3, view: Vec3, *scales: Any):
-        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        codec = Codec(encoding, fixed(like, scales), rounding)
         n = direction_or_forward(n)
         stored = codec.stored(n, view)
         code = stored if encoding.is_precise else encoding.encode(n, view)
@@ -50,12 +50,8 @@ class Programs:
     """
 
     def __init__(self, codec: Codec, block: int):
-        self._codec, self._block, storage = codec, block, codec.storage
-        if storage.kind == "float":
-            self._like, self._scales = storage, ()
-        else:
-            self._like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
-            self._scales = scales_of(storage)[: codec.encoding.components]
+        self._codec, self._block = codec, block
+        self._like, self._scales = shared(codec.storage, codec.encoding.components)
 
     def codes(self, normals: np.ndarray, views: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Codes as encoded and as stored, float32 of shape (numbers, count), of unit normals (count, 3)."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.rounding import Scale, fixed, scales_of
-from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.storages.rounding import Scale, fixed, shared
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ...machine.devices import require_device
@@ -51,7 +51,7 @@ def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
     """Codes and decodes. Fixed-point formats share it and give it their scales: it is compiled once for all."""
 
     def through(n: Vec3, view: Vec3, *scales: Scale) -> tuple[Any, Vec3]:
-        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        codec = Codec(encoding, fixed(like, scales), rounding)
         stored = codec.stored(n, view)
         return stored, encoding.decode(stored, view)
 
@@ -59,12 +59,8 @@ def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
 
 
 def _by_jax(codec: Codec) -> Trip:
-    storage, encoding = codec.storage, codec.encoding
-    if storage.kind == "float" or storage.curved:
-        program, scales = _program(encoding, storage, codec.rounding), ()
-    else:
-        like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
-        program, scales = _program(encoding, like, codec.rounding), scales_of(storage)[: encoding.components]
+    like, scales = shared(codec.storage, codec.encoding.components)
+    program = _program(codec.encoding, like, codec.rounding)
 
     def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         codes, decoded = program(_planes(n), _planes(view), *scales)

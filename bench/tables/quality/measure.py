@@ -17,8 +17,8 @@ import numpy as np
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.rounding import Scale, fixed, scales_of
-from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.storages.rounding import Scale, fixed, shared
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
@@ -70,11 +70,8 @@ class Case:
 
 @cache
 def _meter(codec: Codec) -> Meter:
-    storage, encoding = codec.storage, codec.encoding
-    if storage.kind == "float" or storage.curved:
-        return Meter(_program(encoding, storage, codec.rounding))
-    like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
-    return Meter(_program(encoding, like, codec.rounding), scales_of(storage)[: encoding.components])
+    like, scales = shared(codec.storage, codec.encoding.components)
+    return Meter(_program(codec.encoding, like, codec.rounding), scales)
 
 
 @cache
@@ -82,7 +79,7 @@ def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
     """What decodes a chunk. Fixed-point formats share it and give it their scales: it is compiled once for all."""
 
     def decode(chunk: Chunk, *scales: Scale) -> Vec3:
-        codec = Codec(encoding, fixed(like, scales) if scales else like, rounding)
+        codec = Codec(encoding, fixed(like, scales), rounding)
         return codec.round_trip(chunk.n, chunk.view)
 
     return jax.jit(decode)

@@ -10,7 +10,7 @@ from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.storages.storage import FRAME_STORAGES
 from ...machine.devices import require_device, require_jax
 from ...options.counts import check_seed, checked_count
-from ...options.targets import what_is_left
+from ...options.targets import that_fit
 from ...output.errors import pick
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -38,16 +38,13 @@ def cases(options: FramesOptions) -> list[measure.Case]:
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    made, complaints = list[FrameCodec](), list[str]()
-    for encoding in pick("frame encoding", options.encoding, FRAME_ENCODINGS):
-        names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage in pick("frame storage", names, FRAME_STORAGES):
-            codec = FrameCodec(encoding, storage)
-            if codec.misfit:
-                complaints.append(f"{codec.name}: {codec.misfit}")
-            else:
-                made.append(codec)
-    return what_is_left(made, complaints)
+    return that_fit(
+        FrameCodec(encoding, storage)
+        for encoding in pick("frame encoding", options.encoding, FRAME_ENCODINGS)
+        for storage in pick(
+            "frame storage", ",".join(encoding.storages) if options.storage is None else options.storage, FRAME_STORAGES
+        )
+    )
 
 
 def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:

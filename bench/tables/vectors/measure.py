@@ -15,8 +15,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.motion_codec import NUMBERS, MotionCodec, MotionEncoding
-from ....encodings.storages.rounding import fixed, scales_of
-from ....encodings.storages.storage import MOTION_STORAGES, Storage
+from ....encodings.storages.rounding import fixed, shared
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.motion_passes import MotionPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
@@ -61,24 +61,18 @@ class Case:
         return "x".join(map(str, self.paths.size))
 
 
-# Fixed-point formats of one kind are one program, which is given their scales.
-_LIKE = {s.kind: s for s in MOTION_STORAGES.values() if s.kind != "float"}
-
-
 @cache
 def _compiled(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
     def trip(motions, largest, scales):
-        lies_in = fixed(storage, scales) if scales else storage
-        return jnp.stack(MotionCodec(encoding, lies_in).round_trip(Vec2(*motions), largest))
+        return jnp.stack(MotionCodec(encoding, fixed(storage, scales)).round_trip(Vec2(*motions), largest))
 
     return jax.jit(trip)
 
 
 @contextmanager
 def _by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
-    storage = codec.storage
-    compiled = _compiled(codec.encoding, _LIKE.get(storage.kind, storage))
-    scales = () if storage.kind == "float" else scales_of(storage)[:NUMBERS]
+    like, scales = shared(codec.storage, NUMBERS)
+    compiled = _compiled(codec.encoding, like)
 
     def trip(motions: np.ndarray) -> np.ndarray:
         return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales)).T

@@ -12,7 +12,7 @@ from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
 from ...options.counts import check_seed, checked_numbers, checked_sides, in_range
-from ...options.targets import what_is_left
+from ...options.targets import that_fit
 from ...output.errors import pick
 from ..charts import drawing, having, one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
@@ -53,16 +53,15 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
 
 def codecs(options: VectorsOptions) -> list[MotionCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    made, complaints = list[MotionCodec](), list[str]()
-    for encoding in pick("motion encoding", options.encoding, MOTION_ENCODINGS):
-        names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage in pick("motion storage", names, MOTION_STORAGES):
-            codec = MotionCodec(encoding, storage)
-            if codec.misfit:
-                complaints.append(f"{codec.name}: {codec.misfit}")
-            else:
-                made.append(codec)
-    return what_is_left(made, complaints)
+    return that_fit(
+        MotionCodec(encoding, storage)
+        for encoding in pick("motion encoding", options.encoding, MOTION_ENCODINGS)
+        for storage in pick(
+            "motion storage",
+            ",".join(encoding.storages) if options.storage is None else options.storage,
+            MOTION_STORAGES,
+        )
+    )
 
 
 def _steps(options: VectorsOptions, _: NoOutputs) -> list[Step]:
