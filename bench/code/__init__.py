@@ -1,0 +1,1 @@
+"""A codec as code of many languages: written, run and compared."""

@@ -1,0 +1,7 @@
+#version 430
+// What a codec's code is made from: the encoding's own functions, and bits of small floats. The storage's functions, which
+// storage.glsl.jinja makes, follow.
+#include "vec.glsl"
+#include ENCODING
+#include "turned.glsl"
+#include "bits.glsl"

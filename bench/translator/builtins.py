@@ -1,0 +1,38 @@
+"""Functions that every shading language has, by their GLSL names: what they give for what they are given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from .tree import scalar_of, size_of, vector
+
+# Those that give what their largest argument is.
+LIKE_GIVEN = frozenset(
+    (
+        *("abs", "sign", "floor", "ceil", "fract", "trunc", "round", "roundEven", "sqrt", "inversesqrt", "normalize"),
+        *("min", "max", "clamp", "mix", "step", "smoothstep", "mod", "pow", "exp", "exp2", "log", "log2", "fma"),
+        *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "radians", "degrees", "reflect"),
+    )
+)
+OF_VECTORS = frozenset(("dot", "length", "distance"))
+BITS: Mapping[str, str] = MappingProxyType(
+    {"floatBitsToInt": "int", "floatBitsToUint": "uint", "intBitsToFloat": "float", "uintBitsToFloat": "float"}
+)
+FETCH = "texelFetch"
+
+
+def result_of(name: str, given: Sequence[str]) -> str | None:
+    """The type that a built-in function gives for arguments of these types; None where there is none of that name."""
+    if name in LIKE_GIVEN:
+        size = max(map(size_of, given))
+        return vector(scalar_of(given[0]), size)
+    if name in OF_VECTORS:
+        return "float"
+    if name == "cross":
+        return "vec3"
+    if name in ("any", "all"):
+        return "bool"
+    if name in BITS:
+        return vector(BITS[name], size_of(given[0]))
+    return "vec4" if name == FETCH else None

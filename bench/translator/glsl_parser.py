@@ -1,0 +1,273 @@
+"""GLSL read as a tree: functions without side effects, constants, and tables that are read texel by texel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .parser import Parser
+from .tokens import END, Preprocessor, Token, suffixed
+from .tree import (
+    Declare,
+    Elements,
+    Expression,
+    For,
+    Function,
+    If,
+    Leave,
+    Literal,
+    Parameter,
+    Program,
+    Return,
+    Statement,
+    Table,
+    While,
+    size_of,
+)
+
+TYPES = frozenset(
+    (
+        *("float", "int", "uint", "bool", "mat2", "mat3", "mat4"),
+        *(f"{letter}vec{size}" for letter in ("", "i", "u", "b") for size in (2, 3, 4)),
+    )
+)
+PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
+
+
+def read_glsl(text: str) -> Program:
+    """A program of GLSL's text, its includes in place. Raises TranslationError."""
+    before = Preprocessor()
+    given = before.tokens(text)
+    return GlslParser(given, before.constants).program()
+
+
+class GlslParser(Parser):
+    """GLSL's declarations and statements.
+
+    Args:
+        given: the tokens.
+        constants: numbers by name, each as its tokens.
+    """
+
+    def __init__(self, given: Sequence[Token], constants: dict[str, list[Token]]):
+        super().__init__(given)
+        self._made = Program([], [], [])
+        for name, words in constants.items():
+            value = GlslParser(words, {})._initial()
+            self._constant(name, value)
+
+    def _initial(self) -> Expression:
+        return self._expression()
+
+    def _constant(self, name: str, value: Expression) -> None:
+        self._made.constants.append(Declare(value.kind, name, value, is_constant=True))
+        self._declared(name, value.kind)
+
+    def program(self) -> Program:
+        """All of it."""
+        while self._next is not END:
+            if not self._skip(";"):
+                self._global()
+        return self._made
+
+    def _global(self) -> None:
+        first = self._next
+        if self._skip("uniform"):
+            self._table()
+        elif self._skip("precision"):
+            self._at += 3
+        elif self._next.text == "const":
+            self._constants_of(self._declaration())
+        else:
+            self._function(first)
+
+    def _constants_of(self, declared: list[Statement]) -> None:
+        self._made.constants += [each for each in declared if isinstance(each, Declare)]
+
+    def _table(self) -> None:
+        while self._next.text in PRECISIONS:
+            self._take()
+        self._take("sampler2D")
+        name = self._word().text
+        self._take(";")
+        self._made.tables.append(Table(name))
+        self._declared(name, "sampler2D")
+
+    def _kind(self) -> str:
+        while self._next.text in PRECISIONS:
+            self._take()
+        token = self._word()
+        if token.text not in TYPES and token.text != "void":
+            self._at -= 1
+            raise self._error(f"{token.text} is not a type that is known here")
+        return token.text
+
+    def _function(self, first: Token) -> None:
+        kind, name = self._kind(), self._word().text
+        self._take("(")
+        parameters = self._parameters()
+        if self._skip(";"):
+            return
+        function = Function(kind, name, parameters, [])
+        self._scopes.append({})
+        for parameter in parameters:
+            self._declared(parameter.name, parameter.kind)
+        function.body = self._block()
+        self._scopes.pop()
+        self._add(function)
+        self._about(function, first)
+        function.behind = ""
+        self._made.functions.append(function)
+
+    def _parameters(self) -> list[Parameter]:
+        found: list[Parameter] = []
+        while not self._skip(")"):
+            while self._next.text in ("const", "in"):
+                self._take()
+            kind = self._kind()
+            name = "" if self._next.text in (",", ")") else self._word().text
+            found.append(Parameter(kind, name or f"unused{len(found)}"))
+            if self._next.text != ")":
+                self._take(",")
+        return found
+
+    # Statements.
+
+    def _block(self) -> list[Statement]:
+        self._take("{")
+        self._scopes.append({})
+        found: list[Statement] = []
+        while not self._skip("}"):
+            found += self._deeper(self._statement)
+        self._scopes.pop()
+        return found
+
+    def _body(self) -> list[Statement]:
+        if self._next.text == "{":
+            return self._block()
+        self._scopes.append({})
+        found = self._deeper(self._statement)
+        self._scopes.pop()
+        return found
+
+    def _statement(self) -> list[Statement]:
+        first = self._next
+        if self._skip(";"):
+            return []
+        if first.text == "{":
+            return self._block()
+        if (first.text in TYPES and self._ahead(1) not in ("(", "[")) or first.text in ("const", *PRECISIONS):
+            made = self._declaration()
+        else:
+            made = [self._simple(first)]
+        if made:
+            made[0].above = [*first.above, *made[0].above]
+            if not isinstance(made[-1], If | For | While):
+                made[-1].behind = self._tokens[self._at - 1].behind
+        return made
+
+    def _simple(self, first: Token) -> Statement:
+        if self._skip("if"):
+            return self._if()
+        if self._skip("for"):
+            return self._for()
+        if self._skip("while"):
+            self._take("(")
+            condition = self._expression()
+            self._take(")")
+            return While(condition, self._body())
+        if first.text in ("break", "continue"):
+            return Leave(self._ended(self._take().text))
+        if self._skip("return"):
+            return Return(self._ended(None if self._next.text == ";" else self._expression()))
+        return self._ended(self._assignment())
+
+    def _ended(self, what):
+        self._take(";")
+        return what
+
+    def _if(self) -> Statement:
+        self._take("(")
+        condition = self._expression()
+        self._take(")")
+        chosen = self._body()
+        return If(condition, chosen, self._body() if self._skip("else") else [])
+
+    def _for(self) -> Statement:
+        self._take("(")
+        self._scopes.append({})
+        declared = self._declaration()
+        if len(declared) != 1:
+            raise self._error("a loop counts one number")
+        condition = self._ended(self._expression())
+        step = self._assignment()
+        self._take(")")
+        body = self._body()
+        self._scopes.pop()
+        return For(declared[0], condition, step, body)
+
+    def _declaration(self) -> list[Statement]:
+        """One statement for each name; a constant that stands for another is that other."""
+        is_constant = self._skip("const")
+        kind = self._kind()
+        found = [d for d in [self._declarator(kind, is_constant)] if d]
+        while self._skip(","):
+            found += [d for d in [self._declarator(kind, is_constant)] if d]
+        self._take(";")
+        return found
+
+    def _declarator(self, kind: str, is_constant: bool) -> Statement | None:
+        name, is_array = self._word().text, False
+        if self._skip("["):
+            is_array = True
+            if self._next.text != "]":
+                self._expression()
+            self._take("]")
+        value = self._expression() if self._skip("=") else None
+        names = {each.name for each in self._made.constants}
+        if is_constant and value is not None and getattr(value, "name", None) in names:
+            self._declared(name, value.kind, value)
+            return None
+        if value is not None and not is_array:
+            value = self._converted(value, kind) if size_of(kind) == 1 else value
+        kind = value.kind if is_array and value is not None else kind
+        self._declared(name, kind)
+        return Declare(kind, name, value, is_constant)
+
+    # What expressions are made of.
+
+    def _primary(self) -> Expression:
+        token = self._take()
+        if token.kind == "number":
+            return Literal(*suffixed(token.text))
+        if token.text == "(":
+            value = self._expression()
+            self._take(")")
+            return value
+        if token.text in ("true", "false"):
+            return Literal("bool", token.text)
+        if token.text in TYPES and self._skip("["):
+            return self._array(token.text)
+        if token.text in TYPES:
+            self._take("(")
+            return self._constructed(token.text, self._arguments())
+        if token.kind != "word":
+            self._at -= 1
+            raise self._error(f"{token.text} is not expected here")
+        if self._skip("("):
+            return self._called(token.text, self._arguments())
+        return self._named(token)
+
+    def _array(self, kind: str) -> Expression:
+        if self._next.text != "]":
+            self._expression()
+        self._take("]")
+        self._take("(")
+        values = self._arguments()
+        return Elements(f"{kind}[{len(values)}]", [self._converted(value, kind) for value in values])
+
+    def _member(self, value: Expression, word: Token) -> Expression:
+        if word.text == "length" and value.kind.endswith("]"):
+            self._take("(")
+            self._take(")")
+            return Literal("int", value.kind.partition("[")[2].rstrip("]"))
+        return super()._member(value, word)

@@ -1,0 +1,21 @@
+"""GLSL, for OpenGL and Vulkan, and GLSL ES, which wants precisions."""
+
+from __future__ import annotations
+
+from .tree import Table
+from .writer import Writer, words
+
+
+class GlslWriter(Writer):
+    """GLSL 4.3 and later."""
+
+    reserved = words("half input output sample filter common partition active superp")
+
+
+class EsslWriter(GlslWriter):
+    """GLSL ES 3.1 and later."""
+
+    head = "precision highp float;\nprecision highp int;"
+
+    def _table(self, table: Table) -> str:
+        return f"uniform highp sampler2D {table.name};"

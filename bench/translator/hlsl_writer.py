@@ -1,0 +1,68 @@
+"""HLSL, which Slang reads as well."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from .tree import Binary, Call, Construct, Declare, Elements, Literal, Name, Table, size_of
+from .writer import PRIMARY, Writer, words
+
+KINDS: Mapping[str, str] = MappingProxyType(
+    {
+        f"{letter}vec{size}": f"{scalar}{size}"
+        for letter, scalar in (("", "float"), ("i", "int"), ("u", "uint"), ("b", "bool"))
+        for size in (2, 3, 4)
+    }
+    | {f"mat{size}": f"float{size}x{size}" for size in (2, 3, 4)}
+)
+
+
+class HlslWriter(Writer):
+    """HLSL of shader model 5 and later. A matrix is written as its transpose: its rows are GLSL's columns."""
+
+    kinds = KINDS
+    functions: Mapping[str, str] = MappingProxyType(
+        {
+            "inversesqrt": "rsqrt",
+            "mix": "lerp",
+            "fract": "frac",
+            "roundEven": "round",
+            "floatBitsToInt": "asint",
+            "floatBitsToUint": "asuint",
+            "intBitsToFloat": "asfloat",
+            "uintBitsToFloat": "asfloat",
+            "mod": "fmod",
+            "fma": "mad",
+        }
+    )
+    reserved = words(
+        "half sample point line triangle texture matrix vector linear centroid in out inout shared pass technique "
+        "sampler buffer register export interface class string dword fixed this"
+    )
+
+    def _table(self, table: Table) -> str:
+        return f"Texture2D<float4> {table.name};"
+
+    def _global(self, constant: Declare) -> str:
+        return f"static const {self._declared(constant)};"
+
+    def _elements(self, value: Elements) -> str:
+        return f"{{{self._listed(value)}}}"
+
+    def _fetch(self, value: Call) -> str:
+        table, place, level = map(self._text, value.arguments)
+        return f"{table}.Load(int3({place}, {level}))"
+
+    def _binary(self, value: Binary) -> tuple[str, int]:
+        if value.operator == "*" and "mat" in value.left.kind + value.right.kind:
+            return f"mul({self._text(value.right)}, {self._text(value.left)})", PRIMARY
+        return super()._binary(value)
+
+    def _construct(self, value: Construct) -> str:
+        size, given = size_of(value.kind), value.arguments
+        if size > 1 and len(given) == 1 and size_of(given[0].kind) == 1:
+            if isinstance(given[0], Literal | Name):
+                return f"{self._kind(value.kind)}({', '.join([self._text(given[0])] * size)})"
+            return f"({self._text(given[0])}).{'x' * size}"
+        return super()._construct(value)

@@ -1,0 +1,77 @@
+"""The Metal Shading Language."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from .hlsl_writer import KINDS
+from .tree import Call, Construct, Declare, Elements, Function, Name, Program, inside, size_of
+from .writer import Writer, words
+
+TABLE = "texture2d<float>"
+
+
+class MslWriter(Writer):
+    """Metal 2 and later. Tables are arguments: Metal has no textures outside of functions."""
+
+    kinds: Mapping[str, str] = MappingProxyType(KINDS)
+    functions: Mapping[str, str] = MappingProxyType(
+        {
+            "inversesqrt": "rsqrt",
+            "roundEven": "rint",
+            "mod": "fmod",
+            "floatBitsToInt": "as_type<int>",
+            "floatBitsToUint": "as_type<uint>",
+            "intBitsToFloat": "as_type<float>",
+            "uintBitsToFloat": "as_type<float>",
+        }
+    )
+    reserved = words("half sample vertex fragment kernel device constant thread texture sampler access")
+    float_suffix = "f"
+    head = "#include <metal_stdlib>\nusing namespace metal;"
+    has_tables = False
+
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+        super().__init__(prefix, sizes)
+        self._reads: dict[str, list[str]] = {}
+
+    def program(self, program: Program) -> str:
+        self._reads = tables_read(program)
+        return super().program(program)
+
+    def _global(self, constant: Declare) -> str:
+        return f"constant {self._declared(constant)};"
+
+    def _signature(self, function: Function) -> str:
+        read = "".join(f", {TABLE} {name}" for name in self._reads[function.name])
+        return f"inline {super()._signature(function).removesuffix(')')}{read})"
+
+    def _elements(self, value: Elements) -> str:
+        return f"{{{self._listed(value)}}}"
+
+    def _call(self, value: Call) -> str:
+        text = super()._call(value)
+        return text.removesuffix(")") + "".join(f", {name}" for name in self._reads.get(value.name, [])) + ")"
+
+    def _fetch(self, value: Call) -> str:
+        table, place, _ = map(self._text, value.arguments)
+        return f"{table}.read(uint2({place}))"
+
+    def _construct(self, value: Construct) -> str:
+        kind = self._kind(value.kind)
+        if size_of(value.kind) == 1 and len(value.arguments) == 1:
+            return f"{kind}({self._text(value.arguments[0])})"
+        return super()._construct(value)
+
+
+def tables_read(program: Program) -> dict[str, list[str]]:
+    """The tables that each function reads, itself or by those it calls; by name, in order."""
+    names = {table.name for table in program.tables}
+    found: dict[str, list[str]] = {}
+    for function in program.functions:
+        nodes = list(inside(function.body))
+        read = {node.name for node in nodes if isinstance(node, Name)} & names
+        read |= {name for node in nodes if isinstance(node, Call) for name in found.get(node.name, [])}
+        found[function.name] = sorted(read)
+    return found

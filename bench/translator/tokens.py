@@ -1,0 +1,192 @@
+"""A shader's text as tokens, after its preprocessor: macros without arguments, and parts under conditions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from .tree import Place, TranslationError
+
+# In this order: what is longer first.
+TOKEN = re.compile(
+    r"(?P<comment>//[^\n]*|/\*.*?\*/)"
+    r"|(?P<number>0[xX][0-9a-fA-F]+[uUi]?|(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?(?:[uUfFhHi]\b|lf\b)?)"
+    r"|(?P<word>[A-Za-z_]\w*)"
+    r"|(?P<mark><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||\^\^|[-+*/%&|^]=|[-+*/%&|^~!<>=?:;,.(){}\[\]@])",
+    re.DOTALL,
+)
+BLANK = re.compile(r"[ \t\r]+|\\\n")
+# Of a file that people wrote.
+MOST_TOKENS = 200_000
+MOST_DEPTH = 32
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word, a number or a mark; `above` are the comments before it, `behind` the one after it on its line."""
+
+    kind: str
+    text: str
+    place: Place
+    above: tuple[str, ...] = ()
+    behind: str = ""
+
+
+END = Token("end", "the end of the file", Place(0, 0))
+
+
+def said(comment: str) -> list[str]:
+    """A comment's lines without its marks."""
+    if comment.startswith("//"):
+        return [comment.removeprefix("//").strip()]
+    lines = (line.strip().removeprefix("*").strip() for line in comment[2:-2].splitlines())
+    return [line for line in lines if line]
+
+
+def tokens(text: str, first: int = 1) -> list[Token]:
+    """The tokens of text without preprocessor lines; a comment followed by an empty line belongs to nothing.
+
+    Args:
+        text: the text.
+        first: the number of its first line.
+
+    Raises:
+        TranslationError: a character that no token begins with, or too many tokens.
+    """
+    found: list[Token] = []
+    above: list[str] = []
+    at, line, begin = 0, first, 0
+    newlines = 0
+    while at < len(text):
+        if text[at] == "\n":
+            at, line, begin, newlines = at + 1, line + 1, at + 1, newlines + 1
+            if newlines > 1:
+                above = []
+            continue
+        if blank := BLANK.match(text, at):
+            at = blank.end()
+            continue
+        match = TOKEN.match(text, at)
+        place = Place(line, at - begin + 1)
+        if not match:
+            raise TranslationError(f"{line}:{place.column}: {text[at]!r} begins nothing known here")
+        piece, kind = match[0], str(match.lastgroup)
+        if kind == "comment":
+            is_behind = newlines == 0 and found and not piece.startswith("/*")
+            if is_behind:
+                found[-1] = replace(found[-1], behind=said(piece)[0])
+            else:
+                above += said(piece)
+                newlines = 0
+            line += piece.count("\n")
+        else:
+            found.append(Token(kind, piece, place, tuple(above)))
+            above, newlines = [], 0
+        at = match.end()
+        if len(found) > MOST_TOKENS:
+            raise TranslationError(f"more than {MOST_TOKENS} tokens: no file of an encoder is so long")
+    return found
+
+
+class Preprocessor:
+    """Macros without arguments and conditions of whole numbers; numbers in macros stay names, and are kept apart.
+
+    Attributes:
+        constants: macros that stand for a number or for an array of numbers, by name: their tokens.
+    """
+
+    def __init__(self) -> None:
+        self._macros: dict[str, list[Token]] = {}
+        self.constants: dict[str, list[Token]] = {}
+
+    def tokens(self, text: str) -> list[Token]:
+        """The tokens of a text, with its macros in place. Raises TranslationError."""
+        kept: list[str] = []
+        including: list[tuple[bool, bool]] = []  # whether this branch counts, and whether one has
+        for number, line in enumerate(text.split("\n"), 1):
+            directive = re.match(r"\s*#\s*(\w*)\s*(.*)", line)
+            counts = all(is_on for is_on, _ in including)
+            if not directive:
+                kept.append(line if counts else "")
+                continue
+            kept.append("")
+            self._obey(directive[1], directive[2], number, including, counts)
+        if including:
+            raise TranslationError("an #if without its #endif")
+        return [each for token in tokens("\n".join(kept)) for each in self._expanded(token, 0)]
+
+    def _obey(self, word: str, rest: str, line: int, including: list[tuple[bool, bool]], counts: bool) -> None:
+        if word in ("if", "ifdef", "ifndef"):
+            is_on = counts and self._holds(word, rest, line)
+            including.append((is_on, is_on))
+        elif word in ("elif", "else", "endif") and not including:
+            raise TranslationError(f"{line}:1: #{word} without #if")
+        elif word == "endif":
+            including.pop()
+        elif word in ("elif", "else"):
+            _, was_on = including.pop()
+            around = all(is_on for is_on, _ in including)
+            is_on = around and not was_on and (word == "else" or self._holds("if", rest, line))
+            including.append((is_on, was_on or is_on))
+        elif word == "define" and counts:
+            self._define(rest, line)
+
+    def _define(self, rest: str, line: int) -> None:
+        match = re.match(r"([A-Za-z_]\w*)(\(?)\s*(.*)", rest)
+        if not match or match[2]:
+            raise TranslationError(f"{line}:1: macros with arguments are not translated: {rest[:60]}")
+        self._macros[match[1]] = [replace(token, above=(), behind="") for token in tokens(match[3], line)]
+        if _is_number(self._macros[match[1]]):
+            self.constants[match[1]] = self._macros.pop(match[1])
+
+    def _holds(self, word: str, rest: str, line: int) -> bool:
+        if word != "if":
+            name = rest.split()[0] if rest.split() else ""
+            return (name in self._macros or name in self.constants) == (word == "ifdef")
+        found = [self._number(token, line) for token in tokens(rest.split("//")[0], line)]
+        if len(found) != 1:
+            raise TranslationError(f"{line}:1: only `#if NAME` is translated, not {rest[:60]}")
+        return found[0] != 0
+
+    def _number(self, token: Token, line: int) -> int:
+        stands = self.constants.get(token.text, [token])
+        if len(stands) != 1 or not stands[0].text.isdigit():
+            raise TranslationError(f"{line}:1: {token.text} is not a whole number")
+        return int(stands[0].text)
+
+    def _expanded(self, token: Token, depth: int) -> Iterator[Token]:
+        if token.kind != "word" or token.text not in self._macros:
+            yield token
+            return
+        if depth > MOST_DEPTH:
+            raise TranslationError(f"{token.place.line}:{token.place.column}: {token.text} stands for itself")
+        made = [t for each in self._macros[token.text] for t in self._expanded(each, depth + 1)]
+        for at, each in enumerate(made):
+            last = at == len(made) - 1
+            yield replace(each, place=token.place, above=() if at else token.above, behind=token.behind if last else "")
+
+
+def _is_number(words: Sequence[Token]) -> bool:
+    """A number under a sign, or an array of numbers."""
+    texts = [word.text for word in words if word.text != "-"]
+    is_array = len(texts) > 1 and texts[0] in ("float", "int") and texts[1] == "["
+    return is_array or (len(texts) == 1 and words[-1].kind == "number")
+
+
+def suffixed(text: str) -> tuple[str, str]:
+    """A number as GLSL and HLSL write it: its type, and its text without suffix."""
+    lower = text.lower()
+    if lower.startswith("0x"):
+        return ("uint" if lower.endswith("u") else "int"), text.rstrip("uUi")
+    if lower.endswith("u"):
+        return "uint", lower.rstrip("u")
+    is_float = any(mark in lower for mark in ".efh")
+    return ("float", with_a_point(lower.rstrip("lfh"))) if is_float else ("int", lower.rstrip("i"))
+
+
+def with_a_point(text: str) -> str:
+    """A number's text with digits on both sides of a point."""
+    mantissa, mark, exponent = text.partition("e")
+    whole, _, rest = mantissa.partition(".")
+    return f"{whole or 0}.{rest or 0}{mark}{exponent}"

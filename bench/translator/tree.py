@@ -1,0 +1,219 @@
+"""What functions are made of, whatever language they were read from. Types are named as GLSL names them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
+
+SCALARS = {"float": "", "int": "i", "uint": "u", "bool": "b"}
+
+
+class TranslationError(Exception):
+    """What cannot be read or said in another language; one line, with line and column where they are known."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a token stands, counted from 1."""
+
+    line: int
+    column: int
+
+
+def scalar_of(kind: str) -> str:
+    """The type of a vector's components; a scalar's own."""
+    for scalar, letter in SCALARS.items():
+        if kind == scalar or (kind.startswith(f"{letter}vec") and kind[len(letter) + 3 :].isdigit()):
+            return scalar
+    return "float" if kind.startswith("mat") else kind
+
+
+def size_of(kind: str) -> int:
+    """How many components a type has; 1 for a scalar."""
+    return int(kind[-1]) if "vec" in kind and kind[-1].isdigit() else 1
+
+
+def vector(scalar: str, size: int) -> str:
+    """The type of so many of a scalar."""
+    return scalar if size == 1 else f"{SCALARS[scalar]}vec{size}"
+
+
+@dataclass
+class Expression:
+    """A value; `kind` is its type, and of an array its elements' type followed by [count]."""
+
+    kind: str
+
+
+@dataclass
+class Literal(Expression):
+    """A number or a truth value; `text` is without suffix."""
+
+    text: str
+
+
+@dataclass
+class Name(Expression):
+    name: str
+
+
+@dataclass
+class Unary(Expression):
+    operator: str
+    value: Expression
+
+
+@dataclass
+class Binary(Expression):
+    operator: str
+    left: Expression
+    right: Expression
+
+
+@dataclass
+class Choice(Expression):
+    """condition ? chosen : other, under one truth value."""
+
+    condition: Expression
+    chosen: Expression
+    other: Expression
+
+
+@dataclass
+class Call(Expression):
+    """A built-in function or one of the program's; `is_own` says which."""
+
+    name: str
+    arguments: list[Expression]
+    is_own: bool = False
+
+
+@dataclass
+class Construct(Expression):
+    """A type's constructor: a conversion, a vector of parts, or a matrix of columns."""
+
+    arguments: list[Expression]
+
+
+@dataclass
+class Swizzle(Expression):
+    value: Expression
+    fields: str
+
+
+@dataclass
+class Index(Expression):
+    value: Expression
+    at: Expression
+
+
+@dataclass
+class Elements(Expression):
+    """An array of numbers."""
+
+    values: list[Expression]
+
+
+@dataclass
+class Statement:
+    """`above` are the comments before it, `behind` the one at its end; both without their marks."""
+
+    above: list[str] = field(default_factory=list, kw_only=True)
+    behind: str = field(default="", kw_only=True)
+
+
+@dataclass
+class Declare(Statement):
+    kind: str
+    name: str
+    value: Expression | None
+    is_constant: bool = False
+
+
+@dataclass
+class Assign(Statement):
+    """`operator` is =, +=, and so on."""
+
+    target: Expression
+    operator: str
+    value: Expression
+
+
+@dataclass
+class If(Statement):
+    condition: Expression
+    chosen: list[Statement]
+    other: list[Statement]
+
+
+@dataclass
+class For(Statement):
+    start: Statement
+    condition: Expression
+    step: Statement
+    body: list[Statement]
+
+
+@dataclass
+class While(Statement):
+    condition: Expression
+    body: list[Statement]
+
+
+@dataclass
+class Leave(Statement):
+    """break or continue."""
+
+    word: str
+
+
+@dataclass
+class Return(Statement):
+    value: Expression | None
+
+
+@dataclass
+class Parameter:
+    kind: str
+    name: str
+
+
+@dataclass
+class Function(Statement):
+    kind: str
+    name: str
+    parameters: list[Parameter]
+    body: list[Statement]
+
+
+@dataclass
+class Table:
+    """A texture that is read texel by texel."""
+
+    name: str
+
+
+@dataclass
+class Program:
+    """Constants, tables and functions, in an order in which each uses only those before it."""
+
+    constants: list[Declare]
+    tables: list[Table]
+    functions: list[Function]
+
+    def function(self, name: str) -> Function:
+        """The function of a name that only one has."""
+        (found,) = (f for f in self.functions if f.name == name)
+        return found
+
+
+def inside(node: Any) -> Iterator[Any]:
+    """A node and all below it."""
+    if isinstance(node, list):
+        for each in node:
+            yield from inside(each)
+    elif is_dataclass(node):
+        yield node
+        for each in fields(node):
+            yield from inside(getattr(node, each.name))

@@ -1,0 +1,133 @@
+"""WGSL, WebGPU's language."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from .parser import SHIFTS
+from .tree import (
+    Binary,
+    Call,
+    Choice,
+    Construct,
+    Declare,
+    Elements,
+    Expression,
+    Function,
+    Literal,
+    Table,
+    size_of,
+)
+from .writer import PRIMARY, UNARY, Writer, words
+
+# Functions whose arguments all have one type.
+SPLATS = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep", "pow", "mod"))
+RESERVED = words(
+    "active alignas as asm auto become bf16 catch class common const demote do enum explicit export extern external "
+    "filter final finally fixed from get goto half impl implements import inline interface lowp highp macro match meta "
+    "mod module move mut namespace new of out package partition pass patch pixelfragment precise precision premerge "
+    "priv protected pub public readonly ref register resource restrict self set shared sizeof smooth snorm static std "
+    "struct super target template this throw trait try type typedef typename union unless unorm unsafe unsized use "
+    "using var varying virtual volatile where with writeonly yield loop fn let override switch sampler texture"
+)
+
+
+class WgslWriter(Writer):
+    """WGSL; `group` is where tables are bound."""
+
+    kinds: Mapping[str, str] = MappingProxyType(
+        {
+            "float": "f32",
+            "int": "i32",
+            "uint": "u32",
+            **{
+                f"{letter}vec{size}": f"vec{size}{short}"
+                for letter, short in (("", "f"), ("i", "i"), ("u", "u"), ("b", "<bool>"))
+                for size in (2, 3, 4)
+            },
+            **{f"mat{size}": f"mat{size}x{size}f" for size in (2, 3, 4)},
+        }
+    )
+    functions: Mapping[str, str] = MappingProxyType(
+        {
+            "inversesqrt": "inverseSqrt",
+            "roundEven": "round",
+            "floatBitsToInt": "bitcast<i32>",
+            "floatBitsToUint": "bitcast<u32>",
+            "intBitsToFloat": "bitcast<f32>",
+            "uintBitsToFloat": "bitcast<f32>",
+        }
+    )
+    reserved = RESERVED
+    group = 0
+
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+        super().__init__(prefix, sizes)
+        self._bindings = 0
+
+    def _table(self, table: Table) -> str:
+        text = f"@group({self.group}) @binding({self._bindings}) var {table.name}: texture_2d<f32>;"
+        self._bindings += 1
+        return text
+
+    def _global(self, constant: Declare) -> str:
+        value = self._text(constant.value) if constant.value else ""
+        return f"const {constant.name}: {self._kind(constant.kind)} = {value};"
+
+    def _kind(self, kind: str) -> str:
+        element, _, count = kind.partition("[")
+        if count:
+            return f"array<{self._kind(element)}, {count.rstrip(']')}>"
+        return super()._kind(kind)
+
+    def _signature(self, function: Function) -> str:
+        parameters = ", ".join(f"{self._name(p.name)}: {self._kind(p.kind)}" for p in function.parameters)
+        return f"fn {function.name}({parameters}) -> {self._kind(function.kind)}"
+
+    def _declared(self, declared: Declare) -> str:
+        value = f" = {self._text(declared.value)}" if declared.value is not None else ""
+        said = "" if value else f": {self._kind(declared.kind)}"
+        word = "var" if declared.name in self._assigned or not value else "let"
+        return f"{word} {self._name(declared.name)}{said}{value}"
+
+    def _local(self, declared: Declare) -> str:
+        return self._declared(declared)
+
+    def _counted(self, target: Expression, mark: str) -> str:
+        return f"{self._text(target)}{mark[0] * 2}"
+
+    def _binary(self, value: Binary) -> tuple[str, int]:
+        if value.operator in SHIFTS:
+            by = value.right
+            right = f"{by.text}u" if isinstance(by, Literal) else self._as_uint(by)
+            return f"{self._text(value.left, UNARY)} {value.operator} {right}", UNARY - 1
+        if value.operator in ("==", "!=") and value.left.kind == "bool":
+            return f"{self._text(value.left, PRIMARY)} {value.operator} {self._text(value.right, PRIMARY)}", 7
+        return super()._binary(value)
+
+    def _as_uint(self, value: Expression) -> str:
+        return self._text(value, UNARY) if value.kind == "uint" else f"u32({self._text(value)})"
+
+    def _choice(self, value: Choice) -> tuple[str, int]:
+        parts = (value.other, value.chosen, value.condition)
+        return f"select({', '.join(map(self._text, parts))})", PRIMARY
+
+    def _call(self, value: Call) -> str:
+        if not value.is_own and value.name in SPLATS:
+            value = Call(value.kind, value.name, [_splat(a, value.kind) for a in value.arguments])
+        if not value.is_own and value.name == "mod":
+            x, y = (self._text(a, UNARY) for a in value.arguments)
+            return f"({x} - {y} * floor({x} / {y}))"
+        return super()._call(value)
+
+    def _fetch(self, value: Call) -> str:
+        return f"textureLoad({', '.join(map(self._text, value.arguments))})"
+
+    def _elements(self, value: Elements) -> str:
+        return f"{self._kind(value.kind)}({self._listed(value)})"
+
+
+def _splat(value: Expression, kind: str) -> Expression:
+    """A scalar as a vector of a kind; a vector as it is."""
+    return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])

@@ -1,0 +1,285 @@
+"""A program written as text, for languages that look like C. GLSL's is the one whose words stay as they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from .builtins import FETCH
+from .parser import BINDING, SHIFTS
+from .tokens import with_a_point
+from .tree import (
+    Assign,
+    Binary,
+    Call,
+    Choice,
+    Construct,
+    Declare,
+    Elements,
+    Expression,
+    For,
+    Function,
+    If,
+    Index,
+    Leave,
+    Literal,
+    Name,
+    Program,
+    Return,
+    Statement,
+    Swizzle,
+    Table,
+    TranslationError,
+    Unary,
+    While,
+    inside,
+)
+
+INDENT = "    "
+# Of an array, in a line.
+ELEMENTS = 6
+# How tightly what is not a binary operation binds.
+CHOICE, UNARY, PRIMARY = 0, 12, 13
+BITWISE = SHIFTS | {"&", "|", "^"}
+MIXED = BITWISE | {"&&", "||", "^^"}
+
+
+class Writer:
+    """The text of a program. Subclasses say what is otherwise in their language.
+
+    Args:
+        prefix: what the program's names begin with.
+        sizes: of each table its width and its channels.
+
+    Attributes:
+        head: what stands before all else.
+        has_tables: whether tables are variables of the program.
+        kinds: types' names where they are not GLSL's.
+        functions: built-in functions' names where they are not GLSL's.
+        reserved: words that no variable may be called.
+    """
+
+    kinds: Mapping[str, str] = {}
+    functions: Mapping[str, str] = {}
+    reserved: frozenset[str] = frozenset()
+    float_suffix = ""
+    head = ""
+    has_tables = True
+
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+        self._prefix, self._sizes = prefix, sizes
+        self._renamed: dict[str, str] = {}
+        self._assigned: set[str] = set()
+
+    def program(self, program: Program) -> str:
+        """All of it."""
+        parts = self._head(program)
+        if self.has_tables:
+            parts += map(self._table, sorted(program.tables, key=lambda table: table.name))
+        if program.constants:
+            parts.append("\n".join(self._constant(each) for each in program.constants))
+        parts += [self._function(each) for each in program.functions]
+        return "\n\n".join(parts) + "\n"
+
+    def _head(self, program: Program) -> list[str]:  # noqa: ARG002 (C's depends on it)
+        return [self.head] if self.head else []
+
+    def _table(self, table: Table) -> str:
+        return f"uniform sampler2D {table.name};"
+
+    def _constant(self, constant: Declare) -> str:
+        return self._comments(constant, "") + self._global(constant)
+
+    def _global(self, constant: Declare) -> str:
+        return f"const {self._declared(constant)};"
+
+    # Functions and statements.
+
+    def _function(self, function: Function) -> str:
+        self._assigned = {name for node in inside(function.body) if isinstance(node, Assign) for name in _base(node)}
+        if self._assigned & {p.name for p in function.parameters}:
+            raise TranslationError(f"{function.name} assigns to a parameter; assign to a variable of its own")
+        local = [node.name for node in inside(function.body) if isinstance(node, Declare)]
+        self._renamed = {n: f"{n}_" for n in (*local, *(p.name for p in function.parameters)) if n in self.reserved}
+        body = self._statements(function.body, INDENT)
+        return f"{self._comments(function, '')}{self._signature(function)} {{\n{body}}}"
+
+    def _signature(self, function: Function) -> str:
+        parameters = ", ".join(f"{self._kind(p.kind)} {self._name(p.name)}" for p in function.parameters)
+        return f"{self._kind(function.kind)} {function.name}({parameters})"
+
+    def _comments(self, statement: Statement, indent: str) -> str:
+        return "".join(f"{indent}// {line}\n" for line in statement.above)
+
+    def _statements(self, statements: list[Statement], indent: str) -> str:
+        return "".join(self._statement(each, indent) for each in statements)
+
+    def _statement(self, statement: Statement, indent: str) -> str:
+        behind = f"  // {statement.behind}" if statement.behind else ""
+        above = self._comments(statement, indent)
+        match statement:
+            case If():
+                return above + self._if(statement, indent)
+            case For():
+                parts = self._plain(statement.start), self._text(statement.condition), self._plain(statement.step)
+                return above + self._block(f"for ({'; '.join(parts)})", statement.body, indent)
+            case While():
+                return above + self._block(f"while ({self._text(statement.condition)})", statement.body, indent)
+        return f"{above}{indent}{self._plain(statement)};{behind}\n"
+
+    def _block(self, head: str, body: list[Statement], indent: str) -> str:
+        return f"{indent}{head} {{\n{self._statements(body, indent + INDENT)}{indent}}}\n"
+
+    def _if(self, statement: If, indent: str) -> str:
+        text = self._block(f"if ({self._text(statement.condition)})", statement.chosen, indent)
+        if not statement.other:
+            return text
+        return text.rstrip("\n") + self._block(" else", statement.other, indent).removeprefix(indent)
+
+    def _plain(self, statement: Statement) -> str:
+        """A statement of one line, without what ends it."""
+        match statement:
+            case Declare():
+                return self._local(statement)
+            case Assign(target, mark, Literal(text="1")) if mark in ("+=", "-="):
+                return self._counted(target, mark)
+            case Assign(target, mark, value):
+                return f"{self._text(target)} {mark} {self._text(value)}"
+            case Leave(word):
+                return word
+            case Return(None):
+                return "return"
+            case Return(value):
+                return f"return {self._text(value)}" if value else "return"
+        raise TranslationError(f"a {type(statement).__name__} cannot be written")
+
+    def _counted(self, target: Expression, mark: str) -> str:
+        return f"{mark[0] * 2}{self._text(target)}"
+
+    def _local(self, declared: Declare) -> str:
+        return ("const " if declared.is_constant else "") + self._declared(declared)
+
+    def _declared(self, declared: Declare) -> str:
+        kind, _, count = declared.kind.partition("[")
+        array = f"[{count}" if count else ""
+        value = f" = {self._text(declared.value)}" if declared.value is not None else ""
+        return f"{self._kind(kind)} {self._name(declared.name)}{array}{value}"
+
+    # Expressions.
+
+    def _kind(self, kind: str) -> str:
+        return self.kinds.get(kind, kind)
+
+    def _name(self, name: str) -> str:
+        return self._renamed.get(name, name)
+
+    def _text(self, value: Expression, least: int = 0) -> str:
+        """A value, in parentheses where what stands around it binds more tightly."""
+        text, level = self._written(value)
+        return f"({text})" if level < least else text
+
+    def _written(self, value: Expression) -> tuple[str, int]:
+        match value:
+            case Literal():
+                return self._literal(value), PRIMARY
+            case Name(_, name):
+                return self._name(name), PRIMARY
+            case Unary(_, mark, inner):
+                return mark + self._text(inner, UNARY + (isinstance(inner, Unary))), UNARY
+            case Binary():
+                return self._binary(value)
+            case Choice():
+                return self._choice(value)
+            case Call():
+                return self._call(value), PRIMARY
+            case Construct():
+                return self._construct(value), PRIMARY
+            case Swizzle(_, inner, names):
+                return f"{self._text(inner, PRIMARY)}.{names}", PRIMARY
+            case Index(_, inner, at):
+                return f"{self._text(inner, PRIMARY)}[{self._text(at)}]", PRIMARY
+            case Elements():
+                return self._elements(value), PRIMARY
+        raise TranslationError(f"a {type(value).__name__} cannot be written")
+
+    def _literal(self, value: Literal) -> str:
+        if value.kind == "float":
+            return shortest(value.text) + self.float_suffix
+        return value.text + ("u" if value.kind == "uint" else "")
+
+    def _binary(self, value: Binary) -> tuple[str, int]:
+        level = BINDING[value.operator]
+        left, right = self._operand(value, value.left, level), self._operand(value, value.right, level + 1)
+        return f"{left} {value.operator} {right}", level
+
+    def _operand(self, parent: Binary, child: Expression, least: int) -> str:
+        """An operand; what mixes bits or truths is in parentheses, as readers and some languages want it."""
+        if isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child):
+            least = UNARY
+        return self._text(child, least)
+
+    def _choice(self, value: Choice) -> tuple[str, int]:
+        condition, chosen = self._text(value.condition, CHOICE + 1), self._text(value.chosen, CHOICE + 1)
+        return f"{condition} ? {chosen} : {self._text(value.other)}", CHOICE
+
+    def _call(self, value: Call) -> str:
+        if value.name == FETCH and not value.is_own:
+            return self._fetch(value)
+        name = value.name if value.is_own else self.functions.get(value.name, value.name)
+        return f"{name}({', '.join(map(self._text, value.arguments))})"
+
+    def _fetch(self, value: Call) -> str:
+        return f"texelFetch({', '.join(map(self._text, value.arguments))})"
+
+    def _construct(self, value: Construct) -> str:
+        return f"{self._kind(value.kind)}({', '.join(map(self._text, value.arguments))})"
+
+    def _elements(self, value: Elements) -> str:
+        kind, _, count = value.kind.partition("[")
+        return f"{self._kind(kind)}[{count}({self._listed(value)})"
+
+    def _listed(self, value: Elements) -> str:
+        """An array's elements, in lines of their own where they are many."""
+        texts = list(map(self._text, value.values))
+        if len(texts) <= ELEMENTS:
+            return ", ".join(texts)
+        rows = (", ".join(texts[at : at + ELEMENTS]) for at in range(0, len(texts), ELEMENTS))
+        return "\n" + ",\n".join(INDENT + row for row in rows)
+
+
+def _is_unclear(parent: Binary, child: Binary) -> bool:
+    """Whether languages or readers differ in which of two operations binds more tightly."""
+    compares = parent.operator in ("&&", "||") and child.operator not in MIXED
+    return (parent.operator in MIXED or child.operator in MIXED) and not compares
+
+
+def words(text: str) -> frozenset[str]:
+    """The words of a text."""
+    return frozenset(text.split())
+
+
+def _base(assigned: Assign) -> list[str]:
+    """The variable that an assignment changes."""
+    target = assigned.target
+    while isinstance(target, Swizzle | Index):
+        target = target.value
+    return [target.name] if isinstance(target, Name) else []
+
+
+def shortest(text: str) -> str:
+    """The shortest number that is the same float of 32 bits; as it is written where it is not finite as one."""
+    number = np.float32(text)
+    return with_a_point(str(number)) if np.isfinite(number) else text
+
+
+def commented(lines: Iterable[str], mark: str = "//") -> str:
+    """Lines as comments."""
+    return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
+
+
+def identifier(name: str) -> str:
+    """A name as every language takes it: letters, digits and single underscores."""
+    plain = re.sub(r"_+", "_", re.sub(r"\W", "_", name, flags=re.ASCII)).strip("_").lower()
+    return f"n{plain}" if plain[:1].isdigit() else plain
