@@ -1,0 +1,1 @@
+"""Codecs as source code in other languages."""
