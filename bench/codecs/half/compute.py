@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ import numpy as np
 from ....gbuffer.gl.device import FormatError
 from ....gbuffer.gl.shader import Source
 from ...isa.spirv import compiled
+from ...machine.vulkan import adapters
 from ...output.errors import MissingError
 
 FEATURE = "shader-f16"
@@ -28,15 +27,11 @@ def half_device() -> Any:
         MissingError: wgpu is not installed, or no Vulkan device here has 16-bit floats; what to install.
     """
     try:
-        import wgpu
-        from wgpu.backends.wgpu_native.extras import set_instance_extras
         from wgpu.utils import device
+
+        found = [adapter for adapter in adapters() if FEATURE in adapter.features]
     except ImportError as error:
         raise MissingError(f"half arithmetic by glsl needs wgpu ({error}); pip install wgpu") from error
-    set_instance_extras(backends=["Vulkan"])
-    # The driver looks for a display there, and says on standard error that there is no such folder.
-    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
-    found = [adapter for adapter in wgpu.gpu.enumerate_adapters_sync() if FEATURE in adapter.features]
     if not found:
         said = "install one (Debian: apt-get install mesa-vulkan-drivers)"
         raise MissingError(f"half arithmetic by glsl needs a Vulkan driver with 16-bit floats; {said}")

@@ -1,0 +1,20 @@
+"""The Vulkan devices that wgpu finds. Imports wgpu only when it is asked."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from functools import cache
+from typing import Any
+
+
+@cache
+def adapters() -> tuple[Any, ...]:
+    """wgpu's adapters on Vulkan, in the driver's order. Raises ImportError where wgpu is not installed."""
+    import wgpu
+    from wgpu.backends.wgpu_native.extras import set_instance_extras
+
+    set_instance_extras(backends=["Vulkan"])
+    # The driver looks for a display there, and says on standard error that there is no such folder.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    return tuple(wgpu.gpu.enumerate_adapters_sync())
