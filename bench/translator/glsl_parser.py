@@ -254,7 +254,7 @@ class GlslParser(Parser):
             self._at -= 1
             raise self._error(f"{token.text} is not expected here")
         if self._skip("("):
-            return self._called(token.text, self._arguments())
+            return self._called(token.text, self._arguments(), token.place)
         return self._named(token)
 
     def _array(self, kind: str) -> Expression:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from .tree import Table
 from .writer import Writer, words
 
@@ -9,6 +12,7 @@ from .writer import Writer, words
 class GlslWriter(Writer):
     """GLSL 4.3 and later."""
 
+    functions: Mapping[str, str] = MappingProxyType({"atan2": "atan"})
     reserved = words("half input output sample filter common partition active superp")
 
 

@@ -31,6 +31,7 @@ class MslWriter(Writer):
     float_suffix = "f"
     head = "#include <metal_stdlib>\nusing namespace metal;"
     has_tables = False
+    splats = True
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
         super().__init__(prefix, sizes)

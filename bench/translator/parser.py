@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from .builtins import result_of
-from .tokens import END, Token
+from .tokens import END, Token, with_a_point
 from .tree import (
     Assign,
     Binary,
@@ -19,6 +19,7 @@ from .tree import (
     Index,
     Literal,
     Name,
+    Place,
     Statement,
     Swizzle,
     TranslationError,
@@ -92,8 +93,9 @@ class Parser:
             raise self._error(f"a name expected, not {self._next.text}")
         return self._take()
 
-    def _error(self, what: str) -> TranslationError:
-        place = self._next.place if self._next is not END else (self._tokens[-1].place if self._tokens else END.place)
+    def _error(self, what: str, place: Place | None = None) -> TranslationError:
+        last = self._tokens[-1].place if self._tokens else END.place
+        place = place or (last if self._next is END else self._next.place)
         return TranslationError(f"{place.line}:{place.column}: {what}")
 
     def _deeper(self, read: Callable):
@@ -246,16 +248,19 @@ class Parser:
         self._take(")")
         return found
 
-    def _called(self, name: str, arguments: list[Expression]) -> Expression:
+    def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
+        """A call; `place` is where the name stands."""
         if name in self._functions:
             return self._own(name, arguments)
-        if not arguments:
-            raise self._error(f"{name} is not known")
+        if name == "atan" and len(arguments) == 2:
+            name = "atan2"
         if len(arguments) > 1 and name not in ("texelFetch",):
             arguments = self._all_alike(arguments)
-        kind = result_of(name, [a.kind for a in arguments])
+        if name == "exp2" and isinstance(arguments[0], Literal):
+            return Literal("float", with_a_point(repr(2.0 ** float(arguments[0].text))))
+        kind = result_of(name, [a.kind for a in arguments]) if arguments else None
         if kind is None:
-            raise self._error(f"{name} is not a function that is known here")
+            raise self._error(f"{name} is not a function that is known here", place)
         return Call(kind, name, arguments)
 
     def _all_alike(self, arguments: list[Expression]) -> list[Expression]:

@@ -9,6 +9,8 @@ from .tree import Call, Declare, Function, Name, Program, inside, size_of
 
 # A parameter that functions have for others' sake.
 VIEW = "view"
+# Whoever calls one of them with a view calls the other with it.
+PAIR = ("encode", "decode")
 
 
 def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -> Program:
@@ -23,7 +25,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     keys = {f.name.partition("(")[0]: f.name for f in program.functions}
     kept = _reached(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
-    _leave_out_views(functions)
+    _leave_out_views(functions, {keys[name] for name, called in roots.items() if called in PAIR})
     used = {node.name for f in functions for node in inside(f.body) if isinstance(node, Name)}
     constants = _used_constants(program.constants, used)
     _rename(functions, {keys[name]: f"{prefix}_{called}" for name, called in roots.items()}, prefix, own)
@@ -43,16 +45,31 @@ def _reached(program: Program, names: list[str]) -> set[str]:
     return found
 
 
-def _leave_out_views(functions: list[Function]) -> None:
-    """Takes the view from functions that do not read it, those that are called first."""
-    without: dict[str, list[int]] = {}
+def _leave_out_views(functions: list[Function], pair: set[str]) -> None:
+    """Takes the view from functions that do not read it; from both or neither of a pair."""
+    at = {f.name: [p.name for p in f.parameters].index(VIEW) for f in functions if VIEW in _names(f)}
+    unread: set[str] = set()
     for function in functions:
-        for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
-            call.arguments = [a for at, a in enumerate(call.arguments) if at not in without.get(call.name, [])]
-        read = {node.name for node in inside(function.body) if isinstance(node, Name)}
-        unread = [at for at, p in enumerate(function.parameters) if p.name == VIEW and VIEW not in read]
-        function.parameters = [p for at, p in enumerate(function.parameters) if at not in unread]
-        without[function.name] = unread
+        if function.name in at and not _reads_view(function, at, unread):
+            unread.add(function.name)
+    if not pair <= unread:
+        unread -= pair
+    for function in functions:
+        for call in (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread):
+            del call.arguments[at[call.name]]
+        if function.name in unread:
+            del function.parameters[at[function.name]]
+
+
+def _names(function: Function) -> list[str]:
+    return [p.name for p in function.parameters]
+
+
+def _reads_view(function: Function, at: Mapping[str, int], unread: set[str]) -> bool:
+    """Whether a function does more with the view than hand it to functions that do not read it."""
+    calls = (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread)
+    handed_on = {id(node) for call in calls for node in inside(call.arguments[at[call.name]])}
+    return any(isinstance(n, Name) and n.name == VIEW and id(n) not in handed_on for n in inside(function.body))
 
 
 def _used_constants(constants: list[Declare], used: set[str]) -> list[Declare]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from .tree import Place, TranslationError
 
@@ -20,6 +21,7 @@ BLANK = re.compile(r"[ \t\r]+|\\\n")
 # Of a file that people wrote.
 MOST_TOKENS = 200_000
 MOST_DEPTH = 32
+TOO_LONG = f"more than {MOST_TOKENS} words and marks: no encoder is so long"
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ def tokens(text: str, first: int = 1) -> list[Token]:
             above, newlines = [], 0
         at = match.end()
         if len(found) > MOST_TOKENS:
-            raise TranslationError(f"more than {MOST_TOKENS} tokens: no file of an encoder is so long")
+            raise TranslationError(TOO_LONG)
     return found
 
 
@@ -114,7 +116,11 @@ class Preprocessor:
             self._obey(directive[1], directive[2], number, including, counts)
         if including:
             raise TranslationError("an #if without its #endif")
-        return [each for token in tokens("\n".join(kept)) for each in self._expanded(token, 0)]
+        every = (each for token in tokens("\n".join(kept)) for each in self._expanded(token))
+        found = list(islice(every, MOST_TOKENS + 1))
+        if len(found) > MOST_TOKENS:
+            raise TranslationError(TOO_LONG)
+        return found
 
     def _obey(self, word: str, rest: str, line: int, including: list[tuple[bool, bool]], counts: bool) -> None:
         if word in ("if", "ifdef", "ifndef"):
@@ -155,16 +161,25 @@ class Preprocessor:
             raise TranslationError(f"{line}:1: {token.text} is not a whole number")
         return int(stands[0].text)
 
-    def _expanded(self, token: Token, depth: int) -> Iterator[Token]:
+    def _expanded(self, token: Token) -> Iterator[Token]:
+        """A token, or what a macro of its name stands for, in its place."""
+        if token.kind != "word" or token.text not in self._macros:
+            yield token
+            return
+        above = token.above
+        for made in self._words(token, 0):
+            yield replace(made, place=token.place, above=above)
+            above = ()
+
+    def _words(self, token: Token, depth: int) -> Iterator[Token]:
+        """What a token stands for, one at a time: macros of macros may stand for more than fits."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
             return
         if depth > MOST_DEPTH:
             raise TranslationError(f"{token.place.line}:{token.place.column}: {token.text} stands for itself")
-        made = [t for each in self._macros[token.text] for t in self._expanded(each, depth + 1)]
-        for at, each in enumerate(made):
-            last = at == len(made) - 1
-            yield replace(each, place=token.place, above=() if at else token.above, behind=token.behind if last else "")
+        for each in self._macros[token.text]:
+            yield from self._words(each, depth + 1)
 
 
 def _is_number(words: Sequence[Token]) -> bool:

@@ -10,19 +10,15 @@ from .tree import (
     Binary,
     Call,
     Choice,
-    Construct,
     Declare,
     Elements,
     Expression,
     Function,
     Literal,
     Table,
-    size_of,
 )
 from .writer import PRIMARY, UNARY, Writer, words
 
-# Functions whose arguments all have one type.
-SPLATS = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep", "pow", "mod"))
 RESERVED = words(
     "active alignas as asm auto become bf16 catch class common const demote do enum explicit export extern external "
     "filter final finally fixed from get goto half impl implements import inline interface lowp highp macro match meta "
@@ -60,6 +56,7 @@ class WgslWriter(Writer):
         }
     )
     reserved = RESERVED
+    splats = True
     group = 0
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
@@ -114,8 +111,6 @@ class WgslWriter(Writer):
         return f"select({', '.join(map(self._text, parts))})", PRIMARY
 
     def _call(self, value: Call) -> str:
-        if not value.is_own and value.name in SPLATS:
-            value = Call(value.kind, value.name, [_splat(a, value.kind) for a in value.arguments])
         if not value.is_own and value.name == "mod":
             x, y = (self._text(a, UNARY) for a in value.arguments)
             return f"({x} - {y} * floor({x} / {y}))"
@@ -126,8 +121,3 @@ class WgslWriter(Writer):
 
     def _elements(self, value: Elements) -> str:
         return f"{self._kind(value.kind)}({self._listed(value)})"
-
-
-def _splat(value: Expression, kind: str) -> Expression:
-    """A scalar as a vector of a kind; a vector as it is."""
-    return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])

@@ -35,6 +35,7 @@ from .tree import (
     Unary,
     While,
     inside,
+    size_of,
 )
 
 INDENT = "    "
@@ -43,6 +44,8 @@ ELEMENTS = 6
 # How tightly what is not a binary operation binds.
 CHOICE, UNARY, PRIMARY = 0, 12, 13
 BITWISE = SHIFTS | {"&", "|", "^"}
+# Functions that GLSL lets mix vectors and scalars.
+MIXING = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep", "mod"))
 MIXED = BITWISE | {"&&", "||", "^^"}
 
 
@@ -56,6 +59,7 @@ class Writer:
     Attributes:
         head: what stands before all else.
         has_tables: whether tables are variables of the program.
+        splats: whether a function of vectors takes no scalar in place of one.
         kinds: types' names where they are not GLSL's.
         functions: built-in functions' names where they are not GLSL's.
         reserved: words that no variable may be called.
@@ -67,6 +71,7 @@ class Writer:
     float_suffix = ""
     head = ""
     has_tables = True
+    splats = False
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
         self._prefix, self._sizes = prefix, sizes
@@ -227,6 +232,8 @@ class Writer:
     def _call(self, value: Call) -> str:
         if value.name == FETCH and not value.is_own:
             return self._fetch(value)
+        if self.splats and value.name in MIXING and not value.is_own:
+            value = Call(value.kind, value.name, [_splat(a, value.kind) for a in value.arguments])
         name = value.name if value.is_own else self.functions.get(value.name, value.name)
         return f"{name}({', '.join(map(self._text, value.arguments))})"
 
@@ -247,6 +254,11 @@ class Writer:
             return ", ".join(texts)
         rows = (", ".join(texts[at : at + ELEMENTS]) for at in range(0, len(texts), ELEMENTS))
         return "\n" + ",\n".join(INDENT + row for row in rows)
+
+
+def _splat(value: Expression, kind: str) -> Expression:
+    """A scalar as a vector of a kind; a vector as it is."""
+    return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])
 
 
 def _is_unclear(parent: Binary, child: Binary) -> bool:

@@ -1,0 +1,181 @@
+"""Programs read as trees and written again: meaning, comments and places are kept, in every language."""
+
+import re
+
+import pytest
+
+from normalbench.bench.translator.c_writer import CWriter
+from normalbench.bench.translator.glsl_parser import read_glsl
+from normalbench.bench.translator.glsl_writer import GlslWriter
+from normalbench.bench.translator.hlsl_writer import HlslWriter
+from normalbench.bench.translator.msl_writer import MslWriter
+from normalbench.bench.translator.reduce import reduced
+from normalbench.bench.translator.tree import TranslationError
+from normalbench.bench.translator.wgsl_parser import read_wgsl
+from normalbench.bench.translator.wgsl_writer import WgslWriter
+
+SOURCE = """
+#define STEPS 3
+#define SCALES float[2](0.5, 2.0)
+#define CODE vec2
+float unit(float v) { return v < 0.0 ? -1.0 : 1.0; }
+
+vec2 unit(vec2 v) { return vec2(unit(v.x), unit(v.y)); }
+float unused(float x) { return x; }
+// Above the function.
+CODE mine_encode(vec3 n, vec3 view) {
+    const float scales[] = SCALES;
+    float sum = 0.0;  // behind it
+    for (int i = 0; i < STEPS - 1; ++i) sum += scales[i] * float(i << 1 & 3);
+    return n.xy * (1.0 / (sum + n.z)) - unit(n.xy);
+}
+vec3 mine_decode(CODE e, vec3 view) {
+#if STEPS
+    return vec3(e, clamp(e.x, 0.0, 1.0));
+#else
+    return e;
+#endif
+}
+"""
+ROOTS = {"mine_encode": "encode", "mine_decode": "decode"}
+
+
+def written(writer, source=SOURCE):
+    return writer("p", {}).program(reduced(read_glsl(source), ROOTS, "p", "mine"))
+
+
+def test_a_program_keeps_what_its_roots_need_under_one_prefix():
+    """Overloads get names of their own, a view that nothing reads goes, and what is not called goes."""
+    text = written(GlslWriter)
+    assert re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE) == ["p_unit1", "p_unit2", "p_encode", "p_decode"]
+    assert "view" not in text and "unused" not in text
+
+
+def test_comments_stay_where_they_were():
+    """A comment above a function, and one behind a statement, are those of the source."""
+    text = written(GlslWriter)
+    assert "// Above the function.\nvec2 p_encode(vec3 n)" in text
+    assert "float sum = 0.0;  // behind it" in text
+
+
+@pytest.mark.parametrize(
+    ("writer", "expected"),
+    [
+        (GlslWriter, "p_SCALES[i] * float((i << 1) & 3)"),
+        (HlslWriter, "static const float P_SCALES[2] = {0.5, 2.0};"),
+        (MslWriter, "inline float2 p_encode(float3 n)"),
+        (WgslWriter, "sum += P_SCALES[i] * f32((i << 1u) & 3);"),
+        (CWriter, "return v < 0.0f ? -1.0f : 1.0f;"),
+    ],
+)
+def test_each_language_says_it_in_its_words(writer, expected):
+    """One line that each language writes otherwise than GLSL."""
+    assert expected.lower() in written(writer).lower()
+
+
+def test_wgsl_chooses_by_select_and_only_changes_variables():
+    """`?:` is select with its arguments the other way round; what is assigned to is a var."""
+    text = written(WgslWriter)
+    assert "return select(1.0, -1.0, v < 0.0);" in text
+    assert "var sum = 0.0;" in text
+    assert "for (var i = 0; i < P_STEPS - 1; i++) {" in text
+
+
+def test_c_computes_a_scalar_once_that_scales_a_vector():
+    """A vector times a quotient divides once."""
+    text = written(CWriter)
+    assert text.count("/") - text.count("//") * 2 == 1, text
+    assert "const float t1 = 1.0f / (sum + n.z);" in text
+
+
+def test_a_matrix_of_columns_is_its_transpose_in_hlsl():
+    """HLSL builds matrices of rows: n * M becomes mul(M, n), which gives the same dot products."""
+    source = "vec3 mine_encode(vec3 n) { mat3 m = mat3(n, n, n); return n * m + m * n; }"
+    text = written(HlslWriter, source + "vec3 mine_decode(vec3 e) { return e; }")
+    assert "return mul(m, n) + mul(n, m);" in text
+
+
+def test_names_that_a_language_reserves_get_an_underscore():
+    """`sample` is a word of HLSL and of Metal, and none of GLSL's dialect here."""
+    source = "vec2 mine_encode(vec3 n) { float line = n.x; return vec2(line); }"
+    source += "vec3 mine_decode(vec2 e) { return vec3(e, 0.0); }"
+    assert "float line_ = n.x;" in written(HlslWriter, source)
+    assert "float line = n.x;" in written(GlslWriter, source)
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("float f(float x) {\n  return y;\n}", r"^2:10: y is not known here$"),
+        ("float f(float x) { return frob(x); }", r"^1:27: frob is not a function"),
+        ("float f(vec2 x) { return x.z; }", r"^1:28: a vec2 has no .z$"),
+        ("vec3 f(vec2 x, vec3 y) { return x + y; }", r"vec2 and vec3 do not mix"),
+        ("float f(float x) { return " + "(" * 99 + "x" + ")" * 99 + "; }", r"nested more than 60 deep"),
+        ("#define F(x) x\nfloat f() { return 1.0; }", r"^1:1: macros with arguments"),
+        ("#if A\n", r"A is not a whole number"),
+        ("#ifdef A\n", r"without its #endif"),
+        ("#define A B\n#define B A\nfloat f() { return A; }", r"A stands for itself|B stands for itself"),
+        ("float f(float x) { return x $ 1; }", r"^1:29: '\$' begins nothing known here$"),
+        ("struct S { float x; };", r"struct is not a type"),
+        ("float f(", r"a name expected"),
+        ("", ""),
+    ],
+)
+def test_what_cannot_be_read_is_said_with_line_and_column(source, said):
+    """One line, at the place in the text; an empty file is an empty program."""
+    if not said:
+        assert read_glsl(source).functions == []
+        return
+    with pytest.raises(TranslationError, match=said) as error:
+        read_glsl(source)
+    assert "\n" not in str(error.value)
+
+
+def test_macros_that_stand_for_millions_of_words_are_refused():
+    """A bomb of macros costs no memory: 2^30 words would."""
+    bomb = "#define A0 1.0 +\n" + "".join(f"#define A{n} A{n - 1} A{n - 1}\n" for n in range(1, 31))
+    with pytest.raises(TranslationError, match="more than 200000 words and marks"):
+        read_glsl(bomb + "float f() { return A30 1.0; }")
+
+
+WGSL = """
+alias Code = vec2<f32>;
+const K = array<f32, 2>(1.0, 2.0);
+fn mineEncode(n: vec3f) -> Code { return helper(n.xy, select(1.0, -1.0, n.z < 0.0)); }
+fn helper(p: vec2f, s: f32) -> Code {
+    var sum = vec2(0.0, 0.0);
+    for (var i = 0u; i < 2u; i++) { sum += p * K[i] * s; }
+    if sum.x > 1.0 { return saturate(sum); } else if (sum.y > 1) { return sum % 2.0; }
+    return bitcast<vec2f>(bitcast<vec2u>(sum) | vec2u(1u));
+}
+fn mineDecode(e: Code) -> vec3<f32> { let z = inverseSqrt(dot(e, e)); return vec3f(e, z); }
+"""
+
+
+def test_wgsl_is_read_and_said_in_glsl():
+    """Functions before those they call, splats, select, saturate, bitcast and % of floats."""
+    text = GlslWriter("p", {}).program(
+        reduced(read_wgsl(WGSL), {"mineEncode": "encode", "mineDecode": "decode"}, "p", "mine")
+    )
+    assert text.index("vec2 p_helper") < text.index("vec2 p_encode")
+    assert "return p_helper(n.xy, n.z < 0.0 ? -1.0 : 1.0);" in text
+    assert "return clamp(sum, 0.0, 1.0);" in text
+    assert "return sum - 2.0 * trunc(sum / 2.0);" in text
+    assert "return uintBitsToFloat(floatBitsToUint(sum) | uvec2(1u));" in text
+    assert "float z = inversesqrt(dot(e, e));" in text
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("fn f(x: f32) -> f32 { return y; }", "1:30: y is not known here"),
+        ("@group(0) @binding(0) var t: texture_2d<f32>;", "only functions, constants and aliases are read"),
+        ("fn f(x: vec5f) -> f32 { return 1.0; }", "1:9: vec5f is not a type"),
+        ("fn f(x: f32) -> f32 { switch x { default {} } }", "switch"),
+        ("fn f(x: f32) -> f32 { return x", "; expected"),
+    ],
+)
+def test_what_wgsl_has_beyond_functions_is_refused_in_a_line(source, said):
+    """Bindings, structures and pointers are no part of an encoder."""
+    with pytest.raises(TranslationError, match=re.escape(said)):
+        read_wgsl(source)
