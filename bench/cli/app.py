@@ -21,13 +21,14 @@ from typer.exceptions import Abort, TyperException
 
 from ...encodings.codecs.files import CatalogueError
 from ...reports.charts.plots import PlotError
+from ..options.code import CodeOptions
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
 from ..output.writing import abandon_output, check_is_folder, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from .commands import add_tables, command_with
-from .formats import FormatOption, format_of
+from .formats import Format, FormatOption, format_of
 from .typed import added_up, check_begins_with_command
 
 app = typer.Typer(
@@ -123,7 +124,25 @@ app.command(
     "run",
     help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
     "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
-)(command_with(RunOptions, _run, RunOutput))
+)(command_with(RunOptions, _run, output=RunOutput))
+
+
+def _code(options: Any, format: Format | None, output: Path | None) -> int:
+    from ..suite.code_command import code_command
+
+    return code_command(options, format_of(format, output if options.check else None), output)
+
+
+CodeOutput = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Write the code into this folder; with --check the rows to this file."),
+]
+app.command(
+    "code",
+    help="Code of any codec to paste into an engine: encode, pack, unpack and decode, run and compared before it is "
+    "written.",
+    epilog="Example: normalbench code octahedral --storage rgb10a2 --to hlsl",
+)(command_with(CodeOptions, _code, format=FormatOption, output=CodeOutput))
 
 
 @app.command("columns")

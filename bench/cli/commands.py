@@ -55,14 +55,15 @@ def command_of(table: Table) -> Callable[..., int]:
     return with_parameters(command, typed)
 
 
-def command_with(group: type, command: Callable[[Any, Path | None], int], output: Any) -> Callable[..., int]:
-    """A command of one dataclass of options and an output."""
+def command_with(group: type, command: Callable[..., int], **ends: Any) -> Callable[..., int]:
+    """A command of one dataclass of options, and of further ones by their annotations, none of which need be given."""
 
-    def call(output: Path | None, **typed: Any) -> int:
-        return command(_made(group, typed), output)
+    def call(**typed: Any) -> int:
+        return command(_made(group, typed), **{name: typed[name] for name in ends})
 
+    keyword = inspect.Parameter.KEYWORD_ONLY
     typed = [parameter_of(field) for field in fields_of(group).values()]
-    typed.append(inspect.Parameter("output", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=output))
+    typed += [inspect.Parameter(name, keyword, default=None, annotation=kind) for name, kind in ends.items()]
     return with_parameters(call, typed)
 
 

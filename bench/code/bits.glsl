@@ -6,13 +6,13 @@ uint half_bits(float x, bool truncates) {
     float rounded = round_half(x, truncates);
     uint magnitude = floatBitsToUint(abs(rounded)), sign = floatBitsToUint(x) >> 16 & 0x8000u;
     // from 2^-14 on the exponent is biased by 15 in place of 127; below, the number counts steps of 2^-24
-    uint bits = magnitude < 0x38800000u ? uint(abs(rounded) * 16777216.0) : (magnitude - 0x38000000u) >> 13;
+    uint bits = magnitude < 0x38800000u ? uint(abs(rounded) * exp2(24.0)) : (magnitude - 0x38000000u) >> 13;
     return sign | bits;
 }
 
 float half_value(uint bits) {
     uint magnitude = bits & 0x7FFFu;
-    float value = magnitude < 0x400u ? float(magnitude) / 16777216.0 : uintBitsToFloat((magnitude << 13) + 0x38000000u);
+    float value = magnitude < 0x400u ? float(magnitude) / exp2(24.0) : uintBitsToFloat((magnitude << 13) + 0x38000000u);
     return (bits & 0x8000u) != 0u ? -value : value;
 }
 

@@ -1,4 +1,4 @@
-"""Where a storage keeps each number of a code, as the functions of storage.glsl.jinja say it."""
+"""Where a storage keeps each number of a code, as the functions of storage.glsl.j2 say it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 
-TEMPLATE = Path(__file__).with_name("storage.glsl.jinja")
+TEMPLATE = Path(__file__).with_name("storage.glsl.j2")
 FIELDS, WORD, BYTE = "xyzw", 32, 8
 RULES: Mapping[str, str] = MappingProxyType(
     {

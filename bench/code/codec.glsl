@@ -1,6 +1,6 @@
 #version 430
 // What a codec's code is made from: the encoding's own functions, and bits of small floats. The storage's functions, which
-// storage.glsl.jinja makes, follow.
+// storage.glsl.j2 makes, follow.
 #include "vec.glsl"
 #include ENCODING
 #include "turned.glsl"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.codecs.codec_passes import encoding_defines
@@ -33,13 +34,13 @@ class Language:
     Attributes:
         title: what a reader calls it.
         ending: of its files.
-        writer: what writes it from a tree; None where it is made otherwise.
+        writer: what writes it from a tree.
         mark: what comments begin with.
     """
 
     title: str
     ending: str
-    writer: type[Writer] | None = None
+    writer: type[Writer]
     mark: str = "//"
 
 
@@ -52,9 +53,16 @@ LANGUAGES: Mapping[str, Language] = MappingProxyType(
         "wgsl": Language("WGSL", ".wgsl", WgslWriter),
         "msl": Language("Metal", ".metal", MslWriter),
         "c": Language("C", ".h", CWriter),
-        "python": Language("Python, NumPy", ".py", mark="#"),
     }
 )
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATE.parent), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.get_template(TEMPLATE.name)
 
 
 def program_of(codec: Codec, prefix: str) -> Program:
@@ -67,22 +75,9 @@ def program_of(codec: Codec, prefix: str) -> Program:
     encoding = codec.encoding
     defines = encoding_defines(encoding)
     source = Source(ROOT, defines, {"ENCODING": encoding.glsl})
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATE.parent), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    storage = environment.get_template(TEMPLATE.name).render(
-        Channels(codec).context(), encode=defines["ENCODE"], decode=defines["DECODE"]
-    )
+    storage = _template().render(Channels(codec).context(), encode=defines["ENCODE"], decode=defines["DECODE"])
     program = read_glsl(f"{source.text}\n{storage}")
     encode = "nearest_encode" if encoding.is_precise else str(defines["ENCODE"])
     roots = {encode: "encode", str(defines["DECODE"]): "decode"}
     roots |= {name: name for name in ("pack", "unpack", "to_target", "from_target")}
     return reduced(program, roots, prefix, encoding.prefix)
-
-
-def emitted(codec: Codec, language: str, prefix: str) -> str:
-    """A codec's code. Raises as `program_of`."""
-    writer = LANGUAGES[language].writer
-    assert writer
-    sizes = {name: (table.shape[1], table.shape[2]) for name, table in codec.encoding.tables().items()}
-    return writer(prefix, sizes).program(program_of(codec, prefix))

@@ -182,6 +182,16 @@ template <class T, access A = access::sample> struct texture2d {
     uint get_width() const { return width; }
     uint get_height() const { return height; }
 };
+
+// Of columns, as Metal's are.
+struct float3x3 {
+    float3 columns[3];
+    float3x3(float3 x, float3 y, float3 z) : columns{x, y, z} {}
+};
+inline float3 operator*(float3x3 m, float3 v) { return m.columns[0] * v.x + m.columns[1] * v.y + m.columns[2] * v.z; }
+inline float3 operator*(float3 v, float3x3 m) {
+    return float3{dot(v, m.columns[0]), dot(v, m.columns[1]), dot(v, m.columns[2])};
+}
 }  // namespace metal
 
 // float3(a, b, c) is a constructor in Metal, which clang's vectors lack; float3 alone stays the type.

@@ -1,0 +1,28 @@
+"""The options of `code`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from .option import Names, Option
+
+
+@dataclass(frozen=True, kw_only=True)
+class CodeOptions:
+    """Which codecs, in which languages."""
+
+    codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}.", files=True)] = "octahedral"
+    storage: Annotated[
+        str | None, Option("--storage", f"Storages, {Names}. Default: rgba8; with --check, those that people ship.")
+    ] = None
+    rounding: Annotated[str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
+        "nearest"
+    )
+    to: Annotated[str, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c, python; comma-separated, or all.")] = (
+        "hlsl"
+    )
+    prefix: Annotated[str, Option("--prefix", "What every name begins with. Default: the codec's name.")] = ""
+    check: Annotated[
+        bool, Option("--check", "Run the code and print how it compares with the catalogue; write no code.")
+    ] = False

@@ -1,0 +1,165 @@
+"""What `code` does: writes a codec's code in the languages that engines are written in, and verifies it."""
+
+from __future__ import annotations
+
+import shlex
+import tempfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from ...encodings.codecs.codec import Codec
+from ...gbuffer.gl.device import NoDeviceError
+from ...gbuffer.gl.shader import ShaderError
+from ..code.emit import LANGUAGES
+from ..code.files import Code, code_of, file_name
+from ..code.run import runner
+from ..code.verify import Agreement, agreement
+from ..codecs.names import codecs_named, fitting
+from ..options.code import CodeOptions
+from ..output.errors import MissingError, UsageError, leave_out, pick, tell
+from ..output.progress import progress
+from ..output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from .code_figures import head
+
+Row = dict[str, Any]
+SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
+VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
+
+
+def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
+    """Write the files, or with `check` the table of what was verified how. Exit status: 1 where code differs.
+
+    Raises:
+        UsageError: a name is not known, nothing fits, or something cannot be written.
+    """
+    languages = pick("language", options.to, {name: name for name in LANGUAGES})
+    codecs = _codecs(options)
+    if options.check:
+        return _check(codecs, languages, options, format, output)
+    check_is_folder(output, "code writes into")
+    if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
+        raise UsageError(
+            f"{output}: code writes into a folder, as {file_name(codecs[0], languages[0])} there; name one"
+        )
+    if output:
+        check_folder(output)
+    elif len(codecs) * len(languages) > 1:
+        raise UsageError("several files are written into a folder: name one with -o")
+    return _write(codecs, languages, options, output)
+
+
+def _codecs(options: CodeOptions) -> list[Codec]:
+    storages = options.storage or (SHIPPED if options.check else "rgba8")
+    codecs, left_out = fitting(codecs_named(options.codec, storages, options.rounding))
+    if not options.check or options.storage:
+        for line in left_out:
+            leave_out(line)
+    return codecs
+
+
+def _write(codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
+    status = 0
+    for codec in codecs:
+        for language in languages:
+            code = _made(codec, language, options.prefix)
+            row = verified(code)
+            if row["verdict"] == DIFFERS:
+                status = 1
+                tell(f"{codec.name} in {language}: {row['says']}; it is not written")
+                continue
+            if row["verdict"] == NOT_RUN:
+                tell(f"{codec.name} in {language}: {row['says']}")
+            _save(code, head(code, _command(codec, language, options.prefix), row["says"]), output)
+    return status
+
+
+def _made(codec: Codec, language: str, prefix: str) -> Code:
+    try:
+        return code_of(codec, language, prefix)
+    except ShaderError as error:
+        raise UsageError(str(error)) from error
+
+
+def _command(codec: Codec, language: str, prefix: str) -> str:
+    words = ["normalbench", "code", codec.encoding.name, "--storage", codec.storage.name, "--to", language]
+    words += ["--rounding", codec.rounding] if codec.rounding != "nearest" else []
+    return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])
+
+
+def _save(code: Code, said: Iterable[str], output: Path | None) -> None:
+    if output is None:
+        say(code.text(said))
+        return
+    for name, data in code.files(said).items():
+        with whole_file(output / name) as partial:
+            partial.write_bytes(data)
+        tell(f"{output / name}")
+
+
+def verified(code: Code) -> Row:
+    """A row: how a file's results compare with the catalogue's, by running it."""
+    codec = code.codec
+    row: Row = {
+        "encoding": codec.encoding.name,
+        "storage": codec.storage.name,
+        "rounding": codec.rounding,
+        "language": code.language,
+    }
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            for name, data in code.files([]).items():
+                (Path(folder) / name).write_bytes(data)
+            found = agreement(codec, code.language, Path(folder) / code.name, code.interface)
+        return row | _figures(found, runner(code.language).how())
+    except (MissingError, NoDeviceError) as error:
+        return row | {"verdict": NOT_RUN, "says": f"not run here: {error}"}
+    except ShaderError as error:
+        return row | {"verdict": DIFFERS, "says": f"it does not run: {error}"}
+
+
+def _figures(found: Agreement, how: str) -> Row:
+    return {
+        "verdict": VERIFIED if found.holds else DIFFERS,
+        "texels": found.count,
+        "differing": found.differing,
+        "steps": found.steps,
+        "run_by": how,
+        "says": f"{found.says}; run by {how}",
+    }
+
+
+def _check(
+    codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, format: str, output: Path | None
+) -> int:
+    if output:
+        check_writable(output)
+    rows: list[Row] = []
+    with progress(len(codecs) * len(languages)) as tick:
+        for codec in codecs:
+            for language in languages:
+                rows.append(verified(_made(codec, language, options.prefix)))
+                tick(f"{codec.name} in {language}")
+    for line in dict.fromkeys(row["says"] for row in rows if row["verdict"] == NOT_RUN):
+        tell(line)
+    failed = [row for row in rows if row["verdict"] == DIFFERS]
+    for row in failed:
+        tell(f"{row['encoding']}/{row['storage']} in {row['language']}: {row['says']}")
+    write(_by_codec(rows) if format in ("table", "markdown") else rows, format, output, ())
+    return int(bool(failed))
+
+
+def _by_codec(rows: Sequence[Row]) -> list[Row]:
+    """A row for each codec, with a column for each language: how many texels are not the catalogue's."""
+    found: dict[tuple[str, str, str], Row] = {}
+    for row in rows:
+        key = (row["encoding"], row["storage"], row["rounding"])
+        about: Row = dict(zip(("encoding", "storage", "rounding"), key, strict=True))
+        found.setdefault(key, about)[row["language"]] = _said(row)
+    return list(found.values())
+
+
+def _said(row: Row) -> str:
+    if row["verdict"] != VERIFIED:
+        return row["verdict"]
+    return f"{row['differing']} of {row['texels']}" if row["differing"] else "equal"

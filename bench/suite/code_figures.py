@@ -1,0 +1,106 @@
+"""What the head of a codec's code says: what it is, its figures, and how it was verified."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
+from types import MappingProxyType
+from typing import Any
+
+from ...encodings.codecs.codec import Codec
+from ..code.emit import LANGUAGES
+from ..code.files import Code
+from ..normals.normal_sets import NORMAL_SETS
+from ..options.counts import DEFAULT_COUNT
+from ..tables.cost import measure as cost
+from ..tables.quality import measure as quality
+from ..worst_case.exact_figures import has_twin
+
+# Figures that differ by less are the same.
+SAME = 1e-3
+STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
+HOLDS: Mapping[str, str] = MappingProxyType(
+    {
+        "sphere": "unit vectors of the whole sphere",
+        "hemisphere": "unit vectors with z >= 0",
+        "view": "unit vectors that face the viewer; `view` is the view-space position, with the viewer at the origin",
+    }
+)
+# What a file's reader must see to, by language.
+ADVICE: Mapping[str, str] = MappingProxyType(
+    {
+        "glsl": "For GLSL 4.3 and later, and for Vulkan.",
+        "essl": "For GLSL ES 3.1 and later.",
+        "hlsl": "For shader model 5 and later.",
+        "slang": "For Slang, which reads HLSL.",
+        "wgsl": "For WebGPU. Give tables a binding that is free.",
+        "msl": "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise.",
+        "c": "For C99. Compile with -ffp-contract=off: fused products round otherwise.",
+        "python": "For NumPy 2 and later. Arrays have shape (..., 3).",
+    }
+)
+
+
+def head(code: Code, command: str, verified: str) -> list[str]:
+    """The paragraphs above a file's functions.
+
+    Args:
+        code: what the file holds.
+        command: what made it.
+        verified: how its results compare with the catalogue's.
+    """
+    codec, encoding = code.codec, code.codec.encoding
+    names = ", ".join(f"{code.prefix}_{name}" for name in ("encode", "pack", "unpack", "decode"))
+    return [
+        f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target {code.prefix}_to_target and "
+        f"{code.prefix}_from_target. {ADVICE[code.language]}",
+        "",
+        f"Encoding: {encoding.title}. Source: {encoding.citation}.",
+        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. "
+        f"Normals: {HOLDS[encoding.domain]}.",
+        *figures(codec),
+        f"Verified: {verified}.",
+        f"Made by normalbench {version('normalbench')}: {command}",
+        "MIT License, Copyright (c) 2026 The normalbench authors.",
+    ]
+
+
+def figures(codec: Codec) -> list[str]:
+    """Errors and instructions, a paragraph each."""
+    return [*_errors(codec), *_instructions(codec)]
+
+
+def _errors(codec: Codec) -> Iterator[str]:
+    domain = codec.encoding.domain
+    if domain not in NORMAL_SETS:
+        yield "Errors: they depend on where each normal is seen; `normalbench quality` measures them on a scene."
+        return
+    backend = "jax" if has_twin(codec.encoding) else "glsl"
+    chosen = NORMAL_SETS[domain](DEFAULT_COUNT, 0)
+    row = quality.measure(quality.Case(codec, chosen, backend, worst_case=codec.encoding.is_exact))
+    if row["skipped"]:
+        yield f"Errors: not measured here: {row['skipped']}."
+        return
+    yield (
+        f"Error on {row['count']} uniform directions: mean {row['angle_mean_deg']:.4g} degrees, "
+        f"RMS {row['angle_rms_deg']:.4g}; {_largest(row['angle_sup_deg'], row['angle_max_deg'])}."
+    )
+
+
+def _largest(supremum: float | None, met: float) -> str:
+    """The largest error in words: of exact arithmetic, and what float32 makes of it where that is more."""
+    if supremum is None:
+        return f"the largest of these is {met:.4g} degrees"
+    said = f"the largest of all directions is {supremum:.4g} degrees"
+    return said + (f"; {met:.4g} was met in float32" if met > supremum * (1 + SAME) else "")
+
+
+def _instructions(codec: Codec) -> Iterator[str]:
+    rows = cost.counted([codec.encoding], FAMILY, STAGE)
+    counts: Sequence[Any] = [row["instructions"] for row in rows.values()]
+    if len(counts) != len(cost.OPERATIONS):
+        yield "Instructions: not counted here: `normalbench doctor` says what is missing."
+        return
+    loops = ", a loop counted once" if any(row["loops"] for row in rows.values()) else ""
+    encode, decode = (rows[codec.encoding.name, operation]["instructions"] for operation in cost.OPERATIONS)
+    yield f"Instructions: {encode} to encode and {decode} to decode, without packing, on {FAMILY_TITLE}{loops}."

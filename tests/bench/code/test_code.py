@@ -1,0 +1,210 @@
+"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+
+import re
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import normalbench as nb
+from normalbench.bench.code.channels import Channels
+from normalbench.bench.code.emit import LANGUAGES
+from normalbench.bench.code.files import code_of
+from normalbench.bench.code.reference import normals, reference
+from normalbench.bench.code.tables import dds, header
+from normalbench.bench.code.verify import agreement
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.storages.storage import STORAGES
+
+# One of each that is made otherwise: plain, precise, with a view, a sign, tables, levels, polynomials, an axis, a
+# parameter, floats of each size, numbers across bytes, signed ones, and the ways to round.
+CODECS = (
+    "octahedral/rgb10a2",
+    "octahedral_precise/rgb8_12_12_snorm",
+    "per_pixel_view/rg16f",
+    "xy_sign/rg8",
+    "spherical_lut/rg8",
+    "cube/rgba8_11_11_10/truncate",
+    "tetrahedral/rgb8_10_10_2",
+    "spherical:scale=0.9/rg16",
+    "xyz_renormalised:axis=y/r11g11b10f",
+    "spherical_fibonacci/rg8",
+    "stereographic/rg16_snorm/truncate_half",
+    "xyz/rgba32f",
+    "hemi_octahedral/rgba16f/truncate",
+)
+
+
+def codec_of(name):
+    (codec,) = codecs_named(*[*name.split("/"), "nearest"][:3])
+    assert codec.fits, codec.misfit
+    return codec
+
+
+def written(folder: Path, code, text=None) -> Path:
+    for name, data in code.files([]).items():
+        (folder / name).write_bytes(data)
+    if text is not None:
+        (folder / code.name).write_text(text)
+    return folder / code.name
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("name", CODECS)
+def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
+    """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
+    codec = codec_of(name)
+    code = code_of(codec, language, "p")
+    found = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert found.holds, found.says
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_the_code_of_every_codec_gives_the_catalogues_texels(language, encoding, tmp_path):
+    """As above, of every storage that fits."""
+    wrong = []
+    for codec in codecs_named(encoding, ",".join(STORAGES), "nearest"):
+        if codec.fits:
+            code = code_of(codec, language)
+            found = agreement(codec, language, written(tmp_path, code), code.interface)
+            wrong += [] if found.holds else [f"{codec.name}: {found.says}"]
+    assert not wrong, wrong
+
+
+@pytest.mark.parametrize("name", ["octahedral/rgb10a2", "xyz/rgba8_snorm", "octahedral/rg16f", "octahedral/rgb8_12_12"])
+def test_the_reference_texels_hold_the_integers_that_the_python_interface_gives(name):
+    """`nb.encode` computes the stored integers by itself."""
+    codec = codec_of(name)
+    expected = reference(codec)
+    integers = np.asarray(nb.encode(codec, expected.n).integers)
+    bits = [channel.bits for channel in Channels(codec).channels]
+    assert np.array_equal(integers & (2 ** np.array(bits) - 1), expected.integers)
+
+
+def test_the_reference_normals_are_unit_and_of_the_domain():
+    """Axes and both zeros among them; z >= 0 for hemispheres, and towards the viewer for views."""
+    for domain in ("sphere", "hemisphere", "view"):
+        n, view = normals(domain)
+        assert n.shape == view.shape == (2**16, 3)
+        assert np.abs(np.linalg.norm(n, axis=1) - 1).max() < 1e-6
+    assert (normals("hemisphere")[0][:, 2] >= 0).all()
+    n, view = normals("view")
+    assert (np.sum(n * view, axis=1) <= 0).all()
+
+
+# What is changed in the text of octahedral/rgb10a2 in C, and what must notice.
+MUTANTS = {
+    "scale": ("* 1023.0f)", "* 1022.0f)"),
+    "rounding": ("rintf(", "floorf("),
+    "order": ("x | (y << 10)", "y | (x << 10)"),
+    "shift": ("y << 10", "y << 11"),
+    "mask": ("(texel >> 10) & 1023u", "(texel >> 10) & 511u"),
+    "bias": ("code.x * 0.5f + 0.5f, 0.0f", "code.x * 0.5f + 0.499f, 0.0f"),
+    "fold": ("n.z < 0.0f", "n.z < 0.01f"),
+    "target": ("{code.x * 0.5f + 0.5f, code.y", "{code.y * 0.5f + 0.5f, code.y"),
+    "from target": ("texel.y * 2.0f - 1.0f", "texel.y * 2.0f"),
+    "unpack": ("(1.0f / 1023.0f) * 2.0f - 1.0f;\n    float y", "(1.0f / 1024.0f) * 2.0f - 1.0f;\n    float y"),
+    "decode": ("fabsf(e.x) - fabsf(e.y)", "fabsf(e.x) + fabsf(e.y)"),
+}
+
+
+@pytest.mark.parametrize("fault", MUTANTS)
+def test_a_wrong_constant_or_a_swapped_number_is_noticed(fault, tmp_path):
+    """Each fault alone makes the comparison fail."""
+    codec = codec_of("octahedral/rgb10a2")
+    code = code_of(codec, "c", "p")
+    old, new = MUTANTS[fault]
+    assert old in code.body, code.body
+    found = agreement(codec, "c", written(tmp_path, code, code.body.replace(old, new)), code.interface)
+    assert not found.holds, found.says
+
+
+def test_the_texel_of_a_known_normal_is_what_the_formula_gives():
+    """(1, 0, 0) is (1, 0) in the octahedral map: 1023 and 511.5, of which the even neighbour is 512."""
+    expected = reference(codec_of("octahedral/rgb10a2"))
+    at = int(np.argmax((expected.n == (1.0, 0.0, 0.0)).all(axis=1)))
+    assert expected.words[at, 0] == 1023 | 512 << 10
+
+
+def test_a_table_is_a_dds_texture_of_floats():
+    """Sizes and the format of DirectX 10 stand where Microsoft's guide puts them, the floats behind them."""
+    table = np.arange(12, dtype=np.float32).reshape(2, 3, 2)
+    data = dds(table)
+    assert data[:4] == b"DDS " and struct.unpack_from("<2I", data, 12) == (2, 3)
+    assert data[84:88] == b"DX10" and struct.unpack_from("<I", data, 128) == (16,)
+    assert np.array_equal(np.frombuffer(data, "<f4", offset=148), table.ravel())
+
+
+def test_a_table_is_an_array_of_c_in_the_same_order():
+    """Every number stands in it with the digits that make the same float."""
+    table = np.array([[[0.1], [1.0]], [[2.5], [1e-7]]], np.float32)
+    numbers = re.findall(r"([-\d.e]+)f", header({"t": table}))
+    assert np.array_equal(np.float32(numbers), table.ravel())
+
+
+# The command.
+
+
+@pytest.mark.usefixtures("gl")
+def test_code_prints_one_file_that_says_what_it_is(run):
+    """Codec, figures, how it was verified, the command that made it, licence; then the functions."""
+    status, out, err = run("code", "spheremap", "--storage", "rg8", "--to", "glsl", "--prefix", "sm")
+    assert (status, err) == (0, "")
+    head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
+    assert head.startswith("spheremap/rg8 in GLSL: sm_encode, sm_pack, sm_unpack, sm_decode;")
+    assert re.search(
+        r"mean 0\.492\d degrees, RMS 0\.719\d; the largest of all directions is 11\.9\d degrees; 22\.\d+ was met", head
+    )
+    assert re.search(r"Instructions: \d+ to encode and \d+ to decode|Instructions: not counted", head)
+    assert "of 65536 texels" in head or "all 65536 texels" in head
+    assert "normalbench code spheremap --storage rg8 --to glsl --prefix sm" in head
+    assert "MIT License" in head
+    assert "vec2 sm_encode(vec3 n) {" in out
+
+
+@pytest.mark.usefixtures("gl")
+def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
+    """The header of C and the texture of shaders lie beside them."""
+    status, _, err = run("code", "spherical_lut", "--storage", "rg8", "--to", "hlsl,c", "-o", str(tmp_path / "made"))
+    assert status == 0, err
+    names = {path.name for path in (tmp_path / "made").iterdir()}
+    tables = {"spherical_lut_angle.dds", "spherical_lut_xy.dds", "spherical_lut_rg8_tables.h"}
+    assert names == {"spherical_lut_rg8.hlsl", "spherical_lut_rg8.h", *tables}
+
+
+@pytest.mark.usefixtures("gl")
+def test_check_says_of_every_language_how_many_texels_differ(run):
+    """A row of each codec, a column of each language."""
+    status, out, _ = run("code", "--check", "octahedral,spheremap", "--storage", "rgb10a2", "--to", "glsl,c")
+    assert status == 0
+    assert re.search(r"octahedral\s+rgb10a2\s+equal\s+equal", out) or "equal" in out
+    assert re.search(r"spheremap\s.*\d+ of 65536", out)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["octahedrl"], "octahedral"),
+        (["octahedral", "--to", "cobol"], "unknown language 'cobol'"),
+        (["octahedral", "--storage", "rg9"], "rg9"),
+        (["octahedral,spheremap"], "name one with -o"),
+        (["octahedral", "--to", "all"], "name one with -o"),
+        (["octahedral", "-o", "x.hlsl"], "a folder"),
+        (["octahedral/rgb8_12_12+xyz"], "chain"),
+        (["octahedral:arithmetic=half"], "half arithmetic"),
+        (["xyz", "--storage", "rg8"], "3 components"),
+    ],
+)
+def test_what_cannot_be_written_is_a_line_and_status_2(run, arguments, said, tmp_path, monkeypatch):
+    """Bad names, several files without a folder, and what no language is written for."""
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run("code", *arguments)
+    assert (status, out) == (2, "")
+    assert said in err and err.count("\n") == 1, err
+    assert list(tmp_path.iterdir()) == []
