@@ -11,6 +11,8 @@ from .programs import ENTRY, TranslationError, macros, program
 from .source import Source
 
 TOOLS = (tools.GLSLANG, tools.SPIRV_CROSS)
+# The version of the shaders that this becomes part of.
+VERSION = "430"
 GIVEN, MADE = "given.hlsl", "made.spv"
 # ERROR: given.hlsl:3: 'q' : unknown variable
 _ERROR = re.compile(rf"^ERROR: {re.escape(GIVEN)}:(\d+): '([^']*)' : (.*)$", re.M)
@@ -38,7 +40,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:
     options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-o", MADE]
     status, said = tools.run(tools.GLSLANG, [*options, *_defined(source), GIVEN], folder)
     _check(source, status, said)
-    status, said = tools.run(tools.SPIRV_CROSS, ["--version", "450", "--no-es", MADE], folder)
+    status, said = tools.run(tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", MADE], folder)
     if status:
         raise TranslationError(f"{source.path}: {tools.SPIRV_CROSS}: {' '.join(said.split())[:300]}")
     return said

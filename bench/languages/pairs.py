@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 # Result, name and parameters of a definition.
 _FUNCTION = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*(?::\s*\w+\s*)?\{")
+# Slang's other way to write it: func NAME(n : float3) -> float2.
+_ARROW = re.compile(r"\bfunc\s+(\w+)\s*\(([^(){};]*)\)\s*->\s*(\w+)\s*\{")
 _TYPEDEF = re.compile(r"\btypedef\s+(\w+)\s+(\w+)\s*;")
 _GENERIC = re.compile(r"\bvector\s*<\s*(?:float|half)\s*,\s*([1-4])\s*>")
 _VECTOR = re.compile(r"(?:float|half|min16float|min10float|float16_t|vec)([23])")
@@ -79,13 +81,19 @@ class NoPairError(Exception):
 
 def functions(text: str) -> list[Function]:
     """The functions that a preprocessed text in HLSL or Slang defines, outside of structs."""
-    text = _GENERIC.sub(r"float\1", text)
+    text = _ARROW.sub(_as_in_c, _GENERIC.sub(r"float\1", text))
     types = {new: old for old, new in _TYPEDEF.findall(text)}
     found: dict[Function, None] = {}
     for result, name, parameters in _at_the_top(text):
         given = tuple(_size(_type_of(one), types) for one in parameters.split(","))
         found[Function(name, _size(result, types), given, result)] = None
     return list(found)
+
+
+def _as_in_c(match: re.Match[str]) -> str:
+    name, parameters, result = match.groups()
+    turned = (" ".join(reversed(one.split(":"))) for one in parameters.split(","))
+    return f"{result} {name}({', '.join(turned)}) {{"
 
 
 def _at_the_top(text: str) -> Iterator[tuple[str, str, str]]:

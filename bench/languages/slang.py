@@ -7,7 +7,7 @@ from pathlib import Path
 
 from . import tools
 from .pairs import Function
-from .programs import ENGINE_TYPES, ENTRY, HALVES, TranslationError, macros, program
+from .programs import ENGINE_TYPES, ENTRY, HALVES, TranslationError, macros, program, template
 from .source import Source
 
 TOOLS = (tools.SLANG,)
@@ -15,6 +15,7 @@ GIVEN = "given.slang"
 # Tab-separated: number, severity, file, line, column, its end, and what is wrong. The span says more than the error.
 _ERROR = re.compile(rf"^\w+\t(?:error|fatal)[^\t]*\t{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$", re.M)
 _SPAN = re.compile(rf"^\w+\tspan\t{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$", re.M)
+_MIX, MIX = re.compile(r"\bmix(?=\()"), "normalbench_mix_0"
 _OTHER_FILES = re.compile(r"(?<!\w)(?:__)?(?:import|include|implementing)\s+[\w\"]")
 TYPES = {**ENGINE_TYPES, **dict.fromkeys(HALVES, "float")}
 
@@ -36,7 +37,9 @@ def shader(source: Source, function: Function, folder: Path) -> str:
         MissingError: it is not there.
     """
     options = ["-target", "glsl", "-entry", ENTRY, "-stage", "fragment", "-profile", "glsl_450"]
-    return _compiled(source, program(source, function), [*options, "-line-directive-mode", "none"], folder)
+    made = _compiled(source, program(source, function), [*options, "-line-directive-mode", "none"], folder)
+    # The suffix is one that `plain.py` takes for a name of Slang's.
+    return template("mix.glsl", MIX=MIX) + _MIX.sub(MIX, made) if _MIX.search(made) else made
 
 
 def _compiled(source: Source, text: str, options: list[str], folder: Path) -> str:

@@ -80,7 +80,7 @@ class Source:
         target = next((one for one in there if one.absolute().resolve().is_relative_to(self._root)), None)
         if target is None:
             why = f"lies outside the folder of {self.path.name}; copy it" if there else f"is not next to {path.name}"
-            yield Line("#error", path, number, f"{name} {why}")
+            yield Line("#error not read", path, number, f"{name} {why}")
         elif target.absolute().resolve() not in self.files:
             yield from self._expanded(target)
 
@@ -102,6 +102,8 @@ class Source:
         path, line = self.place(number)
         if wrong := self._line(number).wrong:
             return f"{path}:{line}: {wrong}"
+        if number > len(self.lines):
+            return f"{path}:{line}: at the end of the file: {said}"
         column = column or self._column(number, token)
         return f"{path}:{line}{f':{column}' if column else ''}: {said}"
 
