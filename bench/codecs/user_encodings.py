@@ -155,8 +155,12 @@ def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -
     if encoding.name in ENCODINGS:
         raise UsageError(f"{path}: {TAKEN.format(encoding.name)}")
     if encoding.name in taken:
-        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename its two functions")
+        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename {_what_names(encoding)}")
     return encoding
+
+
+def _what_names(encoding: Encoding) -> str:
+    return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
 def read_encoding(path: Path, fault: str = "", is_biased: bool = False) -> Encoding:

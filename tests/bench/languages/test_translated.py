@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from normalbench.bench.codecs.diagnoses import is_biased
@@ -118,6 +119,36 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
     first, second = (row["angle_mean_deg"] for row in json.loads(out))
     assert first == pytest.approx(second, rel=1e-6)
     assert err.count("its codes fill [0, 1], so they are taken to be what an unsigned storage holds") == 1, err
+
+
+def test_the_way_to_a_signed_number_and_back_moves_no_integer():
+    """docs/bring-your-own.md: at most 2^-26, which is less than half a step of any storage by far."""
+    half, one = np.float32(0.5), np.float32(1)
+    c = np.concatenate(
+        [np.arange(2**bits) / (2**bits - 1) for bits in (5, 8, 10, 11, 12, 16)] + [np.linspace(0, 1, 10**6)]
+    )
+    c = c.astype(np.float32)
+    back = (c * 2 - one) * half + half
+    assert back.dtype == np.float32 and np.abs(back - c.astype(np.float64)).max() <= 2**-26
+    for bits in (5, 8, 10, 11, 12, 16):
+        whole = np.arange(2**bits)
+        at = np.float32(whole / (2**bits - 1))
+        assert np.array_equal(np.rint(((at * 2 - one) * half + half) * np.float32(2**bits - 1)), whole)
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_test_of_the_users_names_it(pytester):
+    """It is looked for next to the test, with the names of its functions or without."""
+    written(pytester.path, MINE, "mine.hlsl")
+    pytester.makepyfile(
+        """
+        def test_mine(normalbench):
+            for name in ("mine.hlsl", "mine.hlsl:EncodeNormal:DecodeNormal"):
+                row = normalbench.quality(encoding=name, storage="rg8", normals="hemisphere", count=4096)
+                row.assert_that(angle_mean_deg="at most 0.3")
+        """
+    )
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
 
 
 def test_codes_in_0_to_1_are_told_from_others():
