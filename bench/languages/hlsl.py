@@ -36,11 +36,14 @@ def shader(source: Source, function: Function, folder: Path) -> str:
         MissingError: a tool is not there.
     """
     (folder / GIVEN).write_text(program(source, function), encoding="utf-8")
-    # Without names no identifier of the user's can be one of GLSL's or of this program's.
-    options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-o", MADE]
+    # Without names (-g0) no identifier of the user's can be one of GLSL's or of this program's. Not optimised (-Od), a
+    # function with an early return stays one, and does not become a loop of one turn.
+    options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-Od", "-o", MADE]
     status, said = tools.run(tools.GLSLANG, [*options, *_defined(source), GIVEN], folder)
     _check(source, status, said)
-    status, said = tools.run(tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", MADE], folder)
+    status, said = tools.run(
+        tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", "--remove-unused-variables", MADE], folder
+    )
     if status:
         raise TranslationError(f"{source.path}: {tools.SPIRV_CROSS}: {' '.join(said.split())[:300]}")
     return said
