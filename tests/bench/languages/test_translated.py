@@ -1,10 +1,10 @@
 """Users' files in HLSL and Slang in every command, and what is wrong with one said in a line that spares the others."""
 
+import itertools
 import json
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,9 +13,10 @@ from normalbench.bench.codecs.diagnoses import is_biased
 from normalbench.bench.codecs.first_look import directions
 from normalbench.bench.languages import tools, translated
 from normalbench.bench.languages.plain import NotPlainError, plain
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
-FILES = Path(__file__).parents[2] / "inputs" / "hlsl"
 TWIN = """
 from normalbench.encodings.vec import Vec2, Vec3, normalize
 
@@ -76,16 +77,33 @@ def test_a_run_and_gates_take_it(run, tmp_path, monkeypatch):
     assert status == 0 and "mine.hlsl" in (tmp_path / "results" / "quality.csv").read_text(), err
 
 
+PLAIN = ("octahedral", "signed_octahedral", "spheremap", "xyz_largest", "cryengine3", "xy_sign")
+# What encodings/vec.glsl has, in HLSL.
+OF_VEC = f"""
+#define TINY {vec.TINY!r}
+float sign_not_zero(float v) {{ return v < 0.0 ? -1.0 : 1.0; }}
+float2 sign_not_zero(float2 v) {{ return float2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0); }}
+float2 unit(float2 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float2(1.0, 0.0); }}
+float3 unit(float3 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float3(1.0, 0.0, 0.0); }}
+"""
+
+
+def in_hlsl(name: str) -> str:
+    """An encoding of the catalogue, word for word."""
+    text = ENCODINGS[name].glsl.read_text().replace(f"{name}_", f"own_{name}_")
+    return OF_VEC + re.sub(r"\bvec([23])", r"float\1", re.sub("#include.*", "", text))
+
+
 @pytest.mark.usefixtures("radv")
-@pytest.mark.parametrize("name", ["octahedral"])
-def test_the_same_steps_cost_the_same_instructions(run, name, ending, tmp_path):
-    path = written(tmp_path, (FILES / f"{name}.hlsl").read_text(), f"{name}.{ending}")
-    row = ("--isa", "--stage", "fragment", "--family", "navi21", "--storage", "rg8", "--format", "json")
-    _, out, _ = run("cost", "--encoding", f"{path},{name}", *row)
-    found = {(row["encoding"], row["operation"]): row["instructions"] for row in json.loads(out)}
-    for operation in ("encode", "decode"):
-        own = found[f"{name}.{ending}", operation]
-        assert own == found[name, operation], f"{operation}: {own} instructions, {found[name, operation]} in GLSL"
+def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
+    """To the instruction, on two generations of GPUs."""
+    files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in PLAIN]
+    row = ("--isa", "--stage", "fragment", "--family", "polaris10,navi21", "--storage", "rg8", "--format", "json")
+    _, out, _ = run("cost", "--encoding", ",".join([*files, *PLAIN]), *row)
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
+    for name, operation, family in itertools.product(PLAIN, ("encode", "decode"), ("polaris10", "navi21")):
+        own, glsl = (found[each, operation, family] for each in (f"own_{name}", name))
+        assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
 
 
 def test_functions_are_named_where_a_file_has_several(run, tmp_path, ending):
