@@ -21,7 +21,7 @@ from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ...reports.page.verdict import MADE_FOR
 from ..languages.translated import translated
-from ..languages.words import ENDINGS, file_of, is_translated, names_an_encoder, twin_of
+from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
@@ -82,6 +82,8 @@ def _check_word(word: str) -> None:
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, ENCODINGS) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
+    if lacks_a_function(word):
+        raise UsageError(f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal; in GLSL, none")
     if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
         language, how = OTHER_LANGUAGES[ending]
         raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")

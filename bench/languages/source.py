@@ -10,7 +10,8 @@ from typing import NamedTuple
 from ...encodings.codecs.files import MOST_TEXT, file_text
 from ..output.errors import UsageError
 
-_COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.S)
+# One that has no end goes to the end of the text, so that every letter is looked at once.
+_COMMENT = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?(?:\*/|\Z)', re.S)
 _INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]+(?:"([^"]+)"|<([^>]+)>)[ \t]*')
 # Directives with lines that go on joined, and comments gone.
 _ANY_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b", re.M)
@@ -26,8 +27,16 @@ class Line(NamedTuple):
 
 
 def without_comments(text: str) -> str:
-    """A text with blanks for its comments; every line and every column stays where it is."""
-    return _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else re.sub(r"[^\n]", " ", match[0]), text)
+    """A text with blanks for its comments; every line and every column stays where it is.
+
+    A comment without an end stays as it is.
+    """
+    return _COMMENT.sub(_blank, text)
+
+
+def _blank(match: re.Match[str]) -> str:
+    is_whole = match[0].startswith("//") or (len(match[0]) > 3 and match[0].endswith("*/"))
+    return re.sub(r"[^\n]", " ", match[0]) if is_whole else match[0]
 
 
 class Source:
@@ -37,14 +46,17 @@ class Source:
     harm.
 
     Raises:
-        UsageError: a file cannot be read, or they are too large together.
+        UsageError: a file cannot be read, they are too large together, or they include each other too deep.
     """
 
     def __init__(self, path: Path):
         self.path = path
         self.files: dict[Path, Path] = {}
         self._root, self._left = path.absolute().parent.resolve(), MOST_TEXT
-        self.lines = list(self._expanded(path))
+        try:
+            self.lines = list(self._expanded(path))
+        except RecursionError:
+            raise UsageError(f"{path}: its #includes are nested too deep") from None
         self.text = "".join(f"{line.text}\n" for line in self.lines)
 
     def _expanded(self, path: Path) -> Iterator[Line]:

@@ -37,6 +37,12 @@ def file_of(word: str | Path) -> Path:
     return Path(match["file"] if match else word)
 
 
+def lacks_a_function(word: str) -> bool:
+    """Whether a word names a file, and not both of the functions in it: mine.hlsl:EncodeNormal."""
+    head, mark, _ = word.partition(":")
+    return bool(mark) and Path(head).suffix.lower() in ENDINGS and not names_an_encoder(word)
+
+
 def functions_of(word: str | Path) -> tuple[str, str] | None:
     """The two functions that a word names; None where it names none."""
     match = _PAIR.fullmatch(str(word))

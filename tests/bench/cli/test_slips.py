@@ -75,6 +75,11 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "Parquet on a terminal": ((*ONE, "--format", "parquet"), "name a file with -o FILE.parquet"),
     "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not read"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "WGSL is not read"),
+    "one function of a file": (
+        (*ROW, "--encoding", "mine.hlsl:Encode"),
+        "mine.hlsl:Encode: name both functions, such as",
+    ),
+    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "short.glsl:s:t: name both functions"),
     "WGSL to doctor": (("doctor", "mine.wgsl"), "WGSL is not read"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),

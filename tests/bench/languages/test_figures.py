@@ -65,7 +65,9 @@ def test_an_engines_encoder_has_its_published_largest_angle(name):
 
 
 @pytest.mark.usefixtures("slang")
-@pytest.mark.parametrize("name", ["octahedral", "wicked", "o3de"])
+@pytest.mark.parametrize(
+    "name", ["wicked", *(pytest.param(name, marks=pytest.mark.slow) for name in ("octahedral", "o3de"))]
+)
 def test_slang_has_the_figures_of_the_same_text_in_hlsl(name, tmp_path):
     """Slang reads HLSL; whole numbers and halves in it become what they are there."""
     copy = Path(shutil.copy(FILES / f"{name}.hlsl", tmp_path / f"{name}.slang"))

@@ -1,5 +1,8 @@
 """A file with what it includes: from its own folder, and each line with the place that it was written."""
 
+import contextlib
+import time
+
 import pytest
 
 from normalbench.bench.languages.source import Source, without_comments
@@ -72,3 +75,20 @@ def test_comments_leave_every_column_where_it_is():
 def test_a_comment_without_an_end_is_named(tmp_path):
     with pytest.raises(UsageError, match=r"mine\.hlsl:2: a comment that begins with /\* is not closed"):
         Source(written(tmp_path, "float x;\n/* never"))
+
+
+@pytest.mark.parametrize("text", ["/* " * 10**6, '\\"' * 10**6, '"' * 10**6, "#include" * 10**5, " " * 10**6 + "#"])
+def test_reading_takes_as_long_as_the_text(tmp_path, text):
+    """No text makes it look at a letter again and again; it is read before anything limits it."""
+    path = written(tmp_path, text)
+    began = time.process_time()
+    with contextlib.suppress(UsageError):
+        Source(path)
+    assert time.process_time() - began < 2, f"{time.process_time() - began:.1f} s"
+
+
+def test_includes_are_nested_no_deeper_than_can_be_read(tmp_path):
+    for at in range(2000):
+        written(tmp_path, f'#include "{at + 1}.hlsli"', f"{at}.hlsli")
+    with pytest.raises(UsageError, match="nested too deep"):
+        Source(tmp_path / "0.hlsli")
