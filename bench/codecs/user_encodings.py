@@ -40,7 +40,7 @@ OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 TAKEN = "there is an encoding named {} already; rename its two functions"
-BIASED = "its codes fill [0, 1], so they are taken to be what an unsigned storage holds: it stores them as they are"
+BIASED = "its codes fill [0, 1], not [-1, 1]; an unsigned storage holds them as they are"
 
 
 class NoTwinError(Exception):

@@ -13,6 +13,8 @@ from normalbench.bench.codecs.diagnoses import is_biased
 from normalbench.bench.codecs.first_look import directions
 from normalbench.bench.languages import tools, translated
 from normalbench.bench.languages.plain import NotPlainError, plain
+from normalbench.bench.results.measuring import files_of
+from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 
@@ -136,7 +138,7 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
     _, out, err = run("quality", "--encoding", f"{one},{other}", *QUICK)
     first, second = (row["angle_mean_deg"] for row in json.loads(out))
     assert first == pytest.approx(second, rel=1e-6)
-    assert err.count("its codes fill [0, 1], so they are taken to be what an unsigned storage holds") == 1, err
+    assert err.count("its codes fill [0, 1], not [-1, 1]; an unsigned storage holds them as they are") == 1, err
 
 
 def test_the_way_to_a_signed_number_and_back_moves_no_integer():
@@ -250,6 +252,20 @@ def test_a_twin_next_to_it_is_measured_by_jax(run, tmp_path):
     _, out, _ = run("quality", "--encoding", path, *QUICK[:4], *QUICK[6:])
     by_jax, by_gl = (row["angle_mean_deg"] for row in json.loads(out))
     assert by_jax == pytest.approx(by_gl, rel=1e-3)
+
+
+def test_rows_kept_from_before_know_what_a_file_includes(tmp_path):
+    """An interrupted command measures anew where an include or the twin is another."""
+    path, seen = written(tmp_path, '#include "part.hlsli"\n' + MINE, "mine.hlsl"), set()
+    for name, text in (
+        ("part.hlsli", "// one"),
+        ("part.hlsli", "// two"),
+        ("mine.py", "one = 1"),
+        ("mine.py", "two = 2"),
+    ):
+        written(tmp_path, text, name)
+        seen.add(files_of(QualityOptions(encoding=f"{path}:EncodeNormal:DecodeNormal"))["files"].popitem()[1])
+    assert len(seen) == 4
 
 
 def test_a_shader_becomes_functions_of_other_names():
