@@ -58,8 +58,7 @@ def translated(word: str | Path) -> Translated:
     """
     path, asked = file_of(word), functions_of(word)
     source = Source(path)
-    stamps = [tools.stamp(tool) for tool in language_of(path).tools]
-    key = kept.key_of("translated", source.text, str(path), *(asked or ()), *stamps, _own())
+    key = kept.key_of("translated", source.text, str(path), *(asked or ()), *_stamps(path), _own())
     found = _whole(kept.read(key))
     if found is None:
         found = _whole(made := _by_child(path, asked))
@@ -67,6 +66,13 @@ def translated(word: str | Path) -> Translated:
             raise UsageError(f"{path}: its translation ended without a result")
         kept.write(key, made)
     return found
+
+
+def _stamps(path: Path) -> list[str]:
+    try:
+        return [tools.stamp(tool) for tool in language_of(path).tools]
+    except MissingError as error:
+        raise MissingError(f"{path}: {error}") from error
 
 
 @cache
