@@ -29,6 +29,8 @@ lint: .venv/ready
 .venv/ready: pyproject.toml .ci/constraints.txt
 	.ci/prepare-venv $(PYTHON)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --editable ".[dev]"
+	# Its compiler alone: the package needs torch, and no extra can say --no-deps.
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --no-deps slangtorch
 	.ci/prepare-gl $(BIN)/python
 	.ci/prepare-isa $(BIN)/python
 	touch $@

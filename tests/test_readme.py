@@ -33,7 +33,7 @@ PAGES = {path: path.read_text() for path in (README, *sorted((ROOT / "docs").glo
 MOST_LINES = 150
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
 # An example is a fenced block under the name of its file.
-NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|python|toml)\n(.*?)^```$", re.S | re.M)
+NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|hlsl|python|toml)\n(.*?)^```$", re.S | re.M)
 EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
 FILES = {name: text for _, name, text in EXAMPLES}
 # An indented line is a command, up to its comment.
@@ -92,7 +92,7 @@ def test_every_table_is_held_by_a_test():
 
 def test_every_example_is_a_file_and_files_of_one_name_are_the_same():
     for path, text in PAGES.items():
-        assert len(re.findall(r"^```(?:glsl|python|toml)$", text, re.M)) == len(NAMED.findall(text)), path.name
+        assert len(re.findall(r"^```(?:glsl|hlsl|python|toml)$", text, re.M)) == len(NAMED.findall(text)), path.name
     assert all(FILES[name] == text for _, name, text in EXAMPLES)
 
 

@@ -84,7 +84,7 @@ def list_command(
 
 @app.command()
 def doctor(
-    file: Annotated[Path | None, typer.Argument(help="A GLSL file with an encoding of yours.")] = None,
+    file: Annotated[Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL or Slang.")] = None,
     plot: Annotated[
         Path | None, typer.Option("--plot", help="Draw the encoding's error over the sphere, in rgba8, into this file.")
     ] = None,

@@ -23,6 +23,9 @@ NEARLY_DEG = 10.0
 MOST, FEW = 0.95, 0.002
 # Of [-1, 1]: how much a number must use, and how far it may reach beyond.
 USED, BEYOND = 0.8, 1e-3
+# How much of [0, 1] the codes of some thousand directions fill at least, how far roundings lead beyond, the share that
+# roundings next to a pole may lead farther, and how far.
+NEARLY_FULL, ROUNDED, NEXT_TO_A_POLE, FARTHER = 0.9, 1e-6, 0.01, 0.1
 # How far a decode's length may be from 1.
 LENGTH = 0.01
 # Of a direction's distance from a pole: how far off it may come back. Beside the pole by this angle.
@@ -99,6 +102,18 @@ def guessed(trip: Trip, within: float = SAME_DEG) -> str:
     nowhere."""
     is_same = trip.angles() < within
     return next((name for name, which in DOMAINS.items() if is_same[which(trip)].mean() > MOST), "")
+
+
+def is_biased(codes: np.ndarray) -> bool:
+    """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills it.
+
+    Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
+    """
+    low, high = codes.min(axis=0), codes.max(axis=0)
+    beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
+    is_in = (beyond.mean(axis=0) < NEXT_TO_A_POLE) & (low > -FARTHER) & (high < 1 + FARTHER)
+    fills = (high - low > NEARLY_FULL) | (high == low)
+    return bool(is_in.all() and fills.all() and (high > low).any())
 
 
 def _other_half(trip: Trip, domain: str) -> Iterator[str]:

@@ -4,8 +4,8 @@
 
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
-what comes back, and `wrong`, a list of what is likely wrong. Of the twin: `error`, what it raises; `apart`, where it
-contradicts the GLSL.
+what comes back, `wrong`, a list of what is likely wrong, and `biased`, where codes of another language than GLSL fill
+[0, 1]. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -28,9 +29,10 @@ from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.codecs.loops import loop_limit, loops_ended
 from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ..languages.words import is_translated, twin_of
 from ..machine import children
-from ..output.errors import UsageError
-from .diagnoses import Trip, diagnoses, guessed
+from ..output.errors import MissingError, UsageError
+from .diagnoses import Trip, diagnoses, guessed, is_biased
 from .names import check_twin
 from .signatures import of_hlsl
 from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
@@ -62,21 +64,29 @@ def first_look(path: Path) -> dict[str, Any]:
     try:
         encoding, gl = read_encoding(path, NOT_ASKED), device()
         codes, _ = exact_values(gl, encoding, given, view, given)
+        biased = {"biased": True} if is_translated(path) and is_biased(codes[:, : encoding.components]) else {}
+        if biased:
+            encoding = read_encoding(path, NOT_ASKED, is_biased=True)
+            codes, _ = exact_values(gl, encoding, given, view, given)
         # As a storage clips them.
         _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
         broken = _ended(gl, encoding, given, view)
-    except NoDeviceError as error:
+    except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
-    return broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
+    judged = broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
+    return judged | biased
 
 
 def _of_compiler(path: Path, said: str) -> str:
     """A compiler's message with the user's file at its begin."""
     line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
+    if is_translated(path):
+        said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
+        return f"{path}: the GLSL that was made of it does not compile on this device: {said}"
     named = line if path.name in line else f"{path}: {line}"
     hint = of_hlsl(read_shader(path))
     return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
@@ -111,7 +121,7 @@ def twin_look(path: Path) -> dict[str, Any]:
     except NoDeviceError:
         return {}
     except BaseException as error:  # whatever a user's own file raises
-        where = path.with_suffix(".py")
+        where = twin_of(path)
         said = (
             str(error) if isinstance(error, UsageError | NoTwinError) else f"{where}: {type(error).__name__}: {error}"
         )

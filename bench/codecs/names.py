@@ -100,7 +100,7 @@ def check_twin(encoding: Encoding) -> None:
         UsageError: it raises, or its code has another size than it says; one line with its file.
     """
     n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
-    where = encoding.glsl.with_suffix(".py")
+    where = encoding.twin
     try:
         code = jax.eval_shape(encoding.encode, n, n)
         size = encoding.components + encoding.sign_bits

@@ -1,10 +1,9 @@
-"""Users' own encodings: a .glsl file, and a Python twin beside it if there is one, measured like any other."""
+"""Users' own encodings, measured like any other: files of GLSL, HLSL or Slang, and a Python twin next to one."""
 
 from __future__ import annotations
 
 import importlib.util
 import json
-import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -21,20 +20,19 @@ from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ...reports.page.verdict import MADE_FOR
+from ..languages.translated import translated
+from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from ..machine import children
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
 from ..output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ..output.spelling import spelled
 from . import tuned_names
-from .signatures import FROM_HLSL, encode_of
+from .signatures import encode_of
 
-ENDING = ".glsl"
-# Endings of other languages: what they are called, and how a shader becomes GLSL.
-LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
+# Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
+OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        **dict.fromkeys((".hlsl", ".hlsli", ".fx"), ("HLSL", f"{FROM_HLSL}, and save it as .glsl")),
-        ".slang": ("Slang", "slangc -target glsl translates it"),
         ".wgsl": ("WGSL", "naga FILE.wgsl FILE.frag translates it, or write it as GLSL"),
         ".metal": ("Metal", "write it as GLSL"),
     }
@@ -42,6 +40,7 @@ LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 TAKEN = "there is an encoding named {} already; rename its two functions"
+BIASED = "its codes fill [0, 1], not [-1, 1]; an unsigned storage holds them as they are"
 
 
 class NoTwinError(Exception):
@@ -49,25 +48,27 @@ class NoTwinError(Exception):
 
 
 def encodings_named(names: str) -> list[Encoding]:
-    """The encodings that comma-separated names stand for: the catalogue's, tuned ones, or files that end in .glsl.
+    """The encodings that comma-separated names stand for: the catalogue's, tuned ones, or files that end in one of
+    ENDINGS.
 
     A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
     is named on standard error and left out.
 
     Raises:
         UsageError: an unknown name, or nothing left.
+        MissingError: nothing left, because a compiler is missing.
     """
     check_comma(names)
     words = dict.fromkeys(word.strip() for word in names.split(","))
     own = given_in(names)
     for word in (word for word in words if word not in own):
         _check_word(word)
-    files, complaints, notes = _read_all([word for word in words if word.endswith(ENDING)])
-    rest = [word for word in words if word in files or not word.endswith(ENDING)]
+    files, complaints, notes = _read_all([word for word in words if names_an_encoder(word)])
+    rest = [word for word in words if word in files or not names_an_encoder(word)]
     if complaints and not rest:
-        raise UsageError(complaints[0])
-    for line in complaints:
-        leave_out(line)
+        raise complaints[0]
+    for error in complaints:
+        leave_out(str(error))
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
     picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
     # At last: an error is one line alone.
@@ -78,37 +79,40 @@ def encodings_named(names: str) -> list[Encoding]:
 
 def _check_word(word: str) -> None:
     """Raises UsageError for a shader of another language, and for one without its ending."""
-    file = f"{word}{ENDING}"
-    if names_a_file(file) and spelled("encoding", word, ENCODINGS) is None:
+    file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
+    if file and spelled("encoding", word, ENCODINGS) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
-    if (ending := Path(word).suffix.lower()) in LANGUAGES:
-        language, how = LANGUAGES[ending]
+    if lacks_a_function(word):
+        raise UsageError(f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal; in GLSL, none")
+    if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
+        language, how = OTHER_LANGUAGES[ending]
         raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
 
 
-def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[str], list[str]]:
-    """The encodings of files, why others are left out, and what is to be said of those that are not: lines."""
+def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[Exception], list[str]]:
+    """The encodings of files, why others are left out, and lines that are to be said of those that are not."""
     found: dict[str, Encoding] = {}
-    complaints: list[str] = []
+    complaints: list[Exception] = []
     notes: list[str] = []
     for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words)), strict=True):
         try:
             found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
             notes += said
-        except UsageError as error:
-            complaints.append(str(error))
+        except (UsageError, MissingError) as error:
+            complaints.append(error)
     return found, complaints, notes
 
 
-def _looked_at(path: Path) -> tuple[Encoding | UsageError, list[str]]:
+def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
     """A file's encoding after the first look, or why there is none; and what is to be said of it."""
     try:
         found = _look(path)
         _check(path, found.glsl)
+        encoding = found.encoding(path)
         said = [f"{path}: {line}" for line in (*found.wrong, *found.notes)]
-        said += [f"{path.with_suffix('.py')}: {found.twin['apart']}"] if "apart" in found.twin else []
-        return replace(read_encoding(path, found.fault), domain=found.domain), said
-    except UsageError as error:
+        said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
+        return encoding, said
+    except (UsageError, MissingError) as error:
         return error, []
 
 
@@ -132,7 +136,7 @@ def examined(path: Path) -> Examined:
     known = spelled("encoding", str(path), ENCODINGS)
     if known and not path.exists():
         command = f"normalbench quality --encoding {known}"
-        raise UsageError(f"{path} is in the catalogue; doctor examines a GLSL file. `{command}` measures it")
+        raise UsageError(f"{path} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
     found = _look(path)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
@@ -141,51 +145,75 @@ def examined(path: Path) -> Examined:
     broken = [found.glsl["broken"]] if "broken" in found.glsl else []
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
-    encoding = replace(read_encoding(path, found.fault), domain=found.domain)
+    encoding = found.encoding(path)
     notes = [*found.notes, *([TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else [])]
     return Examined(encoding, [*broken, *found.wrong, *of_twin], notes, not broken)
 
 
-def _with_a_name(encoding: Encoding | UsageError, path: Path, taken: list[str]) -> Encoding:
-    """The encoding. Raises UsageError where there is none, or rows could not tell its name from another's."""
-    if isinstance(encoding, UsageError):
+def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -> Encoding:
+    """The encoding. Raises what was raised where there is none, and UsageError where rows could not tell its name."""
+    if isinstance(encoding, Exception):
         raise encoding
     if encoding.name in ENCODINGS:
         raise UsageError(f"{path}: {TAKEN.format(encoding.name)}")
     if encoding.name in taken:
-        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename its two functions")
+        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename {_what_names(encoding)}")
     return encoding
 
 
-def read_encoding(path: Path, fault: str = "") -> Encoding:
-    """An encoding from its GLSL file, and from the Python file of the same name where there is one.
+def _what_names(encoding: Encoding) -> str:
+    return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
+
+
+def read_encoding(path: Path, fault: str = "", is_biased: bool = False) -> Encoding:
+    """An encoding from its file, and from the Python file of the same name where there is one.
 
     Args:
-        path: of the GLSL file.
+        path: of the file, with the names of its functions behind it where they are needed: see `languages/words.py`.
         fault: why the Python file is not to be used; what it would measure says so.
+        is_biased: whether its codes lie in [0, 1]; of another language than GLSL alone.
 
     Raises:
         UsageError: it cannot be read, or does not define its two functions.
+        MissingError: the compiler of its language is not there.
     """
-    try:
-        text = read_shader(path)
-    except ShaderError as error:
-        raise UsageError(str(error)) from error
-    name, components = encode_of(path, text)
-    encode, decode = _lacking(fault) if fault else _twin(path.with_suffix(".py"))
+    text = _text(path, is_biased)
+    encode, decode = _lacking(fault) if fault else _twin(twin_of(path))
     return Encoding(
-        name=name,
+        name=text.name,
         title=called(str(path)),
         encode=encode,
         decode=decode,
-        components=components,
+        components=text.components,
         domain="sphere",
         citation=called(str(path)),
-        # Not resolved: the twin lies next to the path that was given.
-        glsl=path.absolute(),
+        glsl=text.glsl,
         ulps=(0, 0),
         ulps_reason="a user's own",
+        functions=text.functions,
+        source=file_of(path).absolute() if is_translated(path) else None,
     )
+
+
+class _Text(NamedTuple):
+    """An encoding's name, how many numbers its code has, its GLSL, and what the names of its functions begin with."""
+
+    name: str
+    components: int
+    glsl: Path
+    functions: str = ""
+
+
+def _text(path: Path, is_biased: bool) -> _Text:
+    if is_translated(path):
+        made = translated(path)
+        return _Text(made.name, made.components, made.glsl(is_biased), made.prefix)
+    try:
+        name, components = encode_of(path, read_shader(path))
+    except ShaderError as error:
+        raise UsageError(str(error)) from error
+    # Not resolved: the twin lies next to the path that was given.
+    return _Text(name, components, path.absolute())
 
 
 def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
@@ -240,6 +268,7 @@ class Looks:
 
     Attributes:
         glsl: of the shader.
+        said: what a translation says of it.
         twin: of the Python twin; empty where there is none, or the shader is of no use.
         fault: why the twin cannot be measured; empty where it can be.
     """
@@ -247,6 +276,16 @@ class Looks:
     glsl: dict[str, Any]
     twin: dict[str, Any]
     fault: str
+    said: tuple[str, ...] = ()
+
+    def encoding(self, path: Path) -> Encoding:
+        """The encoding that was looked at."""
+        return replace(read_encoding(path, self.fault, self.is_biased), domain=self.domain)
+
+    @property
+    def is_biased(self) -> bool:
+        """Whether its codes lie in [0, 1]."""
+        return self.glsl.get("biased", False)
 
     @property
     def domain(self) -> str:
@@ -262,14 +301,21 @@ class Looks:
     def notes(self) -> list[str]:
         """What was guessed of it."""
         held = MADE_FOR.get(self.domain)
-        return [f"taken to be made for {held} alone: no others come back"] if held else []
+        made_for = [f"taken to be made for {held} alone: no others come back"] if held else []
+        return [*self.said, *([BIASED] if self.is_biased else []), *made_for]
 
 
 def _look(path: Path) -> Looks:
-    """A first look in a process of its own. Raises UsageError where its shader does not let it end well."""
+    """A first look in a process of its own.
+
+    Raises:
+        UsageError: it cannot be translated, or its shader does not let that process end well.
+        MissingError: the compiler of its language is not there.
+    """
+    said_of_it = tuple(translated(path).notes) if is_translated(path) else ()
     try:
         done = children.finished(children.python("normalbench.bench.codecs.first_look", str(path)), TIME_LIMIT)
-        said, ended = done.stdout, _how_it_ended(done)
+        said, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
         said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
     lines = list(_answers(said))
@@ -277,14 +323,14 @@ def _look(path: Path) -> Looks:
         raise UsageError(f"{path}: its shader {ended}")
     has_twin = twin_is_looked_at(path, lines[0])
     if has_twin and len(lines) < 2:
-        return Looks(lines[0], {}, f"{path}: its Python twin {ended}")
+        return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it)
     twin = lines[1] if has_twin else {}
-    return Looks(lines[0], twin, twin.get("error", ""))
+    return Looks(lines[0], twin, twin.get("error", ""), said_of_it)
 
 
 def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:
     """Whether a shader of which this was found has a twin, and is of use."""
-    return not {"error", "broken"} & set(found) and path.with_suffix(".py").exists()
+    return not {"error", "broken"} & set(found) and twin_of(path).exists()
 
 
 def _answers(said: str) -> Iterator[dict[str, Any]]:
@@ -293,14 +339,6 @@ def _answers(said: str) -> Iterator[dict[str, Any]]:
             yield json.loads(line)
         except ValueError:
             return
-
-
-def _how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
-    limits = f"it may use {children.MEMORY >> 20} MiB of memory and {children.SECONDS} s of processor time"
-    if done.returncode < 0:
-        return f"killed the process ({signal.Signals(-done.returncode).name}); {limits}"
-    last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
-    return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
 
 
 def _check(path: Path, found: dict[str, Any]) -> None:

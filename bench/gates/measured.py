@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any
 
+from ..languages.words import file_of, names_an_encoder, twin_of
 from ..metrics.meter import Worst
 from ..options.option import checked_options
 from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
@@ -72,9 +72,9 @@ def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _is_in_glsl_only(names: str) -> bool:
-    """Whether one of the names is a GLSL file without a Python twin."""
-    files = [Path(word.strip()) for word in names.split(",") if word.strip().endswith(".glsl")]
-    return any(names_a_file(str(file)) and not names_a_file(str(file.with_suffix(".py"))) for file in files)
+    """Whether one of the names is a file with a user's encoder without a Python twin."""
+    words = [word.strip() for word in names.split(",") if names_an_encoder(word.strip())]
+    return any(names_a_file(str(file_of(word))) and not names_a_file(str(twin_of(word))) for word in words)
 
 
 def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:

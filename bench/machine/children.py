@@ -71,6 +71,15 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
     return subprocess.CompletedProcess(list(command), status, *said)
 
 
+def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
+    """How a process that limits itself ended, and the last that it said."""
+    limits = f"it may use {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
+    if done.returncode < 0:
+        return f"killed the process ({signal.Signals(-done.returncode).name}); {limits}"
+    last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
+    return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
+
+
 def _text(file: IO[bytes]) -> str:
     file.seek(0)
     return file.read().decode(errors="replace")

@@ -36,7 +36,9 @@ class Option:
 
 
 Names = "comma-separated, or all; `normalbench list` shows them"
-Encodings = Annotated[str, Option("--encoding", f"Encodings or GLSL files, {Names}.", files=True, in_run=True)]
+Encodings = Annotated[
+    str, Option("--encoding", f"Encodings or files of GLSL, HLSL or Slang, {Names}.", files=True, in_run=True)
+]
 StorageNames = Annotated[str, Option("--storage", f"Storages, {Names}.", in_run=True)]
 Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)

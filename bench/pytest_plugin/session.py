@@ -16,6 +16,7 @@ from ...encodings.codecs.files import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.limits import Limit, limit, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
+from ..languages.words import file_of
 from ..machine.devices import found_device
 from ..options.option import checked_options, fields_of
 from ..output.errors import MissingError, UsageError
@@ -95,7 +96,7 @@ def _located(
 
 def _path(folder: Path, word: str) -> str:
     try:
-        return os.path.relpath(folder / word) if (folder / word).is_file() else word
+        return os.path.relpath(folder / word) if file_of(folder / word).is_file() else word
     except (OSError, ValueError):  # no name that a file could have
         return word
 

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from ...reports import tables
 from ..codecs.half.compute import half_device
+from ..languages.language import require_language
 from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
@@ -28,6 +29,8 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "rays (method_rms of effects)": require_rays,
+        "encoders in HLSL": lambda: require_language("HLSL"),
+        "encoders in Slang": lambda: require_language("Slang"),
         "-o FILE.parquet": _require_parquet,
     }
 )

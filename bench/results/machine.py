@@ -13,6 +13,7 @@ from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
+from ..languages import tools
 from ..output.errors import MissingError
 
 ROUNDS = {
@@ -67,6 +68,8 @@ def _compilers() -> dict[str, str]:
     return {
         "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
         "SPIR-V optimiser": optimiser.splitlines()[0] if optimiser else spirv.NO_OPTIMISER,
+        "HLSL translator": tools.version(tools.SPIRV_CROSS),
+        "Slang compiler": tools.version(tools.SLANG),
     }
 
 

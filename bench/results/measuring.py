@@ -9,6 +9,8 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Protocol
 
+from ..languages.source import Source
+from ..languages.words import file_of, is_translated, names_an_encoder, twin_of
 from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
@@ -97,7 +99,7 @@ def files_of(options: Any) -> Row:
         if fields_of(type(options))[field.name].option.files
         for word in str(getattr(options, field.name) or "").split(",")
     ]
-    found = {word: digest for word in words if word and (digest := _fingerprint(Path(word)))}
+    found = {word: digest for word in words if word and (digest := _fingerprint(file_of(word)))}
     return {"files": found} if found else {}
 
 
@@ -108,11 +110,20 @@ def _fingerprint(path: Path) -> str:
             return ""
         patterns = COMPANIONS.get(path.suffix.lower(), ())
         beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
-        beside |= {other for other in (path.with_suffix(".py"),) if path.suffix == ".glsl" and other.is_file()}
+        if names_an_encoder(str(path)):
+            beside |= {other for other in (twin_of(path), *_included(path)) if other.is_file()}
         digests = [_digest(one) for one in (path, *sorted(beside))]
         return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
     except (OSError, ValueError):
         return ""
+
+
+def _included(path: Path) -> list[Path]:
+    """The files that a user's encoder includes; none of one that cannot be read."""
+    try:
+        return list(Source(path).files.values()) if is_translated(path) else []
+    except UsageError:
+        return []
 
 
 def _digest(path: Path) -> bytes:

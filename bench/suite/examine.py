@@ -25,7 +25,7 @@ def examine_encoding(file: Path | None, plot: Path | None, format: str, output: 
         UsageError: there is no file, it is not an encoding, or something cannot be written.
     """
     if file is None:
-        raise UsageError("--plot draws an encoding's error: name its GLSL file")
+        raise UsageError("--plot draws an encoding's error: name its file")
     check_plot(plot)
     encoding, wrong, notes, is_measurable = examined(file)
     about = {"file": file.name, "encoding": encoding.name, "domain": encoding.domain}

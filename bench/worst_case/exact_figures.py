@@ -81,7 +81,7 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
     try:
         return search(codec, domain != "sphere")
     except TypeError as error:
-        where = codec.encoding.glsl.with_suffix(".py")
+        where = codec.encoding.twin
         said = str(error).splitlines()[0]
         raise UsageError(f"{where}: in float64: {said}; leave out --worst-case and --codes") from error
 

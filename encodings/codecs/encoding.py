@@ -83,6 +83,7 @@ class Encoding:
         axis: which axis of a normal is its z, a key of AXES.
         sign: 1, or -1 where the opposite of a normal is encoded.
         is_half: every step of encode and decode is rounded to a float of 16 bits; codes are of that type.
+        source: the user's file that its GLSL was translated from; None where the GLSL was written.
         before: the codec that normals have been through when they are encoded; None where it is given them as they are.
     """
 
@@ -108,7 +109,13 @@ class Encoding:
     axis: str = "z"
     sign: int = 1
     is_half: bool = False
+    source: Path | None = None
     before: Any = None
+
+    @property
+    def twin(self) -> Path:
+        """Where the Python half of a user's encoding lies."""
+        return (self.source or self.glsl).with_suffix(".py")
 
     @property
     def prefix(self) -> str:
@@ -131,7 +138,7 @@ class Encoding:
         code = (*code, self.axis, self.sign, self.is_half)
         if self.before:
             code = (*code, self.before.name, self.before.encoding.fingerprint)
-        return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables())
+        return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables(), self.twin)
 
     def levels_of(self, component: int) -> int:
         """How many values a number of its code has; 0 for one like any other, 2 for a sign bit."""

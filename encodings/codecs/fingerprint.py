@@ -16,13 +16,16 @@ DIGITS = 16
 _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
-def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any]) -> str:
-    """Hex digits over a GLSL file and what it includes, the Python file next to it if there is one, values and tables.
+def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Path | None = None) -> str:
+    """Hex digits over a GLSL file and what it includes, its Python twin if there is one, values and tables.
+
+    Args:
+        twin: a Python file that may be missing; None for the one next to the GLSL file.
 
     Raises:
         OSError: a file cannot be read.
     """
-    twin = glsl.with_suffix(".py")
+    twin = twin or glsl.with_suffix(".py")
     files = (*_texts(glsl.resolve(), set()), *([file_bytes(twin, MOST_TEXT)] if twin.exists() else []))
     arrays = (part for name, table in sorted(tables.items()) for part in _array(name, np.ascontiguousarray(table)))
     return _hashed((*files, repr(values).encode(), *arrays))

@@ -34,7 +34,9 @@ class PickOptions(Reading):
     encoding: Encodings = "all"
     against: Annotated[
         str | None,
-        Option("--against", f"Encodings or GLSL files to compare with the answer, {Names}.", files=True),
+        Option(
+            "--against", f"Encodings or files of GLSL, HLSL or Slang to compare with the answer, {Names}.", files=True
+        ),
     ] = None
     normals: Normals = "sphere"
     scene: Scenes = "gloss"

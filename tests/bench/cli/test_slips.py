@@ -73,10 +73,14 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a folder for a file": ((*ONE, "-o", "there"), "there is a folder; name a file"),
     "a format that is not": ((*ONE, "--format", "xlsx"), "'xlsx' is not one of"),
     "Parquet on a terminal": ((*ONE, "--format", "parquet"), "name a file with -o FILE.parquet"),
-    "HLSL": ((*ROW, "--encoding", "mine.hlsl"), "mine.hlsl: HLSL is not read"),
-    "Slang": ((*ROW, "--encoding", "mine.slang"), "slangc -target glsl translates it"),
+    "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not read"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "WGSL is not read"),
-    "HLSL to doctor": (("doctor", "mine.hlsl"), "HLSL is not read"),
+    "one function of a file": (
+        (*ROW, "--encoding", "mine.hlsl:Encode"),
+        "mine.hlsl:Encode: name both functions, such as",
+    ),
+    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "short.glsl:s:t: name both functions"),
+    "WGSL to doctor": (("doctor", "mine.wgsl"), "WGSL is not read"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),
         "unknown encoding 'hlsl'; did you mean the file hlsl.glsl?",
@@ -84,7 +88,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a file without its ending, of doctor": (("doctor", "hlsl"), "did you mean the file hlsl.glsl?"),
     "doctor for the catalogue": (
         ("doctor", "octahedral"),
-        "octahedral is in the catalogue; doctor examines a GLSL file. `normalbench quality --encoding octahedral`",
+        "octahedral is in the catalogue; doctor examines a file of yours. `normalbench quality --encoding octahedral`",
     ),
     "HLSL in a GLSL file": (
         ("doctor", "hlsl.glsl"),
@@ -157,7 +161,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
 
 HLSL = "float2 mine_encode(float3 n, float3 v);"
 FILES = {
-    **dict.fromkeys(("mine.hlsl", "mine.slang", "mine.wgsl"), HLSL),
+    **dict.fromkeys(("mine.metal", "mine.wgsl"), HLSL),
     **dict.fromkeys(("bytes.glsl", "bytes.toml", "bytes.txt"), b"\xff\xfe\x00abc"),
     "hlsl.glsl": "float2 h_encode(float3 n, float3 v) { return n.xy; }",
     "four.glsl": "vec4 f_encode(vec3 n, vec3 v) { return vec4(n, 1.0); }",

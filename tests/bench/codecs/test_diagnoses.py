@@ -183,7 +183,7 @@ def test_a_table_says_it_too(run, tmp_path):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (("--plot", "a.png"), "name its GLSL file"),
+        (("--plot", "a.png"), "name its file"),
         ((".",), ".: it is a folder; name a file"),
         (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),

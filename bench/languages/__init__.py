@@ -1,0 +1,1 @@
+"""Users' encoders in other shading languages than GLSL, translated once and kept."""

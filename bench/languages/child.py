@@ -1,0 +1,76 @@
+"""A user's file translated, in a process that may hang or die.
+
+    python -m normalbench.bench.languages.child FOLDER FILE [ENCODE DECODE]
+
+FOLDER is an empty one to work in. Prints a line of JSON: `error`, what is wrong with the file; `missing`, what to
+install; else what `Translated` has.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from ...encodings.codecs.files import called
+from ..machine import children
+from ..output.errors import MissingError, UsageError
+from .language import Language, language_of
+from .pairs import NoPairError, Pair, pair_of
+from .plain import NotPlainError, plain
+from .programs import TranslationError, has_halves, template
+from .source import Source
+from .tools import ToolError
+
+IN_32_BITS = "half and min16float are computed in 32 bits; --arithmetic half computes in 16"
+
+
+def answer(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict[str, Any]:
+    """What there is to say of a file; see above."""
+    try:
+        return _translated(path, asked, folder)
+    except (UsageError, TranslationError) as error:
+        return {"error": str(error)}
+    except (NoPairError, NotPlainError, ToolError) as error:
+        return {"error": f"{path}: {error}"}
+    except MissingError as error:
+        return {"missing": f"{path}: {error}"}
+
+
+def _translated(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict[str, Any]:
+    source, language = Source(path), language_of(path)
+    pair = pair_of(language.functions(language.preprocessed(source, folder)), asked, path.name)
+    name = _name(path, pair, asked)
+    prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
+    return {
+        "name": name,
+        "prefix": prefix,
+        "components": pair.components,
+        "notes": [IN_32_BITS] if has_halves(source) else [],
+        "texts": [_text(source, language, pair, prefix, biased, folder) for biased in (0, 1)],
+    }
+
+
+def _name(path: Path, pair: Pair, asked: tuple[str, str] | None) -> str:
+    """What rows call it: NAME of NAME_encode and NAME_decode, as in GLSL; else the file's name."""
+    names = [pair.encode.name.removesuffix("_encode"), pair.decode.name.removesuffix("_decode")]
+    if names[0] == names[1]:
+        return names[0]
+    return called(f"{path.name}:{pair.encode.name}" if asked else path.name)
+
+
+def _text(source: Source, language: Language, pair: Pair, prefix: str, biased: int, folder: Path) -> str:
+    """The two functions in GLSL."""
+    sides = {"ENCODE": (pair.encode, f"{prefix}_e"), "DECODE": (pair.decode, f"{prefix}_d")}
+    made = [plain(language.shader(source, one, folder), name, one.given[0]) for one, name in sides.values()]
+    words = {f"{side}_{end}": f"{name}_{end}" for side, (_, name) in sides.items() for end in ("0", "1", "main", "out")}
+    words |= {f"NAME_{side}": f"{prefix}_{side}" for side in ("encode", "decode")}
+    return "".join(made) + template("pair.glsl", CODE=f"vec{pair.components}", BIASED=biased, **words)
+
+
+if __name__ == "__main__":
+    children.limit_this_process()
+    work, file, *functions = sys.argv[1:]
+    print(json.dumps(answer(Path(file), (functions[0], functions[1]) if functions else None, Path(work))))

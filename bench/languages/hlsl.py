@@ -1,0 +1,66 @@
+"""HLSL to GLSL: glslang makes SPIR-V of it, and SPIRV-Cross makes GLSL of that."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from . import tools
+from .pairs import Function
+from .programs import ENTRY, TranslationError, macros, program
+from .source import Source
+
+TOOLS = (tools.GLSLANG, tools.SPIRV_CROSS)
+# The version of the shaders that this becomes part of.
+VERSION = "430"
+GIVEN, MADE = "given.hlsl", "made.spv"
+# ERROR: given.hlsl:3: 'q' : unknown variable
+_ERROR = re.compile(rf"^ERROR: {re.escape(GIVEN)}:(\d+): '([^']*)' : (.*)$", re.M)
+
+
+def preprocessed(source: Source, folder: Path) -> str:
+    """A source after its preprocessor. Raises TranslationError, ToolError and MissingError."""
+    (folder / GIVEN).write_text(source.text, encoding="utf-8")
+    options = ["-D", "-E", "-S", "frag", *_defined(source), GIVEN]
+    status, said = tools.run(tools.GLSLANG, options, folder)
+    _check(source, status, said)
+    return said
+
+
+def shader(source: Source, function: Function, folder: Path) -> str:
+    """A function of a source as a fragment shader in GLSL: see `plain.py`.
+
+    Raises:
+        TranslationError: it does not compile.
+        ToolError: a tool crashes or does not end.
+        MissingError: a tool is not there.
+    """
+    (folder / GIVEN).write_text(program(source, function), encoding="utf-8")
+    # Without names (-g0) no identifier of the user's can be one of GLSL's or of this program's. Not optimised (-Od), a
+    # function with an early return stays one, and does not become a loop of one turn.
+    options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-Od", "-o", MADE]
+    status, said = tools.run(tools.GLSLANG, [*options, *_defined(source), GIVEN], folder)
+    _check(source, status, said)
+    status, said = tools.run(
+        tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", "--remove-unused-variables", MADE], folder
+    )
+    if status:
+        raise TranslationError(f"{source.path}: {tools.SPIRV_CROSS}: {' '.join(said.split())[:300]}")
+    return said
+
+
+def _defined(source: Source) -> list[str]:
+    return [f"-D{macro}" for macro in macros(source)]
+
+
+def _check(source: Source, status: int, said: str) -> None:
+    """Raises TranslationError where glslang refuses a source."""
+    if not status:
+        return
+    found = _ERROR.search(said)
+    if not found:
+        why = next((line for line in said.splitlines() if "error" in line.lower()), f"status {status} without a word")
+        raise TranslationError(f"{source.path}: {tools.GLSLANG}: {why}")
+    token, what = found[2], found[3].strip()
+    said = f"{what.lower()} {token}" if what == "Expected" else f"{token}: {what}" if token else what
+    raise TranslationError(source.explained(int(found[1]), said, token))

@@ -1,0 +1,57 @@
+"""A fragment shader of one function, as compilers write GLSL, made a part of another shader.
+
+Its inputs and its output become variables, its `main` a function, and every name of it begins with a prefix.
+"""
+
+from __future__ import annotations
+
+import re
+
+
+class NotPlainError(Exception):
+    """A function that reads what is not its input: a texture, a constant buffer, the pixel's position."""
+
+
+_LEFT_OUT = re.compile(r"^[ \t]*#(?:version|extension|line)\b.*$|^layout\(\w+_major\) (?:uniform|buffer);$", re.M)
+# layout(location = 0) in vec3 _102;
+_VARIABLE = re.compile(
+    r"^layout\(location = (\d+)\)\s+(?:(?:flat|highp|mediump)\s+)*(in|out)\s+(?:(?:highp|mediump)\s+)?(\w+ )(\w+);",
+    re.M,
+)
+# What SPIRV-Cross and Slang call things; a function of GLSL has no such name.
+_NAME = re.compile(r"\b(?:_S?\d+|[A-Za-z]\w*_\d+)\b")
+_RESOURCE = re.compile(r"\b(?:uniform|buffer|shared|gl_\w+|u?i?(?:sampler|image|texture)\w*)\b")
+# [[unroll]], before loops and branches.
+_ATTRIBUTE = re.compile(r"\[\[\s*\w+\s*\]\]|(?<=\n)\s*\[\s*\w+\s*\](?=\s*(?:for|while|do|if|switch)\b)")
+_HALF = re.compile(r"\bf16(vec|mat)(\d)|\bfloat16_t\b")
+_HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
+
+
+def plain(shader: str, prefix: str, given: int) -> str:
+    """The shader as a function PREFIX_main over PREFIX_0, PREFIX_1 and PREFIX_out, without a head.
+
+    Args:
+        given: how many numbers its first input has; its second has three.
+
+    Raises:
+        NotPlainError: it reads something else.
+    """
+    text = _HALF_NUMBER.sub("", _HALF.sub(lambda match: f"{match[1]}{match[2]}" if match[1] else "float", shader))
+    text = _ATTRIBUTE.sub("", _LEFT_OUT.sub("", text))
+    names = {name: _named(place, way) for place, way, _, name in _VARIABLE.findall(text)}
+    text = _VARIABLE.sub(r"\3\4;", text)
+    text = _NAME.sub(lambda match: f"{prefix}_{names.get(match[0], match[0].strip('_'))}", text)
+    text = re.sub(r"\bvoid main\(", f"void {prefix}_main(", text)
+    if found := _RESOURCE.search(text):
+        what = "a texture or a constant buffer" if not found[0].startswith("gl_") else found[0]
+        raise NotPlainError(f"its functions read {what}; an encoder has the normal and the view-space position alone")
+    unused = [
+        f"{kind} {prefix}_{name};\n"
+        for name, kind in (("0", f"vec{given}"), ("1", "vec3"))
+        if name not in names.values()
+    ]
+    return "".join(unused) + re.sub(r"\n\s*\n+", "\n", text.strip()) + "\n"
+
+
+def _named(place: str, way: str) -> str:
+    return place if way == "in" else "out"

@@ -1,0 +1,57 @@
+"""What is compiled: a user's source with an entry point, and macros for types that engines define elsewhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+
+from .pairs import Function
+from .source import Source
+
+ENTRY = "normalbench_entry"
+# Types that engines define in files of their own: Unity's `real` and Unreal's `MaterialFloat`.
+ENGINE_TYPES: Mapping[str, str] = MappingProxyType({"real": "float", "MaterialFloat": "float"})
+# Types of 16 bits, which are computed in 32.
+HALVES = ("half", "min16float", "min10float", "float16_t")
+_HALF = re.compile(rf"\b(?:{'|'.join(HALVES)})[1-4]?\b")
+SIZES = ("", "2", "3", "4")
+
+
+class TranslationError(Exception):
+    """A file that a compiler refuses; one line that names the user's file, and the line and the column if known."""
+
+
+def template(name: str, **words: object) -> str:
+    """A file of this folder with words in place of its own."""
+    return re.sub(rf"\b(?:{'|'.join(words)})\b", lambda match: str(words[match[0]]), _text(name))
+
+
+@cache
+def _text(name: str) -> str:
+    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+
+
+def program(source: Source, function: Function) -> str:
+    """A source with an entry point that calls one of its functions."""
+    arguments = "normalbench_given, normalbench_view" if function.takes_view else "normalbench_given"
+    words = {"RESULT": f"float{function.result}", "GIVEN": f"float{function.given[0]}"}
+    return source.text + template("entry.hlsl", FUNCTION=function.name, ARGUMENTS=arguments, **words)
+
+
+def macros(source: Source, types: Mapping[str, str] = ENGINE_TYPES) -> list[str]:
+    """NAME=TEXT of each type that a source uses and does not define."""
+    words = set(re.findall(r"\w+", source.text))
+    used = [(old + size, new + size) for old, new in types.items() for size in SIZES if old + size in words]
+    return [f"{old}={new}" for old, new in used if not _defines(source.text, old)]
+
+
+def _defines(text: str, name: str) -> bool:
+    return bool(re.search(rf"#[ \t]*define[ \t]+{name}\b|\btypedef\s+\w+\s+{name}\b", text))
+
+
+def has_halves(source: Source) -> bool:
+    """Whether it uses types of 16 bits."""
+    return bool(_HALF.search(source.text))

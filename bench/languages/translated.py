@@ -1,0 +1,140 @@
+"""A user's file in another language as a file of GLSL, kept in the cache."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ..machine import children
+from ..output import cache as kept
+from ..output.errors import MissingError, UsageError
+from . import tools
+from .language import language_of
+from .source import Source
+from .words import file_of, functions_of
+
+# Of one file: a hundred times what it takes.
+TIME_LIMIT = 60.0
+TEXTS = ("", "-biased")
+
+
+@dataclass(frozen=True)
+class Translated:
+    """A user's encoder in GLSL.
+
+    Attributes:
+        name: what rows call it.
+        prefix: what the names of its GLSL functions begin with.
+        components: how many numbers its code has.
+        notes: what is to be said of it, lines.
+        texts: its GLSL; and its GLSL where codes in [0, 1] become [-1, 1] on their way out, and come back.
+    """
+
+    name: str
+    prefix: str
+    components: int
+    notes: list[str]
+    texts: list[str]
+
+    def glsl(self, is_biased: bool) -> Path:
+        """A file with one of the texts, that other processes find as well."""
+        text = self.texts[is_biased]
+        return _file(f"{self.prefix[:40]}-{kept.key_of(text)[:16]}{TEXTS[is_biased]}.glsl", text)
+
+
+def translated(word: str | Path) -> Translated:
+    """The encoder that a word names: FILE, or FILE:ENCODE:DECODE.
+
+    Raises:
+        UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
+        MissingError: what to install.
+    """
+    path, asked = file_of(word), functions_of(word)
+    source = Source(path)
+    key = kept.key_of("translated", source.text, str(path), *(asked or ()), *_stamps(path), _own())
+    found = _whole(kept.read(key))
+    if found is None:
+        found = _whole(made := _by_child(path, asked))
+        if found is None:
+            raise UsageError(f"{path}: its translation ended without a result")
+        kept.write(key, made)
+    return found
+
+
+def _stamps(path: Path) -> list[str]:
+    try:
+        return [tools.stamp(tool) for tool in language_of(path).tools]
+    except MissingError as error:
+        raise MissingError(f"{path}: {error}") from error
+
+
+@cache
+def _own() -> str:
+    """A hash of this folder, which makes the translation."""
+    files = sorted(file for file in Path(__file__).parent.iterdir() if file.is_file())
+    return kept.key_of(*(file.read_bytes() for file in files))
+
+
+def _whole(value: dict[str, Any] | None) -> Translated | None:
+    """What was kept or said; None where it is anything else."""
+    try:
+        return Translated(**(value or {}))
+    except TypeError:
+        return None
+
+
+def _by_child(path: Path, asked: tuple[str, str] | None) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory() as folder:
+        command = children.python("normalbench.bench.languages.child", folder, str(path), *(asked or ()))
+        try:
+            done = children.finished(command, TIME_LIMIT)
+        except subprocess.TimeoutExpired as error:
+            raise UsageError(f"{path}: its translation did not end within {TIME_LIMIT:g} s") from error
+    try:
+        found = json.loads(done.stdout)
+    except ValueError:
+        raise UsageError(f"{path}: its translation {children.how_it_ended(done)}") from None
+    if "missing" in found:
+        raise MissingError(found["missing"])
+    if "error" in found:
+        raise UsageError(found["error"])
+    return found
+
+
+def _file(name: str, text: str) -> Path:
+    """A file of this name and text in the cache; where that cannot be written, in a folder of this process."""
+    for folder in (kept.folder() / "translated", None):
+        path = (folder or _own_folder()) / name
+        try:
+            if not path.is_file() or path.read_text(encoding="utf-8") != text:
+                _write(path, text)
+            return path
+        except (OSError, ValueError):
+            continue
+    raise UsageError(f"{name}: neither the cache nor a temporary folder can be written")
+
+
+def _write(path: Path, text: str) -> None:
+    """Readers see the old file or the new one."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
+        try:
+            file.write(text)
+            file.close()
+            Path(file.name).replace(path)
+        finally:
+            Path(file.name).unlink(missing_ok=True)
+
+
+@cache
+def _own_folder() -> Path:
+    folder = tempfile.mkdtemp(prefix="normalbench-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
