@@ -77,8 +77,16 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         sizes = {name: (table.shape[1], table.shape[2]) for name, table in interface.tables.items()}
         body = writer(prefix, sizes).program(program)
     except TranslationError as error:
-        raise UsageError(f"{codec.encoding.glsl}: {error}") from error
+        raise UsageError(_untranslatable(codec, str(error))) from error
     return Code(codec, language, prefix, body, interface)
+
+
+def _untranslatable(codec: Codec, said: str) -> str:
+    """Why a file is not translated; the place is in the user's file where that is GLSL."""
+    encoding = codec.encoding
+    if encoding.source in (None, encoding.glsl):
+        return f"{encoding.glsl}: {said}"
+    return f"{encoding.source}: its translation to GLSL has what is not written in other languages: {said}"
 
 
 def _takes_view(program: Program, prefix: str) -> bool:

@@ -1,4 +1,4 @@
-"""What a codec's code must give: the catalogue's own results, by JAX, and the texels that they stand for."""
+"""What a codec's code must give: the results of its own twin by JAX, or by OpenGL of users' encoders without one."""
 
 from __future__ import annotations
 
@@ -11,10 +11,14 @@ import numpy as np
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.vec import Vec2, Vec3
+from ...gbuffer.codecs.codec_passes import CodecPasses
+from ...gbuffer.gl.device import device
 from ..codecs.first_look import directions
+from ..worst_case.exact_figures import has_twin
 from .channels import WORD, Channel, Channels
 
 COUNT = 2**16
+SIDE = 2**8
 VECTORS = {2: Vec2, 3: Vec3}
 FLOATS = {32: np.float32, 16: np.float16}
 # A float of 11 or 10 bits is a half float without its sign and the lowest bits of its mantissa.
@@ -62,15 +66,28 @@ def reference(codec: Codec) -> Reference:
     """What the catalogue makes of the normals of a codec's domain."""
     n, view = normals(codec.encoding.domain)
     planes = (Vec3(*(jnp.asarray(a[:, i]) for i in range(3))) for a in (n, view))
+    by_device = None if has_twin(codec.encoding) else _by_device(codec, n, view)
     n_planes, view_planes = planes
-    code = _array(jax.jit(codec.stored)(n_planes, view_planes))
+    code = _array(jax.jit(codec.stored)(n_planes, view_planes)) if by_device is None else by_device[0]
     channels = Channels(codec)
     integers = np.stack([_integers(c, code[:, at]) for at, c in enumerate(channels.channels)], axis=1)
     words = _words(channels, integers)
     stored = _stored(codec, channels, integers, code)
-    read = VECTORS[stored.shape[1]](*(jnp.asarray(number) for number in stored.T))
-    decoded = _array(jax.jit(codec.encoding.decode)(read, view_planes))
+    if by_device is None:
+        read = VECTORS[stored.shape[1]](*(jnp.asarray(number) for number in stored.T))
+        decoded = _array(jax.jit(codec.encoding.decode)(read, view_planes))
+    else:
+        decoded = by_device[1]
     return Reference(n, view, stored, integers, words, _texels(codec, channels, integers, words), decoded)
+
+
+def _by_device(codec: Codec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Stored codes and decoded normals by OpenGL, of an encoder that is there in GLSL alone."""
+    pixels = (np.pad(array, ((0, 0), (0, 1))).reshape(SIDE, -1, 4) for array in (n, view))
+    with CodecPasses(device(), codec) as passes:
+        found = passes.round_trip(*pixels)
+    size = codec.encoding.components + codec.encoding.sign_bits
+    return found.codes.reshape(COUNT, 4)[:, :size].copy(), found.normals.reshape(COUNT, 3)
 
 
 def _stored(codec: Codec, channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:

@@ -33,7 +33,6 @@ from .signatures import encode_of
 # Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
 OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        ".wgsl": ("WGSL", "naga FILE.wgsl FILE.frag translates it, or write it as GLSL"),
         ".metal": ("Metal", "write it as GLSL"),
     }
 )

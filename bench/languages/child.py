@@ -65,7 +65,7 @@ def _text(source: Source, language: Language, pair: Pair, prefix: str, biased: i
     """The two functions in GLSL."""
     sides = {"ENCODE": (pair.encode, f"{prefix}_e"), "DECODE": (pair.decode, f"{prefix}_d")}
     made = [plain(language.shader(source, one, folder), name, one.given[0]) for one, name in sides.values()]
-    words = {f"{side}_{end}": f"{name}_{end}" for side, (_, name) in sides.items() for end in ("0", "1", "main", "out")}
+    words = {f"{side}_main": f"{name}_main" for side, (_, name) in sides.items()}
     words |= {f"NAME_{side}": f"{prefix}_{side}" for side in ("encode", "decode")}
     return "".join(made) + template("pair.glsl", CODE=f"vec{pair.components}", BIASED=biased, **words)
 

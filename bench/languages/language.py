@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from . import hlsl, pairs, slang, tools
+from . import hlsl, pairs, slang, tools, wgsl
 from .pairs import Function
 from .source import Source
 from .words import TRANSLATED
@@ -35,6 +35,7 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
     {
         "HLSL": Language(hlsl.TOOLS, hlsl.preprocessed, pairs.functions, hlsl.shader),
         "Slang": Language(slang.TOOLS, slang.preprocessed, pairs.functions, slang.shader),
+        "WGSL": Language(wgsl.TOOLS, wgsl.preprocessed, wgsl.functions, wgsl.shader),
     }
 )
 

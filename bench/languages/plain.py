@@ -1,6 +1,6 @@
 """A fragment shader of one function, as compilers write GLSL, made a part of another shader.
 
-Its inputs and its output become variables, its `main` a function, and every name of it begins with a prefix.
+Its inputs become parameters and its output the result of its `main`, and every name of it begins with a prefix.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
 
 
 def plain(shader: str, prefix: str, given: int) -> str:
-    """The shader as a function PREFIX_main over PREFIX_0, PREFIX_1 and PREFIX_out, without a head.
+    """The shader as a function PREFIX_main of PREFIX_0 and view, without a head.
 
     Args:
         given: how many numbers its first input has; its second has three.
@@ -39,19 +39,23 @@ def plain(shader: str, prefix: str, given: int) -> str:
     text = _HALF_NUMBER.sub("", _HALF.sub(lambda match: f"{match[1]}{match[2]}" if match[1] else "float", shader))
     text = _ATTRIBUTE.sub("", _LEFT_OUT.sub("", text))
     names = {name: _named(place, way) for place, way, _, name in _VARIABLE.findall(text)}
-    text = _VARIABLE.sub(r"\3\4;", text)
-    text = _NAME.sub(lambda match: f"{prefix}_{names.get(match[0], match[0].strip('_'))}", text)
-    text = re.sub(r"\bvoid main\(", f"void {prefix}_main(", text)
+    result = next(kind for _, way, kind, _ in _VARIABLE.findall(text) if way == "out")
+    text = _VARIABLE.sub("", text)
+    names = {name: called if called == "view" else f"{prefix}_{called}" for name, called in names.items()}
+    text = _NAME.sub(lambda match: names.get(match[0], f"{prefix}_{match[0].strip('_')}"), text)
     if found := _RESOURCE.search(text):
         what = "a texture or a constant buffer" if not found[0].startswith("gl_") else found[0]
         raise NotPlainError(f"its functions read {what}; an encoder has the normal and the view-space position alone")
-    unused = [
-        f"{kind} {prefix}_{name};\n"
-        for name, kind in (("0", f"vec{given}"), ("1", "vec3"))
-        if name not in names.values()
-    ]
-    return "".join(unused) + re.sub(r"\n\s*\n+", "\n", text.strip()) + "\n"
+    return _function(re.sub(r"\n\s*\n+", "\n", text.strip()), prefix, f"vec{given}", result.strip()) + "\n"
+
+
+def _function(text: str, prefix: str, given: str, result: str) -> str:
+    """A text whose `main`, its last function, gives what it wrote."""
+    before, _, main = text.partition("void main()")
+    body = re.sub(r"\breturn;", f"return {prefix}_out;", main.strip().removeprefix("{").removesuffix("}"))
+    head = f"{result} {prefix}_main({given} {prefix}_0, vec3 view)"
+    return f"{before}{head}\n{{\n    {result} {prefix}_out;{body.rstrip()}\n    return {prefix}_out;\n}}"
 
 
 def _named(place: str, way: str) -> str:
-    return place if way == "in" else "out"
+    return ("0", "view")[int(place)] if way == "in" else "out"

@@ -37,7 +37,8 @@ def _text(name: str) -> str:
 def program(source: Source, function: Function) -> str:
     """A source with an entry point that calls one of its functions."""
     arguments = "normalbench_given, normalbench_view" if function.takes_view else "normalbench_given"
-    words = {"RESULT": f"float{function.result}", "GIVEN": f"float{function.given[0]}"}
+    view = ", [[vk::location(1)]] float3 normalbench_view : TEXCOORD1" if function.takes_view else ""
+    words = {"VIEW": view, "RESULT": f"float{function.result}", "GIVEN": f"float{function.given[0]}"}
     return source.text + template("entry.hlsl", FUNCTION=function.name, ARGUMENTS=arguments, **words)
 
 

@@ -13,7 +13,7 @@ from types import MappingProxyType
 GLSL = ".glsl"
 # The languages that are translated, by what their files end in. A new one is a line here and one in `language.py`.
 TRANSLATED: Mapping[str, str] = MappingProxyType(
-    {**dict.fromkeys((".hlsl", ".hlsli", ".fx"), "HLSL"), ".slang": "Slang"}
+    {**dict.fromkeys((".hlsl", ".hlsli", ".fx"), "HLSL"), ".slang": "Slang", ".wgsl": "WGSL"}
 )
 ENDINGS = (GLSL, *TRANSLATED)
 # FILE:ENCODE:DECODE.

@@ -258,11 +258,10 @@ class CWriter(Writer):
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
     def _choices(self, value: Choice) -> list[Part]:
-        condition = (self._text(value.condition, CHOICE + 1), UNARY)
-        size = size_of(value.kind)
-        condition = self._once(condition, "bool") if size > 1 else condition
-        pairs = zip(self._parts(value.chosen), self._parts(value.other), strict=True)
-        return [(f"{condition[0]} ? {_in(a, CHOICE + 1)} : {b[0]}", CHOICE) for a, b in pairs]
+        size, conditions = size_of(value.kind), self._broad(value.condition, size_of(value.kind))
+        conditions = conditions if size > 1 else [(self._text(value.condition, CHOICE + 1), UNARY)]
+        parts = zip(conditions, self._parts(value.chosen), self._parts(value.other), strict=True)
+        return [(f"{_in(c, CHOICE + 1)} ? {_in(a, CHOICE + 1)} : {b[0]}", CHOICE) for c, a, b in parts]
 
     def _calls(self, value: Call) -> list[Part]:
         if value.is_own:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .hlsl_writer import KINDS
-from .tree import Call, Construct, Declare, Elements, Function, Name, Program, inside, size_of
-from .writer import Writer, words
+from .tree import Call, Choice, Construct, Declare, Elements, Function, Name, Program, inside, size_of
+from .writer import PRIMARY, Writer, words
 
 TABLE = "texture2d<float>"
 
@@ -54,6 +54,11 @@ class MslWriter(Writer):
     def _call(self, value: Call) -> str:
         text = super()._call(value)
         return text.removesuffix(")") + "".join(f", {name}" for name in self._reads.get(value.name, [])) + ")"
+
+    def _choice(self, value: Choice) -> tuple[str, int]:
+        if size_of(value.condition.kind) == 1:
+            return super()._choice(value)
+        return f"select({', '.join(map(self._text, (value.other, value.chosen, value.condition)))})", PRIMARY
 
     def _fetch(self, value: Call) -> str:
         table, place, _ = map(self._text, value.arguments)

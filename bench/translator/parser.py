@@ -47,6 +47,17 @@ ASSIGNS = frozenset(("=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "^=", "<<=",
 FOLDED: Mapping[str, Callable[[int, int], int]] = MappingProxyType(
     {"+": operator.add, "-": operator.sub, "*": operator.mul}
 )
+# GLSL's functions for comparisons of vectors.
+COMPARISONS: Mapping[str, str] = MappingProxyType(
+    {
+        "lessThan": "<",
+        "lessThanEqual": "<=",
+        "greaterThan": ">",
+        "greaterThanEqual": ">=",
+        "equal": "==",
+        "notEqual": "!=",
+    }
+)
 # How deep expressions and statements may be nested: far from what Python recurses.
 MOST_DEPTH = 60
 FIELDS = ("xyzw", "rgba", "stpq")
@@ -254,6 +265,10 @@ class Parser:
             return self._own(name, arguments)
         if name == "atan" and len(arguments) == 2:
             name = "atan2"
+        if name in COMPARISONS and len(arguments) == 2:
+            return self._combined(COMPARISONS[name], *arguments)
+        if name == "mix" and len(arguments) == 3 and scalar_of(arguments[2].kind) == "bool":
+            return self._chosen(arguments[2], arguments[1], arguments[0])
         if len(arguments) > 1 and name not in ("texelFetch",):
             arguments = self._all_alike(arguments)
         if name == "exp2" and isinstance(arguments[0], Literal):

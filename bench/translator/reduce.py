@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from .tree import Call, Declare, Function, Name, Program, inside, size_of
+from .tree import Call, Declare, Function, Name, Program, inside, plain_name, size_of
 
 # A parameter that functions have for others' sake.
 VIEW = "view"
@@ -22,7 +22,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
         prefix: what every name begins with.
         own: what the names of an encoding's own functions begin with, which the prefix stands for.
     """
-    keys = {f.name.partition("(")[0]: f.name for f in program.functions}
+    keys = {plain_name(f): f.name for f in program.functions}
     kept = _reached(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _leave_out_views(functions, {keys[name] for name, called in roots.items() if called in PAIR})
@@ -82,10 +82,10 @@ def _used_constants(constants: list[Declare], used: set[str]) -> list[Declare]:
 
 
 def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: str) -> None:
-    plain = [f.name.partition("(")[0] for f in functions if f.name not in names]
+    plain = [plain_name(f) for f in functions if f.name not in names]
     for function in functions:
         if function.name not in names:
-            short = function.name.partition("(")[0]
+            short = plain_name(function)
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
             mine = re.sub(f"^{own}_(?=.)", "", short)
             mine = f"own_{mine}" if f"{prefix}_{mine}" in names.values() else mine

@@ -73,7 +73,7 @@ class Binary(Expression):
 
 @dataclass
 class Choice(Expression):
-    """condition ? chosen : other, under one truth value."""
+    """condition ? chosen : other, under one truth value or one for each component."""
 
     condition: Expression
     chosen: Expression
@@ -206,6 +206,11 @@ class Program:
         """The function of a name that only one has."""
         (found,) = (f for f in self.functions if f.name == name)
         return found
+
+
+def plain_name(function: Function) -> str:
+    """A function's name as it was written: what is read has its parameters' types behind it."""
+    return function.name.partition("(")[0]
 
 
 def inside(node: Any) -> Iterator[Any]:

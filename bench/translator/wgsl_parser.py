@@ -98,6 +98,8 @@ class WgslParser(Parser):
         first = self._next
         if self._skip("const"):
             self._made.constants.append(self._declared_constant(first))
+        elif first.text == "@" and self._ahead(1) == "must_use":
+            self._at += 2
         elif first.text in SKIPPED:
             while self._take().text != ";":
                 pass

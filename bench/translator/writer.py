@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-import numpy as np
-
 from .builtins import FETCH
 from .parser import BINDING, SHIFTS
 from .tokens import with_a_point
@@ -282,6 +280,9 @@ def _base(assigned: Assign) -> list[str]:
 
 def shortest(text: str) -> str:
     """The shortest number that is the same float of 32 bits; as it is written where it is not finite as one."""
+    # Here, because reading a user's file needs no arrays.
+    import numpy as np
+
     number = np.float32(text)
     return with_a_point(str(number)) if np.isfinite(number) else text
 

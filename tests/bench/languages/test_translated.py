@@ -271,7 +271,8 @@ def test_rows_kept_from_before_know_what_a_file_includes(tmp_path):
 def test_a_shader_becomes_functions_of_other_names():
     shader = "#version 430\nlayout(location = 0) in vec3 _8;\nlayout(location = 0) out vec2 _9;\n"
     shader += "void main()\n{\n    _9 = _8.xy;\n}\n"
-    assert plain(shader, "p", 3) == ("vec3 p_1;\nvec3 p_0;\nvec2 p_out;\nvoid p_main()\n{\n    p_out = p_0.xy;\n}\n")
+    made = "vec2 p_main(vec3 p_0, vec3 view)\n{\n    vec2 p_out;\n    p_out = p_0.xy;\n    return p_out;\n}\n"
+    assert plain(shader, "p", 3) == made
     with pytest.raises(NotPlainError, match="a texture or a constant buffer"):
         plain("layout(binding = 0) uniform sampler2D _7;\n" + shader, "p", 3)
 

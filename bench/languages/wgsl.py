@@ -1,0 +1,70 @@
+"""WGSL to GLSL, by this project's own translator: no tool is needed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ..translator import tree
+from ..translator.glsl_writer import GlslWriter
+from ..translator.reduce import reduced
+from ..translator.wgsl_parser import read_wgsl
+from .pairs import Function
+from .programs import TranslationError, template
+from .source import Source
+
+TOOLS = ()
+SIZES = {"vec2": 2, "vec3": 3}
+# 3:14: y is not known here
+_PLACED = re.compile(r"(\d+):(\d+): (.*)", re.S)
+
+
+def preprocessed(source: Source, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
+    """A source as it is, once it can be read. Raises TranslationError."""
+    _program(source)
+    return source.text
+
+
+def functions(text: str) -> list[Function]:
+    """The functions of a text that can be read."""
+    return [
+        Function(
+            tree.plain_name(one), SIZES.get(one.kind, 0), tuple(SIZES.get(p.kind, 0) for p in one.parameters), one.kind
+        )
+        for one in read_wgsl(text).functions
+    ]
+
+
+def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
+    """A function of a source as a fragment shader in GLSL: see `plain.py`. Raises TranslationError."""
+    program = reduced(_program(source), {function.name: "entry"}, "wgsl", "")
+    for number, one in enumerate([*program.constants, *program.functions]):
+        # Names that end in a number are those that `plain.py` makes its own.
+        _rename(program, one.name, f"wgsl_{number}")
+    entry = program.functions[-1]
+    given = ["wgsl_given_0", "wgsl_view_0"][: len(entry.parameters)]
+    view = "layout(location = 1) in vec3 wgsl_view_0;" if len(given) > 1 else ""
+    words = {"VIEW": view, "RESULT": f"vec{function.result}", "GIVEN": f"vec{function.given[0]}"}
+    made = template("entry.frag", FUNCTION=entry.name, ARGUMENTS=", ".join(given), **words)
+    return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + made
+
+
+def _rename(program: tree.Program, old: str, new: str) -> None:
+    for node in tree.inside([program.constants, program.functions]):
+        if getattr(node, "name", None) == old:
+            node.name = new
+
+
+def _program(source: Source) -> tree.Program:
+    return _checked(source, lambda: read_wgsl(source.text))
+
+
+def _checked(source: Source, made):
+    """What is made. Raises TranslationError, at the user's line and column."""
+    try:
+        return made()
+    except tree.TranslationError as error:
+        placed = _PLACED.fullmatch(str(error))
+        if not placed:
+            raise TranslationError(f"{source.path}: {error}") from error
+        raise TranslationError(source.explained(int(placed[1]), placed[3], column=int(placed[2]))) from error
