@@ -211,11 +211,11 @@ def _nearest(n, view):
 def _storage(codec: Codec, prefix: str, gathered: Gathered) -> Iterator[str]:
     """Packing, unpacking, and what a render target is given and gives."""
     storage, encoding = codec.storage, codec.encoding
-    for helper in (vec.minimum, vec.maximum, vec.select, vec.dot):
+    helpers = (vec.minimum, vec.maximum) if storage.kind != "float" else ()
+    for helper in (*helpers, *((vec.select, vec.dot) if encoding.is_precise else ())):
         gathered.add(helper)
-    if storage.kind == "float":
-        gathered.add(rounding.store_half)
-        gathered.add(rounding.store_small_float)
+    if storage.kind == "float" and storage.bits[0] < WORD:
+        gathered.add(rounding.store_half if storage.bits[0] == 16 else rounding.store_small_float)
     if encoding.is_precise:
         gathered.imports.add("import itertools")
     count, words = encoding.components, words_of(storage)

@@ -131,7 +131,7 @@ def _stripped(text: str) -> str:
     text = re.sub(r" *# (type:|noqa).*", "", text)
     types = "|".join(name for name, value in vars(vec).items() if isinstance(value, TypeVar))
     text = re.sub(rf"(: | -> )({types}|Any|tuple)\b(?=[,:)=])", "", text)
-    text = re.sub(rf" -> ({types}|Any|tuple)(?=:)", "", text)
+    text = re.sub(rf" -> ({types}|Any|Array|tuple)(?=:)", "", text)
     text = re.sub(r"(?m)^    \w+: Any\n", "", text)
     text = re.sub(r"(?m)^ +from jax\.lax import .*\n+", "", text)
     return re.sub(r'cast\("\w+", (\w+)\)', r"\1", text).rstrip("\n")

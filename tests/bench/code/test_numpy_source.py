@@ -78,7 +78,7 @@ def check(codec: Codec, folder) -> None:
     texels, codes = stored(codec, n, view)
     differ = np.flatnonzero((texels != found.words).any(axis=1))
     if codec.encoding.searches and len(differ):
-        check_as_good(codec, n[differ], view[differ], codes[differ], found.decoded[differ])
+        check_as_good(codec, n[differ], view[differ], found.codes[differ])
         return
     first = (n[differ[0]], texels[differ[0]], found.words[differ[0]]) if len(differ) else ()
     assert not len(differ), f"{codec.name}: {len(differ)} of {len(n)} texels differ, the first {first}"
@@ -86,15 +86,16 @@ def check(codec: Codec, folder) -> None:
     assert worst == 0, f"{codec.name}: an unpacked number differs by {worst}"
 
 
-def check_as_good(codec: Codec, n, view, codes, decoded) -> None:
-    """XLA fuses products and sums of the loop that searches: of two codes that are as good it may take the other."""
-    code = type(codec.encoding.encode(from_array(n[:1]), Vec3(*view[:1].T)))(*codes.T)
-    other = np.stack(codec.encoding.decode(code, Vec3(*view.T)), axis=1)
-    sines = [np.linalg.norm(np.cross(n.astype(float), d), axis=1) / np.linalg.norm(d, axis=1) for d in (other, decoded)]
+def check_as_good(codec: Codec, n, view, codes) -> None:
+    """XLA fuses products and sums of the loop that searches: of two codes that are as good before they are stored it
+    may take the other one, by as much as float32 rounds the misfit."""
+    rays, encoding = Vec3(*view.T), codec.encoding
+    made = encoding.encode(from_array(n), rays)
+    decoded = (np.stack(encoding.decode(code, rays), axis=1) for code in (made, type(made)(*codes.T)))
+    sines = [np.linalg.norm(np.cross(n.astype(float), d), axis=1) / np.linalg.norm(d, axis=1) for d in decoded]
     worst = np.abs(sines[0] - sines[1]).max()
     assert len(n) < COUNT / 1000, f"{codec.name}: {len(n)} of {COUNT} texels differ"
-    # A number as small as 1/255 comes back from UNORM with an error of 2^-24: 255 times that of its direction.
-    assert worst < 255 * 2.0**-23, f"{codec.name}: of the two codes one is better, by {worst} radians"
+    assert worst < 2.0**-20, f"{codec.name}: of the two codes one is better, by {worst} radians"
 
 
 @pytest.mark.parametrize(("name", "storage", "rounding"), FAST)
