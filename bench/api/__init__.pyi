@@ -106,7 +106,7 @@ def quality(
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
-        backend: jax, glsl; comma-separated, or all.
+        backend: jax, glsl, wgsl; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         worst_case: The true supremum and where it is, in float64; seconds a codec.

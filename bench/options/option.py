@@ -45,6 +45,8 @@ Roundings = Annotated[
 ]
 Normals = Annotated[str, Option("--normals", f"Normal sets or files, {Names}.", files=True, in_run=True)]
 Backends = Annotated[str, Option("--backend", "jax, glsl; comma-separated, or all.", in_run=True)]
+# Of a table that measures by WGSL on Vulkan as well.
+BackendsAndWgsl = Annotated[str, Option("--backend", "jax, glsl, wgsl; comma-separated, or all.", in_run=True)]
 Count = Annotated[int, Option("--count", "Normals in a uniform set.", in_run=True)]
 Seed = Annotated[int, Option("--seed", "The random seed of uniform sets, points and scenes.", in_run=True)]
 Pipelines = Annotated[str, Option("--pipeline", f"Pipelines, {Names}.", in_run=True)]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from ...reports import tables
+from ..code.run import c, msl, slang, wgsl
 from ..codecs.half.compute import half_device
 from ..languages.language import require_language
 from ..machine.devices import require_device, require_jax
@@ -28,6 +29,10 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions (cost --isa, pick)": require_compilers,
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
+        "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
+        "code in C (cc)": c.compiler,
+        "code in MSL (clang++)": msl.compiler,
+        "code in Slang (slangc)": slang.compiler,
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),
         "encoders in Slang": lambda: require_language("Slang"),

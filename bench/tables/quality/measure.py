@@ -23,6 +23,7 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
+from ...code.run import trip as wgsl_trip
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
 from ...codecs.user_encodings import NoTwinError
@@ -159,13 +160,26 @@ def _by_half_device(case: Case) -> Decoding:
     return Decoding(_decoded_meter(), loads, how)
 
 
+@contextmanager
+def _by_wgsl(case: Case) -> Iterator[Decoding]:
+    with wgsl_trip.by_wgsl(case.codec) as trip:
+
+        def decoded(chunk: Chunk) -> Decoded:
+            rows = (np.stack([np.ravel(plane) for plane in planes], axis=1) for planes in (chunk.n, chunk.view))
+            found = np.ascontiguousarray(trip(*rows).decoded.T).reshape(3, *np.shape(chunk.n.z))
+            return Decoded(chunk.n, Vec3(*found), chunk.covered)
+
+        loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
+        yield Decoding(_decoded_meter(), loads, {"device": wgsl_trip.device_name(), "rounded_by": "shader"})
+
+
 def identity(value: Any) -> Any:
     """The value, for a load that is there already."""
     return value
 
 
 BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = MappingProxyType(
-    {"jax": _by_jax, "glsl": _by_glsl}
+    {"jax": _by_jax, "glsl": _by_glsl, "wgsl": _by_wgsl}
 )
 
 
@@ -309,6 +323,11 @@ def image_round_trip(case: Case) -> RoundTrip:
         with CodecPasses(device(), case.codec) as passes:
             result = passes.round_trip(rgba(n, height, width), rgba(view, height, width))
         encoded, decoded = result.codes[..., :3].copy(), result.normals
+    elif case.backend == "wgsl":
+        with wgsl_trip.by_wgsl(case.codec) as trip:
+            ran = trip(*(np.stack([np.ravel(plane) for plane in planes], axis=1) for planes in (n, view)))
+        decoded, code = ran.decoded.reshape(height, width, 3), ran.unpacked.T
+        encoded = image([*code, *[np.zeros_like(code[0])] * (3 - len(code))])
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
         code = case.codec.stored(n, view)

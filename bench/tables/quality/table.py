@@ -9,7 +9,7 @@ from typing import Annotated
 from ...options.counts import DEFAULT_COUNT
 from ...options.option import (
     Arithmetics,
-    Backends,
+    BackendsAndWgsl,
     Count,
     Encodings,
     Images,
@@ -35,7 +35,7 @@ class QualityOptions(Reading):
     rounding: Roundings = "nearest"
     arithmetic: Arithmetics = "float"
     normals: Normals = "playground"
-    backend: Backends = "jax,glsl"
+    backend: BackendsAndWgsl = "jax,glsl"
     count: Count = DEFAULT_COUNT
     seed: Seed = 0
     worst_case: Annotated[
