@@ -34,13 +34,13 @@ class Language:
     Attributes:
         title: what a reader calls it.
         ending: of its files.
-        writer: what writes it from a tree.
+        writer: what writes it from a tree; None for Python, whose files are made from the Python twin.
         mark: what comments begin with.
     """
 
     title: str
     ending: str
-    writer: type[Writer]
+    writer: type[Writer] | None
     mark: str = "//"
 
 
@@ -53,6 +53,7 @@ LANGUAGES: Mapping[str, Language] = MappingProxyType(
         "wgsl": Language("WGSL", ".wgsl", WgslWriter),
         "msl": Language("Metal", ".metal", MslWriter),
         "c": Language("C", ".h", CWriter),
+        "python": Language("Python, NumPy", ".py", None, "#"),
     }
 )
 

@@ -11,6 +11,7 @@ from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of
+from .numpy_source import numpy_source
 from .run.interface import Interface
 from .tables import table_files
 from .verify import interface_of
@@ -75,7 +76,7 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         interface = interface_of(codec, prefix, _takes_view(program, prefix))
         writer = LANGUAGES[language].writer
         sizes = {name: (table.shape[1], table.shape[2]) for name, table in interface.tables.items()}
-        body = writer(prefix, sizes).program(program)
+        body = writer(prefix, sizes).program(program) if writer else numpy_source(codec, prefix)
     except TranslationError as error:
         raise UsageError(_untranslatable(codec, str(error))) from error
     return Code(codec, language, prefix, body, interface)

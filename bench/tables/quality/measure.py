@@ -23,7 +23,7 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...code.run import trip as wgsl_trip
+from ...code import trip as wgsl_trip
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
 from ...codecs.user_encodings import NoTwinError

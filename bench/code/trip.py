@@ -4,29 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
 
 import numpy as np
 
-from ....encodings.codecs.codec import Codec
-from ....gbuffer.gl.shader import ShaderError
-from ...output.errors import MissingError
-from ..numpy_source import words_of
-from . import wgsl
-from .interface import BLOCK, Interface, Ran
-from .sources import folder
+from ...encodings.codecs.codec import Codec
+from ...gbuffer.gl.shader import ShaderError
+from ..output.errors import UsageError
+from .files import Code, code_of
+from .run import wgsl
+from .run.interface import BLOCK, Ran
+from .run.sources import folder
 
 PREFIX = "codec"
-EMIT = "normalbench.bench.code.emit"
 # Normals and views of shape (count, 3) to what the file gives of them.
 Trip = Callable[[np.ndarray, np.ndarray], Ran]
-
-
-def interface_of(codec: Codec, prefix: str) -> Interface:
-    """What the file of a codec has."""
-    encoding = codec.encoding
-    size, takes_view = encoding.components + encoding.sign_bits, encoding.domain == "view"
-    return Interface(prefix, size, encoding.sign_bits, words_of(codec.storage), takes_view, encoding.tables())
 
 
 @contextmanager
@@ -37,11 +28,11 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
         MissingError: wgpu or a Vulkan driver is missing; what to install.
         ShaderError: half arithmetic or a chain, or the device refuses the file; one line.
     """
-    text, interface = _emitted(codec), interface_of(codec, PREFIX)
+    code = _written(codec)
     with folder() as place:
-        path = place / f"{PREFIX}.wgsl"
-        path.write_text(text, encoding="utf-8")
-        with wgsl.prepared(path, interface) as run:
+        path = place / code.name
+        path.write_text(code.body, encoding="utf-8")
+        with wgsl.prepared(path, code.interface) as run:
 
             def trip(n: np.ndarray, view: np.ndarray) -> Ran:
                 starts = range(0, max(len(n), 1), BLOCK)
@@ -53,17 +44,16 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
             yield trip
 
 
-def _emitted(codec: Codec) -> str:
+def _written(codec: Codec) -> Code:
     if codec.encoding.before:
         raise ShaderError(f"{codec.name}: a chain of codecs is not written in WGSL; measure it by jax")
     if codec.encoding.is_half:
         raise ShaderError(f"{codec.name}: WGSL computes in 32 bits here; measure half arithmetic by jax or glsl")
     wgsl.device()
     try:
-        emit = import_module(EMIT)
-    except ImportError as error:
-        raise MissingError(f"there is nothing that writes WGSL here ({error}); install a newer normalbench") from error
-    return emit.emitted(codec, "wgsl", PREFIX)
+        return code_of(codec, "wgsl", PREFIX)
+    except UsageError as error:
+        raise ShaderError(str(error)) from error
 
 
 def device_name() -> str:
