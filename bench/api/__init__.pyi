@@ -48,7 +48,7 @@ def pick(
 
     Args:
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
@@ -101,7 +101,7 @@ def quality(
     A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY, STL, OFF).
 
     Args:
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
@@ -205,7 +205,7 @@ def mix(
     Each codec is said to be filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs that are not.
 
     Args:
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         operation: filter, mip_2x2, mip_4x4, resolve, resolve_decoded, blend, blend_decoded, detail, upsample; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
@@ -250,7 +250,7 @@ def maps(
     A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: pip install normalbench[maps].
 
     Args:
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         block: none, bc5, bc7, eac_rg11, astc_4x4; comma-separated, or all.
         swizzle: rg, rrrg, dxt5nm, rgb; those with room for the code are used.
         normals: Image files of normals, or bumps (smooth), grain (noise), playground; comma-separated.
@@ -290,7 +290,7 @@ def cost(
     Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.
 
     Args:
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         isa: Instructions that compilers make of the GLSL; needs no GPU.
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
@@ -368,7 +368,7 @@ def motion(
     A code in view space is another one in each frame of a turning camera, so highlights wobble; a code in world space stays. Measured of the normals, of highlights and of the displayed image.
 
     Args:
-        encoding: Encodings or files of GLSL, HLSL or Slang, comma-separated, or all; `normalbench list` shows them.
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         space: view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code is measured in those that it is made for.

@@ -37,7 +37,7 @@ class Option:
 
 Names = "comma-separated, or all; `normalbench list` shows them"
 Encodings = Annotated[
-    str, Option("--encoding", f"Encodings or files of GLSL, HLSL or Slang, {Names}.", files=True, in_run=True)
+    str, Option("--encoding", f"Encodings or files of GLSL, HLSL, Slang or WGSL, {Names}.", files=True, in_run=True)
 ]
 StorageNames = Annotated[str, Option("--storage", f"Storages, {Names}.", in_run=True)]
 Roundings = Annotated[

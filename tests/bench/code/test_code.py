@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from languages import require_runner
 
 import normalbench as nb
 from normalbench.bench.code.channels import Channels
@@ -56,6 +57,7 @@ def written(folder: Path, code, text=None) -> Path:
 @pytest.mark.parametrize("name", CODECS)
 def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
     """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
+    require_runner(language)
     codec = codec_of(name)
     code = code_of(codec, language, "p")
     found = agreement(codec, language, written(tmp_path, code), code.interface)
@@ -68,6 +70,7 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(language, encoding, tmp_path):
     """As above, of every storage that fits."""
+    require_runner(language)
     wrong = []
     for codec in codecs_named(encoding, ",".join(STORAGES), "nearest"):
         if codec.fits:

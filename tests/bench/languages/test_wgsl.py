@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from languages import require_runner
 
 from normalbench.bench.code.files import code_of
 from normalbench.bench.code.verify import agreement
@@ -51,6 +52,7 @@ def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
 @pytest.mark.parametrize("language", ["wgsl", "hlsl", "c"])
 def test_an_encoder_in_wgsl_can_be_written_in_every_language(language, tmp_path):
     """Its own WGSL by wgpu gives the texels that its translation gives by OpenGL: two translations that agree."""
+    require_runner(language)
     (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
     code = code_of(codec, language, "p")
     (tmp_path / code.name).write_text(code.body)
@@ -60,6 +62,7 @@ def test_an_encoder_in_wgsl_can_be_written_in_every_language(language, tmp_path)
 
 def test_the_users_own_text_by_wgpu_gives_the_codes_of_its_translation(tmp_path):
     """The text as it was typed, compiled by naga: the functions of a codec's code call it."""
+    require_runner("wgsl")
     (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
     code = code_of(codec, "wgsl", "p")
     mine = re.sub(
