@@ -16,6 +16,9 @@ import pytest
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench.cli import app as cli
+from normalbench.bench.code.files import code_of
+from normalbench.bench.code.verify import agreement
+from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics import published
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 from normalbench.bench.tables.columns import explained
@@ -50,7 +53,7 @@ HELD = {
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench published"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
-    *("normalbench maps", "normalbench vectors"),
+    *("normalbench maps", "normalbench vectors", "normalbench code"),
 }
 
 
@@ -100,6 +103,33 @@ def test_every_example_is_used():
     for name in FILES:
         used = any(name in shlex.split(line.replace(",", " ")) for line in (*COMMANDS, *PYTEST))
         assert used or name.startswith("test_") or Path(name).with_suffix(".glsl").name in FILES, name
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_the_codes_that_differ_between_languages_are_as_many_as_said(tmp_path):
+    """Of every cell, by C and by HLSL; ties depend on the device a little."""
+    head, _, *rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in _lines("normalbench code")]
+    for encoding, *cells in rows:
+        for storage, said in zip(head[1:], cells, strict=True):
+            (codec,) = codecs_named(encoding, storage, "nearest")
+            assert codec.fits == bool(said), codec.name
+            found = [_differing(codec, language, tmp_path) for language in ("c", "hlsl")] if said else [0]
+            assert (max(found) == 0) == (said in ("0", "")), f"{codec.name}: {found}, said {said}"
+            assert max(found) <= 2 + 1.2 * int(said or 0), f"{codec.name}: {found}, said {said}"
+
+
+def _lines(marker: str) -> list[str]:
+    return table(marker).splitlines()[1:]
+
+
+def _differing(codec, language: str, folder: Path) -> int:
+    code = code_of(codec, language)
+    for name, data in code.files([]).items():
+        (folder / name).write_bytes(data)
+    found = agreement(codec, language, folder / code.name, code.interface)
+    assert found.holds, f"{codec.name} in {language}: {found.says}"
+    return found.differing
 
 
 # What renders, tunes, draws or measures many rows.

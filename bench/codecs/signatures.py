@@ -1,4 +1,5 @@
 """The two functions of a user's GLSL file: vec2 mine_encode(vec3 n, vec3 view) and vec3 mine_decode(vec2 e, vec3 view).
+Either may do without the view.
 
 What is written in another way is named with what it should be, before a compiler sees it.
 """
@@ -48,7 +49,7 @@ def encode_of(path: Path, text: str) -> Encode:
 
 
 def _is_encode(function: tuple[str, ...]) -> bool:
-    return function[0] in CODES and _types(function[2]) == ["vec3", "vec3"]
+    return function[0] in CODES and _types(function[2]) in (["vec3"], ["vec3", "vec3"])
 
 
 def _types(parameters: str) -> list[str]:
@@ -69,7 +70,7 @@ def _no_encode(found: list[tuple[str, ...]]) -> str:
 def _check_decode(path: Path, code: str, name: str, kind: str) -> None:
     """Raises UsageError where there is a decode, but not one of the right types."""
     found = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
-    if found and not any(one[0] == "vec3" and _types(one[2]) == [kind, "vec3"] for one in found):
+    if found and not any(one[0] == "vec3" and _types(one[2]) in ([kind], [kind, "vec3"]) for one in found):
         wanted = f"vec3 {name}_decode({kind} e, vec3 view)"
         raise UsageError(f"{path}: {_should_be(found[0], wanted)}")
 
@@ -78,8 +79,7 @@ def _should_be(function: tuple[str, ...], wanted: str) -> str:
     """A function as it stands, as it must be, and what is wrong with it."""
     kind, name, parameters = function
     said = f"{kind} {name}({' '.join(parameters.split())})"
-    is_short = "the parameter view is missing" if len(_types(parameters)) < 2 else ""
-    why = of_hlsl(said) or is_short or ("a code has two or three numbers" if "vec4" in said else "")
+    why = of_hlsl(said) or ("a code has two or three numbers" if "vec4" in said else "")
     return f"{said} must be {wanted}" + (f"; {why}" if why else "")
 
 

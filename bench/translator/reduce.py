@@ -88,7 +88,7 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
             short = plain_name(function)
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
             mine = re.sub(f"^{own}_(?=.)", "", short)
-            mine = f"own_{mine}" if f"{prefix}_{mine}" in names.values() else mine
+            mine = f"{mine}_own" if f"{prefix}_{mine}" in names.values() else mine
             names[function.name] = f"{prefix}_{mine}{size or ''}"
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):

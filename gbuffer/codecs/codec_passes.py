@@ -13,7 +13,7 @@ from ...encodings.codecs.encoding import AXES, Encoding
 from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
 from ..gl.device import Device
 from ..gl.shader import ShaderError
-from .harness import Passes, check_functions, exact
+from .harness import Passes, check_functions, exact, takes_view
 
 # What a renderer of 32 bits does not draw.
 BY_JAX = "quality, mix and motion measure"
@@ -45,10 +45,13 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
 
 def _functions(encoding: Encoding) -> dict[str, object]:
     names: dict[str, object] = {side.upper(): f"{encoding.prefix}_{side}" for side in ("encode", "decode")}
+    short = {name: function for name, function in names.items() if not takes_view(encoding.glsl, str(function))}
+    own: dict[str, object] = {f"SHORT_{name}": function for name, function in short.items()}
+    names |= {name: f"viewed_{name.lower()}" for name in short}
     if not encoding.is_turned:
-        return names
+        return own | names
     order, back = AXES[encoding.axis]
-    own = {"OWN_" + name: function for name, function in names.items()}
+    own |= {"OWN_" + name: function for name, function in names.items()}
     own |= {"AXES": order, "AXES_BACK": back, "AXES_SIGN": float(encoding.sign)}
     return own | {"ENCODE": "turned_encode", "DECODE": "turned_decode"}
 

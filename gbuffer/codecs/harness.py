@@ -28,6 +28,12 @@ def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
             raise ShaderError(f"{glsl}: no function {signature}")
 
 
+def takes_view(glsl: Path, function: str) -> bool:
+    """Whether a function of a GLSL file has a second parameter."""
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", read_shader(glsl), flags=re.S)
+    return not re.search(rf"\bvec[23]\s+{function}\s*\(\s*(?:(?:const|in)\s+)*vec[23]\s+\w+\s*\)", text)
+
+
 def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
     """Uniforms by name; those the compiler dropped are left out."""
     for name, value in values.items():

@@ -1,5 +1,6 @@
 """Code of codecs: written in every language, run there, and equal to the catalogue's."""
 
+import json
 import re
 import struct
 from pathlib import Path
@@ -16,6 +17,8 @@ from normalbench.bench.code.reference import normals, reference
 from normalbench.bench.code.tables import dds, header
 from normalbench.bench.code.verify import agreement
 from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.codecs.user_encodings import encodings_named
+from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 
@@ -66,17 +69,19 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("encoding", ENCODINGS)
-def test_the_code_of_every_codec_gives_the_catalogues_texels(language, encoding, tmp_path):
-    """As above, of every storage that fits."""
-    require_runner(language)
+def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
+    """As above, of every storage that fits. Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions;
+    test_numpy_source.py has Python's."""
+    languages = ("hlsl", "essl", "wgsl", "msl", "c")
+    for language in languages:
+        require_runner(language)
     wrong = []
-    for codec in codecs_named(encoding, ",".join(STORAGES), "nearest"):
-        if codec.fits:
+    for codec in (codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits):
+        for language in languages:
             code = code_of(codec, language)
             found = agreement(codec, language, written(tmp_path, code), code.interface)
-            wrong += [] if found.holds else [f"{codec.name}: {found.says}"]
+            wrong += [] if found.holds else [f"{codec.name} in {language}: {found.says}"]
     assert not wrong, wrong
 
 
@@ -149,6 +154,36 @@ def test_a_table_is_an_array_of_c_in_the_same_order():
     table = np.array([[[0.1], [1.0]], [[2.5], [1e-7]]], np.float32)
     numbers = re.findall(r"([-\d.e]+)f", header({"t": table}))
     assert np.array_equal(np.float32(numbers), table.ravel())
+
+
+INSTRUCTIONS = ("spheremap", "octahedral", "octahedral_precise", "best_fit_searched")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("radv")
+@pytest.mark.parametrize("language", ["glsl", "hlsl"])
+def test_written_code_costs_the_catalogues_instructions(language, tmp_path):
+    """Read again as a user's encoder, encode and decode take as many instructions on RADV, for 8-bit storage."""
+    require_runner("hlsl")
+    codecs = [codec_of(f"{name}/{'rgba8' if name == 'best_fit_searched' else 'rg8'}") for name in INSTRUCTIONS]
+    files = [written(tmp_path, code_of(codec, language)) for codec in codecs]
+    mine = encodings_named(",".join(map(str, files)))
+    counts = cost.counted([*mine, *(codec.encoding for codec in codecs)], "navi21", "fragment")
+    for one, codec in zip(mine, codecs, strict=True):
+        for operation in cost.OPERATIONS:
+            found, ours = (counts[name, operation]["instructions"] for name in (one.name, codec.encoding.name))
+            assert found == ours, f"{one.name} {operation}: {found} instructions, the catalogue's {ours}"
+
+
+def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
+    """What is written can be measured as it is; encode alone may take the view."""
+    code = code_of(codec_of("octahedral/rg8"), "glsl", "mine")
+    path = written(tmp_path, code, code.body.replace("mine_encode(vec3 n)", "mine_encode(vec3 n, vec3 view)"))
+    arguments = ("--storage", "rg8", "--normals", "axes", "--backend", "glsl", "--format", "json")
+    status, out, err = run("quality", "--encoding", f"{path},octahedral", *arguments)
+    assert (status, err) == (0, "")
+    mine, ours = json.loads(out)
+    assert (mine["mse"], mine["angle_max_deg"]) == (ours["mse"], ours["angle_max_deg"])
 
 
 # The command.
