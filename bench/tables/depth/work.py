@@ -25,6 +25,7 @@ from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import pictures, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
+from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_numbers, in_range
 from ...options.targets import what_is_left
 from ...output.errors import UsageError, pick
@@ -57,7 +58,7 @@ def cases(options: DepthOptions) -> list[measure.Case]:
     cameras = [Camera(near, far, options.fov, measure.ASPECT) for near, far in _ranges(options)]
     distances = {camera: _distances(options, camera) for camera in cameras}
     in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
-    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    backends = backends_named(options.backend, measure.BACKENDS)
     chosen = codecs(options)
     require_jax()
     if backends == ["glsl"]:

@@ -11,6 +11,7 @@ from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin, codecs_named, fitting
 from ...machine.devices import found_device, require_device, require_jax
 from ...normals.normal_names import normal_sets_named
+from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_numbers, in_range
 from ...output.errors import UsageError, leave_out, pick
 from ...output.writing import check_plot, save_plot
@@ -42,7 +43,7 @@ def cases(options: MixOptions) -> list[Case]:
         raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
     angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
     operations = tuple(pick("operation", options.operation, {name: name for name in OPERATIONS}))
-    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    backends = backends_named(options.backend, measure.BACKENDS)
     codecs = _codecs(options)
     sets = _patches(options, angles, any(codec.encoding.domain == "view" for codec in codecs))
     samples = _samples(options.samples, backends)

@@ -13,8 +13,9 @@ from ...codecs.names import check_twin, codecs_named, fitting
 from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
+from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, leave_out, pick
+from ...output.errors import UsageError, leave_out
 from ...output.writing import check_folder, without
 from ..charts import backends_of, drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work
@@ -43,7 +44,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     count = checked_count(options.count)
     check_seed(options.seed)
     codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic)
-    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
     require_jax()
     if backends == ["glsl"]:

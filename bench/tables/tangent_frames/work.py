@@ -9,6 +9,7 @@ from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.storages.storage import FRAME_STORAGES
 from ...machine.devices import require_device, require_jax
+from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_count
 from ...options.targets import that_fit
 from ...output.errors import pick
@@ -28,7 +29,7 @@ def cases(options: FramesOptions) -> list[measure.Case]:
     check_seed(options.seed)
     count = checked_count(options.count)
     chosen = codecs(options)
-    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    backends = backends_named(options.backend, measure.BACKENDS)
     require_jax()
     if backends == ["glsl"]:
         require_device()

@@ -11,6 +11,7 @@ from ....encodings.storages.storage import MOTION_STORAGES
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
+from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_numbers, checked_sides, in_range
 from ...options.targets import that_fit
 from ...output.errors import pick
@@ -39,7 +40,7 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
     speeds = checked_numbers("--speed", options.speed, float, *SPEEDS)
     ranges = checked_numbers("--range", options.range, float, *RANGES)
     chosen = codecs(options)
-    backends = pick("back end", options.backend, {name: name for name in measure.BACKENDS})
+    backends = backends_named(options.backend, measure.BACKENDS)
     require_jax()
     if backends == ["glsl"]:
         require_device()

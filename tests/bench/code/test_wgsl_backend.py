@@ -77,3 +77,13 @@ def test_without_wgpu_the_row_says_what_to_install(monkeypatch):
     (codec,) = codecs_named("spheremap", "rg8", "nearest")
     assert "pip install wgpu" in row_of(codec, "wgsl")["skipped"]
     wgsl.device.cache_clear()
+
+
+def test_a_table_without_wgsl_measures_by_the_others_and_says_so(run):
+    """`run --backend jax,wgsl` must not fail for the tables that have no WGSL; alone it is an error."""
+    arguments = ("depth", "--depth", "linear", "--storage", "r16f", "--count", "1024", "--backend")
+    status, out, err = run(*arguments, "jax,wgsl")
+    assert status == 0 and "linear" in out
+    assert err == "normalbench: left out: wgsl: this table measures by jax and glsl\n"
+    status, out, err = run(*arguments, "wgsl")
+    assert (status, out, err) == (2, "", "normalbench: wgsl: this table measures by jax and glsl\n")
