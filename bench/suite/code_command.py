@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import tempfile
 from collections.abc import Iterable, Sequence
@@ -24,6 +25,7 @@ from .code_figures import head
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
+LONGEST = 60
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 
 
@@ -33,6 +35,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     Raises:
         UsageError: a name is not known, nothing fits, or something cannot be written.
     """
+    _check_prefix(options.prefix)
     languages = pick("language", options.to, {name: name for name in LANGUAGES})
     codecs = _codecs(options)
     if options.check:
@@ -47,6 +50,16 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     elif len(codecs) * len(languages) > 1:
         raise UsageError("several files are written into a folder: name one with -o")
     return _write(codecs, languages, options, output)
+
+
+def _check_prefix(prefix: str) -> None:
+    """Raises UsageError for a prefix that names cannot begin with in every language."""
+    is_name = re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", prefix) and not prefix.lower().startswith("gl_")
+    if prefix and not (is_name and len(prefix) <= LONGEST):
+        raise UsageError(
+            f"--prefix {prefix[:LONGEST]!r}: letters, digits and single underscores between them, a letter first, "
+            f"{LONGEST} at most, such as engine_normal"
+        )
 
 
 def _codecs(options: CodeOptions) -> list[Codec]:

@@ -11,7 +11,7 @@ from .tree import scalar_of, size_of, vector
 LIKE_GIVEN = frozenset(
     (
         *("abs", "sign", "floor", "ceil", "fract", "trunc", "round", "roundEven", "sqrt", "inversesqrt", "normalize"),
-        *("min", "max", "clamp", "mix", "step", "smoothstep", "mod", "pow", "exp", "exp2", "log", "log2", "fma"),
+        *("min", "max", "clamp", "mix", "step", "smoothstep", "pow", "exp", "exp2", "log", "log2", "fma"),
         *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "radians", "degrees", "reflect"),
     )
 )

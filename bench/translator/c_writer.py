@@ -45,7 +45,15 @@ FUNCTIONS: Mapping[str, str] = MappingProxyType(
         "abs": "fabsf",
         "roundEven": "rintf",
         "round": "rintf",
-        "mod": "fmodf",
+    }
+)
+# What C has no function for.
+FORMULAS: Mapping[str, str] = MappingProxyType(
+    {
+        "fract": "{0} - floorf({0})",
+        "mix": "{0} * (1.0f - {2}) + {1} * {2}",
+        "step": "{1} < {0} ? 0.0f : 1.0f",
+        "sign": "(float)(({0} > 0.0f) - ({0} < 0.0f))",
     }
 )
 STRUCTS = tuple(f"{letter}vec{size}" for letter in LETTERS.values() for size in (2, 3, 4))
@@ -208,6 +216,9 @@ class CWriter(Writer):
                 return [parts[FIELDS.index(name)] for name in names]
             case Index(_, inner, at) if inner.kind.endswith("]"):
                 return [(f"{self._text(inner)}[{self._text(at)}]", PRIMARY)]
+            case Index(_, Name(_, name), at):
+                # The members of a structure of one type lie one after the other.
+                return [(f"(&{self._name(name)}.x)[{self._text(at)}]", PRIMARY)]
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
 
     def _members(self, name: str, kind: str) -> list[Part]:
@@ -269,11 +280,16 @@ class CWriter(Writer):
             return [(text, PRIMARY)] if value.kind in SCALARS else self._made(text, value.kind)
         if value.name == FETCH:
             return self._fetched(value)
-        of_vectors = getattr(self, f"_{value.name}", None) if value.name in ("dot", "cross", "normalize") else None
+        of_vectors = (
+            getattr(self, f"_{value.name}", None) if value.name in ("dot", "cross", "normalize", "length") else None
+        )
         if of_vectors:
             return of_vectors(*value.arguments)
         size = size_of(value.kind)
         given = [self._broad(a, size) for a in value.arguments]
+        if value.name in FORMULAS:
+            once = ([self._once(part, "float")[0] for part in parts] for parts in zip(*given, strict=True))
+            return [(FORMULAS[value.name].format(*parts), CHOICE) for parts in once]
         if value.name == "inversesqrt":
             return [(f"1.0f / sqrtf({x})", BINDING["/"]) for ((x, _),) in zip(*given, strict=True)]
         return [
@@ -302,6 +318,9 @@ class CWriter(Writer):
 
     def _dot(self, a: Expression, b: Expression) -> list[Part]:
         return [_sum(list(zip(self._named(a), self._named(b), strict=True)))]
+
+    def _length(self, value: Expression) -> list[Part]:
+        return [(f"sqrtf({self._dot(value, value)[0][0]})", PRIMARY)]
 
     def _cross(self, a: Expression, b: Expression) -> list[Part]:
         u, v = self._named(a), self._named(b)

@@ -32,7 +32,6 @@ class HlslWriter(Writer):
             "floatBitsToUint": "asuint",
             "intBitsToFloat": "asfloat",
             "uintBitsToFloat": "asfloat",
-            "mod": "fmod",
             "fma": "mad",
         }
     )

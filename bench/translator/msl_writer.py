@@ -20,7 +20,6 @@ class MslWriter(Writer):
         {
             "inversesqrt": "rsqrt",
             "roundEven": "rint",
-            "mod": "fmod",
             "floatBitsToInt": "as_type<int>",
             "floatBitsToUint": "as_type<uint>",
             "intBitsToFloat": "as_type<float>",

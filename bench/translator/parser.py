@@ -263,6 +263,8 @@ class Parser:
         """A call; `place` is where the name stands."""
         if name in self._functions:
             return self._own(name, arguments)
+        if name == "mod" and len(arguments) == 2:
+            return self._modulus(*arguments)
         if name == "atan" and len(arguments) == 2:
             name = "atan2"
         if name in COMPARISONS and len(arguments) == 2:
@@ -277,6 +279,11 @@ class Parser:
         if kind is None:
             raise self._error(f"{name} is not a function that is known here", place)
         return Call(kind, name, arguments)
+
+    def _modulus(self, x: Expression, y: Expression) -> Expression:
+        """x - y floor(x / y), which other languages' remainders are not where x is negative."""
+        quotient = self._combined("/", x, y)
+        return self._combined("-", x, self._combined("*", y, Call(quotient.kind, "floor", [quotient])))
 
     def _all_alike(self, arguments: list[Expression]) -> list[Expression]:
         scalars = {scalar_of(a.kind) for a in arguments}

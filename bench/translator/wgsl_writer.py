@@ -110,12 +110,6 @@ class WgslWriter(Writer):
         parts = (value.other, value.chosen, value.condition)
         return f"select({', '.join(map(self._text, parts))})", PRIMARY
 
-    def _call(self, value: Call) -> str:
-        if not value.is_own and value.name == "mod":
-            x, y = (self._text(a, UNARY) for a in value.arguments)
-            return f"({x} - {y} * floor({x} / {y}))"
-        return super()._call(value)
-
     def _fetch(self, value: Call) -> str:
         return f"textureLoad({', '.join(map(self._text, value.arguments))})"
 

@@ -43,7 +43,7 @@ ELEMENTS = 6
 CHOICE, UNARY, PRIMARY = 0, 12, 13
 BITWISE = SHIFTS | {"&", "|", "^"}
 # Functions that GLSL lets mix vectors and scalars.
-MIXING = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep", "mod"))
+MIXING = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep"))
 MIXED = BITWISE | {"&&", "||", "^^"}
 
 

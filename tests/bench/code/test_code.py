@@ -175,6 +175,36 @@ def test_written_code_costs_the_catalogues_instructions(language, tmp_path):
             assert found == ours, f"{one.name} {operation}: {found} instructions, the catalogue's {ours}"
 
 
+MANY_WORDS = """
+#define SCALE 0.75
+float halves(float x) { return mod(x + 3.0, 2.0) - 1.0; }
+vec2 many_encode(vec3 n, vec3 view) {
+    vec2 p = mix(n.xy, n.xy * SCALE, 0.25) * step(-2.0, n.z) + fract(vec2(0.0)) + vec2(sign(0.0));
+    p /= max(length(vec3(p, n.z)), 0.001);
+    p = mix(p, -p, lessThan(n.zz, vec2(-2.0)));
+    for (int i = 0; i < 2; ++i) p[i] = clamp(p[i], -1.0, 1.0);
+    if (n.z > 2.0) return vec2(halves(p.x), p.y); else if (n.z > 3.0) { return p.yx; }
+    return p;
+}
+vec3 many_decode(vec2 e, vec3 view) {
+    float z = sqrt(max(1.0 - dot(e, e), 0.0)), a = atan(e.y, e.x + 4.0);
+    return vec3(e.x, e.y + 0.0 * a, z);
+}
+"""
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("language", ["hlsl", "essl", "wgsl", "msl", "c"])
+def test_a_users_glsl_is_written_in_every_language(language, tmp_path):
+    """Functions that the catalogue does not use mean the same: mod of negatives, mix, step, sign, length, atan."""
+    require_runner(language)
+    (tmp_path / "many.glsl").write_text(MANY_WORDS)
+    (codec,) = codecs_named(str(tmp_path / "many.glsl"), "rgb10a2", "nearest")
+    code = code_of(codec, language, "p")
+    found = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert found.holds, found.says
+
+
 def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
     """What is written can be measured as it is; encode alone may take the view."""
     code = code_of(codec_of("octahedral/rg8"), "glsl", "mine")
@@ -237,6 +267,11 @@ def test_check_says_of_every_language_how_many_texels_differ(run):
         (["octahedral/rgb8_12_12+xyz"], "chain"),
         (["octahedral:arithmetic=half"], "half arithmetic"),
         (["xyz", "--storage", "rg8"], "3 components"),
+        (["xyz", "--prefix", "1x"], "a letter first"),
+        (["xyz", "--prefix", "a b"], "single underscores"),
+        (["xyz", "--prefix", "a__b"], "single underscores"),
+        (["xyz", "--prefix", "gl_x"], "single underscores"),
+        (["xyz", "--prefix", "x" * 61], "60 at most"),
     ],
 )
 def test_what_cannot_be_written_is_a_line_and_status_2(run, arguments, said, tmp_path, monkeypatch):
