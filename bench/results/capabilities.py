@@ -31,7 +31,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C (cc)": c.compiler,
-        "code in MSL (clang++)": msl.compiler,
+        "code in Metal (clang++)": msl.compiler,
         "code in Slang (slangc)": slang.compiler,
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),
