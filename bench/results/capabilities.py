@@ -12,7 +12,7 @@ from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
 from ..output.errors import MissingError
-from .machine import require_compilers
+from .machine import require_intel, require_radeons
 
 
 def _require_parquet() -> None:
@@ -25,7 +25,8 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
     {
         "quality, mix, depth, frames, vectors by JAX": require_jax,
         "quality and mix by GLSL, render, effects, lights, sweep": require_device,
-        "instructions (cost --isa, pick)": require_compilers,
+        "instructions on Radeons (cost --isa, pick)": require_radeons,
+        "instructions on Intel (cost --isa --family intel)": require_intel,
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "rays (method_rms of effects)": require_rays,
