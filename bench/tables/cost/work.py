@@ -254,7 +254,7 @@ def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
 
 def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
     for at, front in enumerate(found.fronts):
-        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
+        title = f"Instructions on {front.family} against {front.error.label.removesuffix(', dB')}"
         said = (
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )
