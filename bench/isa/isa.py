@@ -157,7 +157,8 @@ def _driver_version(library: str) -> str:
     with child(variables, Driver(path, threading.Event()), _given({})) as (lines, why):
         line = lines() or {}
         if "device" in line:
-            return f"Mesa {line['version']}, {line['device']}"
+            # RADV's null device says itself that it is none.
+            return f"Mesa {line['version']}, {line['device']}" + (", a null device" if library != RADV else "")
         return line.get("missing") or line.get("failed") or why()
 
 
