@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ...isa.families import CHOICES, titled
 from ...options.option import Encodings, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..quality.table import COMMON
@@ -27,8 +28,8 @@ class CostOptions:
         str,
         Option(
             "--family",
-            "GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw "
-            "(Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; all.",
+            f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
+            "for these; all.",
             in_run=True,
         ),
     ] = "radeon"

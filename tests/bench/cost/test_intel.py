@@ -305,6 +305,19 @@ def test_the_kinds_add_up_to_the_count_of_intels_driver(table):
             assert row["transcendental"] == 1, row
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("intel", "own_cache")
+def test_every_encoding_and_packing_is_counted_on_every_intel():
+    """For 16 lanes, without spills, and by kinds that add up."""
+    packings = list(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
+    chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
+    rows = [row for row, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["intel"], [], cost.nobody)]
+    assert len(rows) == len(chosen) * len(STAGES) * 6
+    for row in rows:
+        assert (row["skipped"], row["simd_width"], row["spills"]) == (None, 16, 0), row
+        assert sum(row[kind] for kind in intel_disassembly.KINDS) == row["instructions"] >= 0, row
+
+
 def test_known_counts_of_intels_compilers(table):
     """Octahedral takes 11 to encode by hand on every generation; Tiger Lake's wait is one more (Mesa 22.3.6)."""
     found = {
