@@ -654,7 +654,7 @@ FAULTS = (
     Fault(
         "null-device-answers-for-every-file",
         BENCH,
-        "swapped condition",
+        "lost guard",
         "return has_gpu() && is_own(file) ? answer",
         "return has_gpu() ? answer",
         "test_intel.py",
