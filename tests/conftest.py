@@ -17,7 +17,8 @@ import jax
 import pytest
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.isa import isa, spirv
+from normalbench.bench.isa import driver_files, isa, null_device, spirv
+from normalbench.bench.isa.families import ANV, HASVK, RADV
 from normalbench.bench.metrics import published
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
@@ -56,11 +57,19 @@ def run(monkeypatch, capsys):
 @pytest.fixture(scope="session")
 def radv():
     """The compilers; where CI is set, a machine without them fails the tests that need them."""
-    missing = [isa.NO_DRIVER] * (isa.driver_file() is None) + [
-        said
-        for tool, said in ((spirv.COMPILER, spirv.NO_COMPILER), (spirv.OPTIMISER, spirv.NO_OPTIMISER))
-        if not shutil.which(tool)
-    ]
+    _need([RADV], {spirv.COMPILER: spirv.NO_COMPILER, spirv.OPTIMISER: spirv.NO_OPTIMISER})
+
+
+@pytest.fixture(scope="session")
+def intel(radv):  # noqa: ARG001 (asks for the other compilers)
+    """Intel's compilers, and what builds the device that they are given."""
+    _need([ANV, HASVK], {null_device.COMPILER: null_device.NO_COMPILER})
+
+
+def _need(libraries: list[str], tools: dict[str, str]) -> None:
+    """Skips where a driver or a tool is missing, which a machine of CI must have."""
+    missing = [driver_files.no_driver(library) for library in libraries if isa.driver_file(library) is None]
+    missing += [said for tool, said in tools.items() if not shutil.which(tool)]
     if missing and not os.environ.get("CI"):
         pytest.skip(missing[0])
     assert not missing

@@ -51,7 +51,7 @@ NOT_RUN = [line for line in LINES if line.startswith(("pip install ", ". .venv/"
 HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
-    *("normalbench frames", "normalbench cost", "normalbench published"),
+    *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
     *("normalbench maps", "normalbench vectors", "normalbench code"),
 }
@@ -512,6 +512,32 @@ def test_the_cost_table_is_what_is_measured(run):
             key = (name, operation)
             assert (int(article) if article else None) == found.get(key), key
             assert [int(polaris), int(navi)] == [found[*key, "polaris10"], found[*key, "navi31"]], key
+
+
+@pytest.mark.usefixtures("intel")
+def test_the_cost_table_of_two_vendors_is_what_is_measured(run):
+    """And the orders below it."""
+    shown = table("normalbench cost vendors")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d+)" * 6 + r" \|$", shown, re.M)
+    assert len(lines) == 8
+    families = ("navi31", "skl", "dg2")
+    words = ["--isa", "--family", ",".join(families), "--stage", "fragment", "--storage", "rgba8", "--format", "json"]
+    status, out, _ = run("cost", "--encoding", ",".join(line[0] for line in lines), *words)
+    rows = json.loads(out)
+    assert status == 0
+    if {row["driver"] for row in rows} != {mesa}:
+        pytest.skip(f"this machine's compiler is not {mesa}")
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    for name, *figures in lines:
+        keys = [(name, operation, family) for operation in ("encode", "decode") for family in families]
+        assert [int(figure) for figure in figures] == [found[key] for key in keys], name
+    orders = re.findall(r"^\| (encode|decode) \| (.+) \| (.+) \| (.+) \|$", PAGES[ROOT / "docs" / "cost.md"], re.M)
+    assert len(orders) == 4
+    for operation, *columns in orders:
+        for family, names in zip(families, columns, strict=True):
+            counts = [found[name, operation, family] for name in names.split(", ")]
+            assert counts == sorted(counts), (operation, family, names)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

@@ -4,7 +4,7 @@
 
 JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). To standard output
 go lines of JSON, each as soon as it is known: what the driver is, the key of a job that is begun, and what came of it.
-Of an empty mapping, which files the driver consists of. The driver's family and files come from the environment.
+Of an empty mapping, which files the driver consists of. The driver's files and the GPU come from the environment.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from .radv import DriverError, MissingDriverError, Radv, loaded
+from .compiler import Compiler, DriverError, MissingDriverError, loaded
 
 
 def _own_output() -> Any:
@@ -26,14 +26,14 @@ def _own_output() -> Any:
     return own
 
 
-def compiled(driver: Radv, job: dict[str, Any], planes: int) -> dict[str, Any]:
-    """What the driver makes of a job: statistics and disassembly, or the reason why not."""
+def compiled(driver: Compiler, job: dict[str, Any], planes: int) -> dict[str, Any]:
+    """What the driver makes of a job: its kernels, or the reason why not."""
     code, vertex = (base64.b64decode(job[part]) for part in ("code", "vertex"))
     try:
-        statistics, assembly = driver.compile(job["stage"], code, vertex, planes)
+        kernels = driver.compile(job["stage"], code, vertex, planes)
     except DriverError as error:
         return {"failed": str(error)}
-    return {"statistics": statistics, "assembly": assembly}
+    return {"kernels": kernels}
 
 
 def main() -> int:
@@ -57,7 +57,7 @@ def main() -> int:
 
 
 def _compile_all(given: dict[str, Any], say: Callable[..., None]) -> None:
-    driver = Radv()
+    driver = Compiler()
     say(device=driver.device, version=driver.version)
     for job in given["jobs"]:
         say(begun=job["key"])

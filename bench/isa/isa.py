@@ -14,31 +14,24 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
 from ..machine.cores import cores
 from ..output import cache as kept
+from . import null_device
+from .compiler import DRIVERS
+from .driver_files import driver_file, no_driver
+from .families import FAMILIES, RADV, TITLES
+from .null_device import NullDeviceError
 from .process import Driver, child
-from .radv_files import DRIVER, NO_DRIVER, driver_file
 
-# One family for each generation, by every name that a Mesa may have for it.
-FAMILIES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "polaris10": ("polaris10",),
-        "vega10": ("vega10",),
-        "navi10": ("navi10",),
-        "navi21": ("navi21",),
-        "navi31": ("navi31", "gfx1100"),
-    }
-)
 # What RADV says before it gives up.
 REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
-OWN_FILES = ("radv.py", "child.py")
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c")
 
 
 @dataclass(frozen=True)
@@ -51,21 +44,34 @@ class Job:
 
 
 @dataclass(frozen=True)
+class Kernel:
+    """A shader as it is compiled for one number of lanes.
+
+    Attributes:
+        simd_width: the lanes that an instruction works on.
+        statistics: the driver's, by its own names.
+        assembly: the disassembly, empty where the driver has none.
+    """
+
+    simd_width: int
+    statistics: dict[str, float]
+    assembly: str
+
+
+@dataclass(frozen=True)
 class Compiled:
     """What came of a job.
 
     Attributes:
         family: the name that the driver took.
         device, version: what the driver calls the device, and Mesa's version.
-        statistics: the driver's, by its own names.
-        assembly: the disassembly, empty where the driver has none.
+        kernels: one for each number of lanes; RADV compiles for one, Intel's drivers for up to three.
     """
 
     family: str
     device: str
     version: str
-    statistics: dict[str, float]
-    assembly: str
+    kernels: tuple[Kernel, ...]
 
 
 @dataclass(frozen=True)
@@ -83,7 +89,7 @@ Outcome = Compiled | Failure
 def _loaded(path: Path) -> str | Failure:
     """What differs once the driver or the library that disassembles for it does: their files' names and fingerprints,
     as a child has them loaded. Empty where it cannot be told, a Failure where the driver cannot be loaded at all."""
-    with child(None, Driver(path, threading.Event()), {}) as (lines, why):
+    with child({}, Driver(path, threading.Event()), {}) as (lines, why):
         line = lines()
         if line is None:
             return Failure(why())
@@ -91,60 +97,81 @@ def _loaded(path: Path) -> str | Failure:
             return Failure(line.get("missing") or line["failed"], "missing" in line)
         files = line.get("loaded", {})
     ours = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in OWN_FILES]
-    is_there = any(DRIVER in name for name in files)
+    is_there = any(Path(name).name.startswith(DRIVERS[0]) for name in files)
     return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
 
 
-def missing() -> str:
+def missing(library: str = RADV) -> str:
     """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
-    path = driver_file()
+    path = driver_file(library)
     if path is None:
-        return NO_DRIVER
+        return no_driver(library)
     found = _loaded(path)
-    return found.reason if isinstance(found, Failure) and found.is_missing else ""
+    if isinstance(found, Failure) and found.is_missing:
+        return found.reason
+    try:
+        _ = library == RADV or null_device.library()
+    except NullDeviceError as error:
+        return str(error) if error.is_missing else ""
+    return ""
 
 
 def compile_all(
     jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
 ) -> dict[tuple[str, Job], Outcome]:
     """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
-    path = driver_file()
-    if reason := missing():
-        return {(family, job): Failure(reason, True) for family in families for job in jobs}
-    assert path
     found: dict[tuple[str, Job], Outcome] = {}
-    driver = Driver(path, threading.Event())
+    stop = threading.Event()
     with ThreadPoolExecutor(cores()) as pool:
         try:
-            for family, outcomes in zip(families, pool.map(lambda f: _family(f, driver, jobs), families), strict=True):
+            # Asked of each driver once, before its families ask at the same time.
+            list(pool.map(missing, dict.fromkeys(FAMILIES[family].library for family in families)))
+            for family, outcomes in zip(families, pool.map(lambda f: _family(f, stop, jobs), families), strict=True):
                 found |= {(family, job): outcome for job, outcome in zip(jobs, outcomes, strict=True)}
                 tick(family)
         except BaseException:
             # An interrupted command ends at once, whatever a driver does.
-            driver.stop.set()
+            stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return found
 
 
-def driver_version() -> str:
-    """The driver as it names itself for the first family, with Mesa's version; or what is missing, in one line."""
-    path = driver_file()
-    if reason := missing():
+def driver_versions() -> dict[str, str]:
+    """Each driver's version, by its name; of one that cannot compile, the reason in one line."""
+    with ThreadPoolExecutor(cores()) as pool:
+        return dict(zip(TITLES.values(), pool.map(_driver_version, TITLES), strict=True))
+
+
+def _driver_version(library: str) -> str:
+    """A driver as it names itself for its first family, with Mesa's version; or what is missing, in one line."""
+    path = driver_file(library)
+    if reason := missing(library):
         return reason
     assert path
-    with child(next(iter(FAMILIES)), Driver(path, threading.Event()), _given({})) as (lines, why):
+    first = next(name for name, family in FAMILIES.items() if family.library == library)
+    try:
+        variables = _variables(first, first)
+    except NullDeviceError as error:
+        return str(error)
+    with child(variables, Driver(path, threading.Event()), _given({})) as (lines, why):
         line = lines() or {}
         if "device" in line:
-            return f"Mesa {line['version']}, {line['device']}"
+            # RADV's null device says itself that it is none.
+            return f"Mesa {line['version']}, {line['device']}" + (", a null device" if library != RADV else "")
         return line.get("missing") or line.get("failed") or why()
 
 
-def _family(family: str, driver: Driver, jobs: Sequence[Job]) -> list[Outcome]:
+def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
     """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
-    identity = _loaded(driver.path)
+    library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
+    if reason := missing(library):
+        return [Failure(reason, True)] * len(jobs)
+    path = driver_file(library)
+    assert path
+    driver, identity = Driver(path, stop), _loaded(path)
     identity = "" if isinstance(identity, Failure) else identity
-    keys = [kept.key_of("isa", identity, family, job.stage, job.code, job.vertex) for job in jobs]
+    keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
         if found := _as_compiled(kept.read(key)):
@@ -154,38 +181,63 @@ def _family(family: str, driver: Driver, jobs: Sequence[Job]) -> list[Outcome]:
         compiled = _compiled(family, driver, left)
         for key, outcome in compiled.items():
             if identity and isinstance(outcome, Compiled):
-                kept.write(key, vars(outcome))
+                kept.write(key, vars(outcome) | {"kernels": [vars(kernel) for kernel in outcome.kernels]})
         outcomes |= compiled
     return [outcomes[key] for key in keys]
 
 
 def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
     """What was kept; None where it is anything else."""
-    texts, numbers = ("family", "device", "version", "assembly"), (value or {}).get("statistics")
-    if value is None or set(value) != {*texts, "statistics"} or not isinstance(numbers, dict):
+    texts, kernels = ("family", "device", "version"), (value or {}).get("kernels")
+    if value is None or set(value) != {*texts, "kernels"} or not isinstance(kernels, list) or not kernels:
         return None
-    is_sound = all(isinstance(value[text], str) for text in texts)
-    is_sound = is_sound and all(isinstance(number, int | float) for number in numbers.values())
-    return Compiled(**value) if is_sound else None
+    is_sound = all(isinstance(value[text], str) for text in texts) and all(map(_is_kernel, kernels))
+    return Compiled(**{text: value[text] for text in texts}, kernels=_kernels(kernels)) if is_sound else None
+
+
+def _is_kernel(value: Any) -> bool:
+    """Whether that is what a child says of one kernel."""
+    if not isinstance(value, dict) or set(value) != {"simd_width", "statistics", "assembly"}:
+        return False
+    width, numbers, assembly = value["simd_width"], value["statistics"], value["assembly"]
+    is_sound = isinstance(width, int) and isinstance(assembly, str) and isinstance(numbers, dict)
+    return is_sound and all(isinstance(number, int | float) for number in numbers.values())
+
+
+def _kernels(values: Sequence[dict[str, Any]]) -> tuple[Kernel, ...]:
+    return tuple(Kernel(**value) for value in values)
 
 
 def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
     """A family's outcomes under the first of its names that the driver takes."""
-    for name in FAMILIES[family]:
-        outcomes = _by_children(name, driver, jobs)
+    names = FAMILIES[family].names
+    for name in names:
+        try:
+            variables = _variables(family, name)
+        except NullDeviceError as error:
+            return dict.fromkeys(jobs, Failure(str(error), error.is_missing))
+        outcomes = _by_children(name, variables, driver, jobs)
         if not all(isinstance(o, Failure) and REFUSAL in o.reason for o in outcomes.values()):
             return outcomes
-    return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(FAMILIES[family])}"))
+    return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(names)}"))
 
 
-def _by_children(name: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+def _variables(family: str, name: str) -> dict[str, str]:
+    """What has a driver compile for a family, under one of its names. Raises NullDeviceError."""
+    words = FAMILIES[family].null_device
+    return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
+
+
+def _by_children(
+    name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
+) -> dict[str, Outcome]:
     """Children one after the other until each job has its outcome: whoever leaves a job unanswered is replaced."""
     outcomes: dict[str, Outcome] = {}
     lost = 0
     while len(outcomes) < len(jobs):
         left = {key: job for key, job in jobs.items() if key not in outcomes}
         begun, end = "", Failure("the driver ended without a word")
-        for line in _answers(name, driver, left):
+        for line in _answers(name, variables, driver, left):
             if isinstance(line, Failure):
                 end = line
             elif isinstance(line, str):
@@ -202,10 +254,12 @@ def _by_children(name: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str
     return outcomes
 
 
-def _answers(name: str, driver: Driver, jobs: Mapping[str, Job]) -> Iterator[str | Failure | tuple[str, Outcome]]:
+def _answers(
+    name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
+) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with child(name, driver, _given(jobs)) as (lines, why):
+    with child(variables, driver, _given(jobs)) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -217,7 +271,7 @@ def _answers(name: str, driver: Driver, jobs: Mapping[str, Job]) -> Iterator[str
             elif "failed" in line:
                 yield line["key"], Failure(line["failed"])
             else:
-                yield line["key"], Compiled(**facts, statistics=line["statistics"], assembly=line["assembly"])
+                yield line["key"], Compiled(**facts, kernels=_kernels(line["kernels"]))
         yield Failure(why())
 
 

@@ -9,14 +9,14 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
 from ..machine.children import python
-from .radv_files import environment
+from .driver_files import environment
 
 CHILD: Sequence[str] = python("normalbench.bench.isa.child")
 # Of one job, and of a driver that starts: a thousand times what they take.
@@ -34,9 +34,11 @@ class Driver:
 
 
 @contextmanager
-def child(family: str | None, driver: Driver, given: dict[str, Any]) -> Iterator[tuple[Lines, Callable[[], str]]]:
-    """A child over what it is given: a function that gives its next line, None at its end or when it has been silent
-    for too long, and one that says why it ended. Killed when the block ends.
+def child(
+    variables: Mapping[str, str], driver: Driver, given: dict[str, Any]
+) -> Iterator[tuple[Lines, Callable[[], str]]]:
+    """A child over what it is given, for the GPU that the variables name: a function that gives its next line, None at
+    its end or when it has been silent for too long, and one that says why it ended. Killed when the block ends.
 
     What it reads and complains into are files without names: nothing is left of them, however this process ends.
     """
@@ -49,7 +51,7 @@ def child(family: str | None, driver: Driver, given: dict[str, Any]) -> Iterator
             stdout=subprocess.PIPE,
             stderr=errors,
             text=True,
-            env=environment(driver.path, family),
+            env=environment(driver.path, variables),
         ) as process:
             try:
                 lines: queue.Queue[str | None] = queue.Queue()

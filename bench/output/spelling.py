@@ -27,6 +27,14 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "rdna1": "navi10",
             "rdna2": "navi21",
             "rdna3": "navi31",
+            "haswell": "hsw",
+            "broadwell": "bdw",
+            "skylake": "skl",
+            "tigerlake": "tgl",
+            "alderlake": "adl",
+            "arc": "dg2",
+            "arca770": "dg2",
+            "amd": "radeon",
         },
     }
 )

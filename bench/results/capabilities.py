@@ -13,7 +13,7 @@ from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
 from ..output.errors import MissingError
-from .machine import require_compilers
+from .machine import require_intel, require_radeons
 
 
 def _require_parquet() -> None:
@@ -26,7 +26,8 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
     {
         "quality, mix, depth, frames, vectors by JAX": require_jax,
         "quality and mix by GLSL, render, effects, lights, sweep": require_device,
-        "instructions (cost --isa, pick)": require_compilers,
+        "instructions on Radeons (cost --isa, pick)": require_radeons,
+        "instructions on Intel (cost --isa --family intel)": require_intel,
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,

@@ -13,6 +13,7 @@ from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
+from ..isa.families import ANV, HASVK, RADV
 from ..languages import tools
 from ..output.errors import MissingError
 
@@ -42,7 +43,7 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | _gl() | {"RADV": isa.driver_version()} | _compilers()
+    return facts | _gl() | isa.driver_versions() | _compilers()
 
 
 def _gl() -> dict[str, str]:
@@ -76,6 +77,23 @@ def _compilers() -> dict[str, str]:
 def require_compilers() -> None:
     """Raises MissingError where a compiler of shaders is missing."""
     missing = [said for said in _compilers().values() if said in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
+    if missing:
+        raise MissingError("; ".join(missing))
+
+
+def require_radeons() -> None:
+    """Raises MissingError where RADV cannot compile."""
+    _require(RADV)
+
+
+def require_intel() -> None:
+    """Raises MissingError where one of Intel's drivers cannot compile, or the device that they are given."""
+    _require(ANV, HASVK)
+
+
+def _require(*libraries: str) -> None:
+    require_compilers()
+    missing = dict.fromkeys(reason for library in libraries if (reason := isa.missing(library)))
     if missing:
         raise MissingError("; ".join(missing))
 

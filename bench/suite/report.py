@@ -23,6 +23,7 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
+from ..isa.families import FAMILIES
 from ..output import cache
 from ..output.errors import UsageError, tell
 from ..output.sources import sources
@@ -314,11 +315,26 @@ def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
-    """Instructions of the last GPU family against errors of normals, of the first set, and of images; which codecs have
-    no place among them is added to the remarks."""
-    costs = [row for row in tables.get("cost", ()) if row.get("stage") == STAGE and is_number(row.get("instructions"))]
-    costs = drawings.for_drawing([row for row in costs if row.get("family") == costs[-1].get("family")])
+    """Instructions of each vendor's last GPU family against errors of normals, of the first set, and of images; which
+    codecs have no place among them is added to the remarks."""
+    known = [row for row in tables.get("cost", ()) if row.get("stage") == STAGE and is_number(row.get("instructions"))]
     lost: dict[str, dict[str, None]] = {}
+    for family in _last_of_each_vendor(known):
+        costs = drawings.for_drawing([row for row in known if str(row.get("family")) == family])
+        yield from _fronts_on(family, costs, tables, lost)
+    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _last_of_each_vendor(costs: Sequence[Row]) -> list[str]:
+    """The last GPU family of the rows of each vendor: two vendors' counts are not drawn in one chart."""
+    found = dict.fromkeys(str(row.get("family")) for row in costs)
+    return list({FAMILIES[name].vendor if name in FAMILIES else "": name for name in found}.values())
+
+
+def _fronts_on(
+    family: str, costs: Sequence[Row], tables: Mapping[str, Sequence[Row]], lost: dict[str, dict[str, None]]
+) -> Iterator[Front]:
+    """Instructions on one GPU family against errors; `lost` is told which codecs have no place, by the reason."""
     for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
         rows = [
             row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
@@ -330,12 +346,11 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
             if not _codec(row):
                 lost.setdefault("it is not of the catalogue", {})[CodecKey.of(row).label] = None
         points = {o: list(_points(costs, o, errors, lost)) for o in OPERATIONS} if costs else {}
-        family = f"instructions for {costs[-1].get('family')}, fragment shaders" if costs else ""
+        said = f"instructions for {family}, fragment shaders"
         unit = "instructions to {}, with its storage's"
-        panels = [Panel(f"{o}: {family}", unit.format(o), part) for o, part in points.items() if part]
+        panels = [Panel(f"{o}: {said}", unit.format(o), part) for o, part in points.items() if part]
         if panels:
-            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
-    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels, family)
 
 
 def _points(

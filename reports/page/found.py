@@ -29,10 +29,11 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error, as `pareto.pareto_figure` takes them."""
+    """Cost on a GPU family against error, as `pareto.pareto_figure` takes them."""
 
     error: Error
     panels: Sequence[Panel]
+    family: str = ""
 
 
 @dataclass(frozen=True)

@@ -13,32 +13,36 @@ from ....gbuffer.defines import kernels
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
-from ...isa import isa, spirv
-from ...isa.disassembly import KINDS, issue_slots, jumps, kinds
-from ...isa.isa import Compiled, Failure, Job, Outcome
+from ...isa import disassembly, intel_disassembly, isa, spirv
+from ...isa.families import FAMILIES
+from ...isa.isa import Failure, Job, Kernel, Outcome
 from ...machine.cores import on_all_cores
 from ...output.errors import MissingError
 from .table import TABLE
 
 Row = dict[str, Any]
 
-# The driver's statistics by their own names. Later Mesas may have more; one that is missing is left empty.
+# The drivers' statistics by their own names: RADV's, then Intel's. Later Mesas may have more; one that is missing is
+# left empty.
+INSTRUCTIONS = (("Instructions",), ("Instruction Count",))
+SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"))
 STATISTICS = {
-    "instructions": ("Instructions",),
-    "vgprs": ("VGPRs",),
-    "sgprs": ("SGPRs",),
-    "spills": ("Spilled VGPRs", "Spilled SGPRs"),
-    "code_bytes": ("Code size",),
+    "instructions": INSTRUCTIONS,
+    "vgprs": (("VGPRs",),),
+    "sgprs": (("SGPRs",),),
+    "spills": SPILLS,
+    "code_bytes": (("Code size",),),
 }
 # Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
 # for what: one kernel's less another's is nobody's cost.
 WHOLE = {
-    "kernel_vgprs": ("VGPRs",),
-    "kernel_sgprs": ("SGPRs",),
-    "kernel_latency": ("Latency",),
-    "kernel_inverse_throughput": ("Inverse Throughput",),
+    "kernel_vgprs": (("VGPRs",),),
+    "kernel_sgprs": (("SGPRs",),),
+    "kernel_latency": (("Latency",), ("Cycle Count",)),
+    "kernel_inverse_throughput": (("Inverse Throughput",),),
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
+KINDS = tuple(dict.fromkeys((*disassembly.KINDS, *intel_disassembly.KINDS)))
 LISTED = ("issue_slots", *KINDS, "branches", "loops")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
@@ -166,21 +170,38 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
         return row | {"skipped": outcome.reason}, ""
     if isinstance(empty, Failure):
         return row | {"skipped": f"the empty kernel: {empty.reason}"}, ""
+    compared = alike(outcome.kernels, empty.kernels)
+    if compared is None:
+        return row | {"skipped": _unlike(outcome.kernels, empty.kernels)}, ""
+    kernel, nothing = compared
     for column, names in STATISTICS.items():
-        row[column] = _difference(_total(outcome, names), _total(empty, names))
+        row[column] = _difference(_total(kernel, names), _total(nothing, names))
     for column, names in WHOLE.items():
-        row[column] = _total(outcome, names)
-    ours, theirs = (
-        _listed(o.assembly, int(o.statistics.get("Instructions", -1)), row["family"]) for o in (outcome, empty)
-    )
+        row[column] = _total(kernel, names)
+    ours, theirs = (_listed(k.assembly, int(_total(k, INSTRUCTIONS) or -1), row["family"]) for k in compared)
     if ours and theirs:
-        row |= {column: _difference(ours[column], theirs[column]) for column in LISTED}
-    return row | {"device": outcome.device, "driver": f"Mesa {outcome.version}"}, outcome.assembly
+        row |= {column: _difference(ours[column], theirs[column]) for column in ours}
+    about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": f"Mesa {outcome.version}"}
+    return row | about, kernel.assembly
 
 
-def _total(outcome: Compiled, names: Iterable[str]) -> float | None:
-    found = [outcome.statistics.get(name) for name in names]
-    return sum(found) if None not in found else None  # type: ignore[arg-type]
+def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel, Kernel] | None:
+    """A kernel and the empty one for the same number of lanes: the most that both are compiled for without spilling, or
+    the most where each spills. None where there is no such number."""
+    widths = {empty.simd_width: empty for empty in empties}
+    pairs = [(kernel, widths[kernel.simd_width]) for kernel in kernels if kernel.simd_width in widths]
+    return max(pairs, key=lambda pair: (not _total(pair[0], SPILLS), pair[0].simd_width), default=None)
+
+
+def _unlike(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str:
+    ours, theirs = (" and ".join(str(k.simd_width) for k in some) for some in (kernels, empties))
+    return f"compiled for {ours} lanes, where the empty kernel is compiled for {theirs}: their counts do not compare"
+
+
+def _total(kernel: Kernel, names: Iterable[tuple[str, ...]]) -> float | None:
+    """The sum of the statistics that the driver has of one of these sets; None where it has none."""
+    sets = ([kernel.statistics.get(name) for name in some] for some in names)
+    return next((sum(found) for found in sets if None not in found), None)  # type: ignore[arg-type]
 
 
 def _difference(a: float | None, b: float | None) -> float | None:
@@ -190,11 +211,18 @@ def _difference(a: float | None, b: float | None) -> float | None:
 @cache
 def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
     """What a kernel's disassembly says; None where there is none, or one that cannot be understood."""
-    counts = kinds(assembly, total, family)
+    read = listings_of(family)
+    counts = read.kinds(assembly, total, family)
     if counts is None:
         return None
-    branches, loops = jumps(assembly)
-    return {"issue_slots": issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+    branches, loops = read.jumps(assembly)
+    return {"issue_slots": read.issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+
+
+def listings_of(family: str) -> Any:
+    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots` and GUARDS."""
+    known = FAMILIES.get(family)
+    return intel_disassembly if known and known.vendor == "intel" else disassembly
 
 
 def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:

@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 
-from ...isa.disassembly import names
 from ...metrics import published
-from .measure import Row
+from .measure import Row, listings_of
 from .table import TABLE
-
-# What compares, chooses between two numbers or keeps one within bounds; v_cmpx masks lanes, as the kernel's own does.
-GUARDS = ("v_cmp_", "v_cndmask", "v_min", "v_max", "v_med")
 
 
 def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Row]:
@@ -97,6 +93,7 @@ def _turned(ordered: Sequence[tuple[Row, str]], slots: dict[str, int]) -> list[s
 
 def _holds(row: Row, text: str, slots: int) -> str:
     """One line about what a row's listing holds."""
-    guards = sum(name.startswith(GUARDS) for name in names(text))
+    read = listings_of(row["family"])
+    guards = sum(name.startswith(read.GUARDS) for name in read.names(text))
     held = f"{guards} to compare, choose or clamp, {row['transcendental'] or 0} transcendental"
     return f"  {row['encoding']}: {row['instructions']} instructions for {slots} slots, of them {held}"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ...isa.families import CHOICES, titled
 from ...options.option import Encodings, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..quality.table import COMMON
@@ -25,8 +26,13 @@ class CostOptions:
     article: Annotated[bool, Option("--article", "The figures of Pranckevicius' article next to them.")] = False
     family: Annotated[
         str,
-        Option("--family", "GPUs: polaris10, vega10, navi10, navi21, navi31; comma-separated, or all.", in_run=True),
-    ] = "all"
+        Option(
+            "--family",
+            f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
+            "for these; all.",
+            in_run=True,
+        ),
+    ] = "radeon"
     stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
     operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
     storage: Annotated[
@@ -69,25 +75,36 @@ COLUMNS = (
     _count(
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
-        "conversion, quarter_rate, transcendental, scalar, memory and waiting add up to it where there is a "
-        "disassembly.",
+        "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
+        "where there is a disassembly.",
     ),
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside.",
+        "transcendental one issues once and runs beside. Empty for Intel.",
     ),
-    _count("full_rate", "Instructions at the full rate.", 17),
-    _count("conversion", "Between floats and integers: at a quarter of the rate on Polaris and Vega.", 13),
+    _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
-        "quarter_rate", "Products of 32-bit integers, and on Polaris fused multiply-adds, at a quarter of the rate.", 11
+        "conversion",
+        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two sizes of "
+        "floats.",
+        13,
     ),
     _count(
-        "transcendental", "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside."
+        "quarter_rate",
+        "Radeon: products of 32-bit integers, and on Polaris fused multiply-adds, at a quarter of the rate.",
+        11,
+    ),
+    _count(
+        "transcendental",
+        "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
+        "which also divides integers.",
     ),
     _count("scalar", "Instructions once for all lanes.", 14),
-    _count("memory", "Loads, stores, interpolation, export.", 15),
+    _count("memory", "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`).", 15),
     _count("waiting", "Waits and hints about order.", 10),
+    _count("control_flow", "Intel: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
+    _count("other_alu", "Intel: all other arithmetic, moves, compares and selections; interpolation, too.", 19),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
     _count(
@@ -97,13 +114,21 @@ COLUMNS = (
     ),
     _count("vgprs", "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once.", 16),
     _count("sgprs", "Scalar registers, more than the empty kernel's.", 8),
-    _count("spills", "Registers spilled to memory, more than the empty kernel's.", 9),
+    _count("spills", "Registers spilled to memory, or Intel's messages that do so, more than the empty kernel's.", 9),
     _count("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
+    Column(
+        "simd_width",
+        "Lanes that an instruction works on. Of Intel's kernels for 8, 16 and 32 lanes: the widest that does not spill "
+        "and that the empty kernel has, too.",
+        HOW,
+        drops=5,
+    ),
     Column("kernel_vgprs", "All vector registers of the kernel.", HOW, drops=6),
     Column("kernel_sgprs", "All scalar registers of the kernel.", HOW, drops=5),
     Column(
         "kernel_latency",
-        "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts.",
+        "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts. The "
+        "models of two vendors do not compare.",
         HOW,
         drops=3,
     ),
@@ -141,6 +166,11 @@ ALSO = (
     Column("polaris*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
     Column("vega*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
     Column("navi*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
+    *(
+        Column(name, f"Instructions that Mesa's {driver} makes of it for that GPU family.", better="less")
+        for driver, names in (("hasvk", ("hsw", "bdw")), ("anv", ("skl", "tgl", "adl", "dg2")))
+        for name in names
+    ),
     Column("slots", "The article's instruction slots: ps_3_0, up to four numbers each."),
     Column("GeForce*", "The article's cycles on that GPU.", drops=18),
     Column("Radeon*", "The article's cycles on that GPU.", drops=18),
@@ -150,8 +180,8 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 TABLE = Table(
     name="cost",
     package=__package__ or "",
-    help="What encoding and decoding cost: instructions on five GPU families, and time; all of it by default.\n\n"
-    "Counts are by Mesa's RADV for GPUs that need not be there, less an empty kernel that moves the same numbers.",
+    help="What encoding and decoding cost: instructions on GPUs of two vendors, and time; all of it by default.\n\n"
+    "Counts are by Mesa's compilers for GPUs that need not be there, less an empty kernel that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     options=CostOptions,
     outputs=CostOutputs,
@@ -166,9 +196,9 @@ TABLE = Table(
         title="What it costs",
         short="Cost",
         intro="What a current compiler makes of each encoder and decoder, and whether it is worth it.",
-        method="A kernel around the encoding's own GLSL is compiled by Mesa's RADV for GPUs that need not be there, "
-        "less "
-        "an empty kernel that moves the same numbers, so that doing nothing costs exactly 0. Counts hold for one Mesa.",
+        method="A kernel around the encoding's own GLSL is compiled by Mesa's drivers for GPUs that need not be there, "
+        "less an empty kernel that moves the same numbers, so that doing nothing costs exactly 0. Counts hold for one "
+        "Mesa.",
         extras=("disassembly",),
     ),
 )

@@ -18,7 +18,7 @@ from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.user_encodings import encodings_named
-from ...isa import isa, spirv
+from ...isa import families, isa, spirv
 from ...options import listing
 from ...options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...output.errors import MissingError, UsageError, pick
@@ -44,6 +44,11 @@ def packings(names: str) -> list[Packing]:
         raise UsageError(f"--storage: {error}") from error
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in made.items() if storage}}
     return list(dict.fromkeys(packing for several in pick("storage", names, known) for packing in several))
+
+
+def chosen_families(names: str) -> list[str]:
+    """What `--family` names: families, and vendors for all of theirs. Raises UsageError."""
+    return list(dict.fromkeys(name for several in pick("family", names, families.CHOICES) for name in several))
 
 
 @dataclass
@@ -88,7 +93,7 @@ def costing(options: CostOptions) -> Costing:
         packings(options.storage),
         pick("operation", options.operation, {name: name for name in measure.OPERATIONS}),
         pick("stage", options.stage, {name: name for name in STAGES}),
-        pick("family", options.family, {name: name for name in isa.FAMILIES}),
+        chosen_families(options.family),
     )
     if measures(options) != ["isa"]:
         from ...codecs.names import check_twin
@@ -249,7 +254,7 @@ def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
 
 def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
     for at, front in enumerate(found.fronts):
-        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
+        title = f"Instructions on {front.family} against {front.error.label.removesuffix(', dB')}"
         said = (
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )

@@ -14,7 +14,7 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...codecs.names import check_twin, codecs_named
-from ...isa.isa import FAMILIES
+from ...isa.families import FAMILIES
 from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range

@@ -11,6 +11,7 @@ from costing import glsl
 
 from normalbench.bench.isa import isa
 from normalbench.bench.isa.disassembly import KINDS, issue_slots, kind, kinds, names
+from normalbench.bench.isa.families import CHOICES
 from normalbench.bench.metrics import published
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import sheets as cost_sheets
@@ -34,11 +35,13 @@ def whole_table(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers
         ]
         chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
         lacks: list[str] = []
-        found = list(cost.isa_rows(chosen, list(STAGES), list(isa.FAMILIES), lacks, lambda _: None))
+        found = list(cost.isa_rows(chosen, list(STAGES), CHOICES["radeon"], lacks, lambda _: None))
         assert not lacks
         return found
 
 
+# Of a Radeon's row.
+LISTED = ("issue_slots", *KINDS, "branches", "loops")
 IDENTITIES = [
     ("two", "n.xy", "e.xyx", 2),
     ("crossed", "n.zy", "vec3(view.y, e.yx)", 2),
@@ -53,14 +56,14 @@ def test_an_encoding_that_does_nothing_costs_exactly_nothing(tmp_path):
     """Encode and decode, fragment and compute, every family, every figure; whatever it moves where."""
     encodings = [glsl(tmp_path, *identity) for identity in IDENTITIES]
     chosen = cost.cases(encodings, (), cost.OPERATIONS)
-    rows = [r for r, _ in cost.isa_rows(chosen, list(STAGES), list(isa.FAMILIES), [], lambda _: None)]
-    assert len(rows) == len(IDENTITIES) * 2 * 2 * len(isa.FAMILIES)
+    rows = [r for r, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["radeon"], [], lambda _: None)]
+    assert len(rows) == len(IDENTITIES) * 2 * 2 * len(CHOICES["radeon"])
     for row in rows:
-        figures = {column: row[column] for column in (*cost.STATISTICS, *cost.LISTED, "spirv_instructions")}
+        figures = {column: row[column] for column in (*cost.STATISTICS, *LISTED, "spirv_instructions")}
         assert set(figures.values()) == {0}, f"{row['encoding']} {row['operation']} {row['stage']} {row['family']}"
 
 
-def costs_of(encode: str, before: str, folder: Path, families=tuple(isa.FAMILIES)) -> list[dict]:
+def costs_of(encode: str, before: str, folder: Path, families=CHOICES["radeon"]) -> list[dict]:
     """Rows of what encodes so, in both stages."""
     encoding = glsl(folder, "mine", encode, "vec3(e, 0.0)", 2, before)
     chosen = cost.cases([encoding], (), ["encode"])
@@ -116,7 +119,7 @@ def test_names_of_the_kernels_are_free_for_users(tmp_path):
 def test_every_encoding_stage_and_family_has_its_row(whole_table):
     keys = [tuple(row[c] for c in ("encoding", "storage", "operation", "stage", "family")) for row, _ in whole_table]
     assert len(set(keys)) == len(keys)
-    wanted = itertools.product(ENCODINGS, [None], cost.OPERATIONS, STAGES, isa.FAMILIES)
+    wanted = itertools.product(ENCODINGS, [None], cost.OPERATIONS, STAGES, CHOICES["radeon"])
     assert set(wanted) <= set(keys)
     for row, assembly in whole_table:
         assert tuple(row) == tuple(TABLES["cost"].empty())
@@ -334,7 +337,7 @@ def test_what_is_repeated_counts_as_often():
 
 
 def test_fused_multiply_adds_are_slow_on_polaris_alone():
-    assert [kind("v_fma_f32", family) for family in isa.FAMILIES] == ["quarter_rate", *["full_rate"] * 4]
+    assert [kind("v_fma_f32", family) for family in CHOICES["radeon"]] == ["quarter_rate", *["full_rate"] * 4]
 
 
 def test_doubles_have_no_kind():
@@ -355,7 +358,8 @@ def test_slots_are_by_the_familys_rates(family, slots):
 
 def made(assembly: str, **statistics: float) -> isa.Compiled:
     names = {name.replace("_", " "): value for name, value in statistics.items()}
-    return isa.Compiled("navi21", "a device", "1.2.3", {"Instructions": 2, "Code size": 8, **names}, assembly)
+    kernel = isa.Kernel(64, {"Instructions": 2, "Code size": 8, **names}, assembly)
+    return isa.Compiled("navi21", "a device", "1.2.3", (kernel,))
 
 
 def test_spills_are_of_both_sorts_of_registers():

@@ -8,13 +8,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from costing import glsl
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.isa import isa, radv, radv_files, spirv
+from normalbench.bench.isa import compiler, driver_files, families, isa, spirv
 from normalbench.bench.isa import process as isa_process
 from normalbench.bench.machine import devices
 from normalbench.bench.options.option import fields_of
@@ -86,9 +87,12 @@ def in_the_cache(folder, kind: str) -> list[tuple[str, dict]]:
 @pytest.mark.parametrize(
     "kind, wrong",
     [
-        ("isa", {"statistics": "none"}),
-        ("isa", {"statistics": {"Instructions": "12"}}),
-        ("isa", {"assembly": None}),
+        ("isa", {"kernels": "none"}),
+        ("isa", {"kernels": []}),
+        ("isa", {"kernels": [{"simd_width": 64, "statistics": {"Instructions": "12"}, "assembly": ""}]}),
+        ("isa", {"kernels": [{"simd_width": 64, "statistics": {}, "assembly": None}]}),
+        ("isa", {"kernels": [{"simd_width": "64", "statistics": {}, "assembly": ""}]}),
+        ("isa", {"version": None}),
         ("isa", {"more": 1}),
         ("spirv", {"binary": "A"}),
         ("spirv", {"binary": "AAAA"}),
@@ -152,11 +156,11 @@ def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
 def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):
     file, head = tmp_path / "libvulkan_radeon.so", bytes(range(256)) * 16
     file.write_bytes(head + b"code")
-    first = radv._fingerprint(file)
+    first = compiler._fingerprint(file)
     file.write_bytes(b"\x00\x01" + head[:1] + head[3:] + b"code")
-    other_id = radv._fingerprint(file)
+    other_id = compiler._fingerprint(file)
     file.write_bytes(head + b"code and more")
-    assert len({first, other_id, radv._fingerprint(file)}) == 3
+    assert len({first, other_id, compiler._fingerprint(file)}) == 3
 
 
 @pytest.mark.slow
@@ -166,7 +170,7 @@ def test_a_driver_that_is_named_without_its_folder_is_kept_all_the_same(run, mon
     described = json.loads(isa.driver_file().read_text())
     described["ICD"]["library_path"] = Path(described["ICD"]["library_path"]).name
     (tmp_path / "radeon.json").write_text(json.dumps(described))
-    monkeypatch.setattr(isa, "driver_file", lambda: tmp_path / "radeon.json")
+    monkeypatch.setattr(isa, "driver_file", lambda *_: tmp_path / "radeon.json")
     first = run(*SMALL)
     assert first[0] == 0 and all(row["skipped"] is None for row in json.loads(first[1]))
     monkeypatch.setattr(isa_process, "CHILD", ["false"])
@@ -192,7 +196,8 @@ def test_the_environment_of_the_driver_is_everybodys(monkeypatch, tmp_path):
     for name, value in (ours | {"RADV_FORCE_FAMILY": "gfx1201", "HOME": "/home/somebody"}).items():
         monkeypatch.setenv(name, value)
     for family in ("navi21", None):
-        found = radv_files.environment(tmp_path / "radeon.json", family)
+        told = isa._variables(family, family) if family else {}
+        found = driver_files.environment(tmp_path / "radeon.json", told)
         assert not set(ours) & set(found) and found.get("RADV_FORCE_FAMILY") == family
         assert found["HOME"] == "/home/somebody" and found["VK_DRIVER_FILES"] == str(tmp_path / "radeon.json")
 
@@ -273,7 +278,10 @@ def test_a_driver_that_always_fails_is_given_up(run, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_family_that_this_mesa_refuses_has_one_row(run, monkeypatch):
-    monkeypatch.setattr(isa, "FAMILIES", {"navi99": ("navi99", "gfx9999"), "navi21": ("navi21",)})
+    known = families.FAMILIES["navi21"]
+    unknown = {"navi99": replace(known, names=("navi99", "gfx9999")), "navi21": known}
+    monkeypatch.setattr(isa, "FAMILIES", unknown)
+    monkeypatch.setattr(families, "CHOICES", {"radeon": tuple(unknown)})
     status, out, err = run("cost", *EVERY, "--encoding", "xy", "--storage", "rgba8", "--stage", "fragment")
     rows = json.loads(out)
     assert status == 0
@@ -285,7 +293,7 @@ def test_a_family_that_this_mesa_refuses_has_one_row(run, monkeypatch):
 
 
 def without_driver(monkeypatch, _):
-    monkeypatch.setattr(isa, "driver_file", lambda: None)
+    monkeypatch.setattr(isa, "driver_file", lambda *_: None)
 
 
 def without_loader(monkeypatch, tmp_path):

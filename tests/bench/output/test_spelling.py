@@ -2,13 +2,13 @@
 
 import pytest
 
-from normalbench.bench.isa.isa import FAMILIES
+from normalbench.bench.isa.families import CHOICES
 from normalbench.bench.output.errors import UsageError, pick
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 
 KNOWN = {what: {name: name for name in names} for what, names in (("encoding", ENCODINGS), ("storage", STORAGES))}
-KNOWN["family"] = {name: name for name in FAMILIES}
+KNOWN["family"] = {name: name for name in CHOICES}
 
 
 @pytest.mark.parametrize(
@@ -24,6 +24,9 @@ KNOWN["family"] = {name: name for name in FAMILIES}
         ("encoding", "SphereMap", "spheremap"),
         ("family", "rdna3", "navi31"),
         ("family", "Navi21", "navi21"),
+        ("family", "Tiger Lake", "tgl"),
+        ("family", "Arc", "dg2"),
+        ("family", "Intel", "intel"),
     ],
 )
 def test_a_name_is_understood(what, typed, meant):

@@ -1,7 +1,7 @@
-"""RADV, Mesa's Vulkan driver for Radeons, asked what its compiler makes of a shader.
+"""A Vulkan driver of Mesa's, asked what its compiler makes of a shader.
 
-No GPU is needed: for a family named by RADV_FORCE_FAMILY it offers a null device. Runs in a child process
-(`isa_child`), because drivers crash.
+No GPU is needed: for a family named by RADV_FORCE_FAMILY RADV offers a null device, and Intel's drivers take the one of
+null_i915.c. Runs in a child process (`child`), because drivers crash.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from .radv_files import DRIVER
-
 EXTENSION = "VK_KHR_pipeline_executable_properties"
+# Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.
+DRIVERS = ("libvulkan_", "libLLVM")
 VULKAN_1_3 = 1 << 22 | 3 << 12
 # What kernel.frag writes.
 TARGETS = 3
@@ -55,7 +55,7 @@ def loaded() -> dict[str, str]:
     maps = Path("/proc/self/maps")
     lines = maps.read_text(encoding="utf-8").splitlines() if maps.exists() else []
     paths = {line[line.index("/") :] for line in lines if "/" in line}
-    return {path: _fingerprint(Path(path)) for path in paths if Path(path).name.startswith((DRIVER, "libLLVM"))}
+    return {path: _fingerprint(Path(path)) for path in paths if Path(path).name.startswith(DRIVERS)}
 
 
 def _fingerprint(path: Path) -> str:
@@ -71,7 +71,7 @@ def _instance(vk: Any) -> Any:
         raise DriverError(f"the Vulkan loader takes no driver: {type(error).__name__}") from error
 
 
-class Radv:
+class Compiler:
     """A logical device that compiles, and tells what it made.
 
     Attributes:
@@ -114,7 +114,7 @@ class Radv:
         except vk.VkError as error:
             raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
 
-    def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> tuple[dict[str, float], str]:
+    def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> list[dict[str, Any]]:
         """What the compiler makes of a shader.
 
         Args:
@@ -123,7 +123,8 @@ class Radv:
             planes: the binding of the storage buffer; those below are look-up tables.
 
         Returns:
-            the driver's statistics by its own names, and the disassembly, empty where there is none.
+            a kernel for each number of lanes that the driver compiles for: "simd_width", that number; "statistics" by
+            the driver's own names; and "assembly", the disassembly, empty where there is none.
 
         Raises:
             DriverError: it does not compile.
@@ -133,11 +134,17 @@ class Radv:
         try:
             made = self._compute(code) if stage == "compute" else self._graphics(code, vertex)
             bit = vk.VK_SHADER_STAGE_COMPUTE_BIT if stage == "compute" else vk.VK_SHADER_STAGE_FRAGMENT_BIT
-            index = next(i for i, stages in self._executables(made) if stages & bit)
-        except (vk.VkError, StopIteration) as error:
+            kernels = [self._kernel(made, i, width) for i, stages, width in self._executables(made) if stages & bit]
+        except vk.VkError as error:
             raise DriverError(f"{self.device} does not compile it: {type(error).__name__}") from error
-        executable = vk.VkPipelineExecutableInfoKHR(pipeline=made, executableIndex=index)
-        return dict(self._statistics(executable)), self._disassembly(executable)
+        if not kernels:
+            raise DriverError(f"{self.device} tells of no {stage} kernel")
+        return kernels
+
+    def _kernel(self, pipeline: Any, index: int, width: int) -> dict[str, Any]:
+        executable = self._vk.VkPipelineExecutableInfoKHR(pipeline=pipeline, executableIndex=index)
+        statistics, assembly = dict(self._statistics(executable)), self._disassembly(executable)
+        return {"simd_width": width, "statistics": statistics, "assembly": assembly}
 
     def _pipeline_layout(self, planes: int) -> Any:
         vk = self._vk
@@ -208,11 +215,11 @@ class Radv:
         )
         return vk.vkCreateGraphicsPipelines(self._device, None, 1, [info], None)[0]
 
-    def _executables(self, pipeline: Any) -> Iterator[tuple[int, int]]:
-        """(index, stages) of each part of a pipeline."""
+    def _executables(self, pipeline: Any) -> Iterator[tuple[int, int, int]]:
+        """(index, stages, lanes) of each part of a pipeline."""
         ask = self._vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutablePropertiesKHR")
         found = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
-        return ((i, executable.stages) for i, executable in enumerate(found))
+        return ((i, executable.stages, executable.subgroupSize) for i, executable in enumerate(found))
 
     def _statistics(self, executable: Any) -> Iterator[tuple[str, float]]:
         vk = self._vk
@@ -237,5 +244,6 @@ class Radv:
         for one, text in zip(found, texts, strict=True):
             one.pData = text
         ask(self._device, which, count, found)
-        named = {ffi.string(one.name).decode(): text for one, text in zip(found, texts, strict=True)}
+        # RADV's name is "Assembly", Intel's "GEN Assembly".
+        named = {ffi.string(one.name).decode().split()[-1]: text for one, text in zip(found, texts, strict=True)}
         return ffi.string(named["Assembly"]).decode(errors="replace") if "Assembly" in named else ""

@@ -1,0 +1,68 @@
+"""The GPU families that shaders are compiled for, and the driver that compiles for each. Imports nothing heavy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
+
+
+@dataclass(frozen=True)
+class Family:
+    """One generation of GPUs.
+
+    Attributes:
+        title: what people call it.
+        vendor: "radeon" or "intel", which is also the name of the group of its families.
+        library: the Vulkan driver that compiles for it.
+        names: every name that a Mesa may have for it; the first that the driver takes is used.
+        null_device: what an Intel driver is told of a GPU that is not there, in the words of null_i915.c.
+    """
+
+    title: str
+    vendor: str
+    library: str
+    names: tuple[str, ...]
+    null_device: str = ""
+
+
+def _radeon(title: str, *names: str) -> Family:
+    return Family(title, "radeon", RADV, names)
+
+
+def _intel(title: str, library: str, name: str, null_device: str) -> Family:
+    return Family(title, "intel", library, (name,), null_device)
+
+
+# One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
+# each, execution units of each, and whether it has memory of its own (Mesa's pci_ids, and its tables of devices).
+FAMILIES: Mapping[str, Family] = MappingProxyType(
+    {
+        "polaris10": _radeon("Polaris", "polaris10"),
+        "vega10": _radeon("Vega", "vega10"),
+        "navi10": _radeon("Navi 1x", "navi10"),
+        "navi21": _radeon("Navi 2x", "navi21"),
+        "navi31": _radeon("Navi 3x", "navi31", "gfx1100"),
+        "hsw": _intel("Haswell", HASVK, "hsw", "0x0412 6 1 2 10 0"),
+        "bdw": _intel("Broadwell", HASVK, "bdw", "0x1616 9 1 3 8 0"),
+        "skl": _intel("Skylake", ANV, "skl", "0x1912 6 1 3 8 0"),
+        "tgl": _intel("Tiger Lake", ANV, "tgl", "0x9a49 1 1 6 16 0"),
+        "adl": _intel("Alder Lake", ANV, "adl", "0x46a6 12 1 6 16 0"),
+        "dg2": _intel("Arc A770", ANV, "dg2", "0x56a0 8 8 4 16 1"),
+    }
+)
+VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
+# What a user may name: a family, or a vendor for all of its families.
+CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {name: (name,) for name in FAMILIES}
+    | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
+)
+# What people call each driver.
+TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk"})
+
+
+def titled(vendor: str) -> str:
+    """A vendor's families as help shows them: "hsw (Haswell), bdw (Broadwell)"."""
+    return ", ".join(f"{name} ({FAMILIES[name].title})" for name in CHOICES[vendor])

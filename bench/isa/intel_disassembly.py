@@ -1,0 +1,106 @@
+"""What an Intel GPU's disassembly is made of: which kind each instruction is of, and where it jumps.
+
+An instruction works on as many lanes as its parentheses say: "mad(16)". Mesa's own count leaves out `nop`; some Mesas
+also leave out `sync nop`, which only waits, and others count it (brw_fs_generator.cpp).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import NamedTuple
+
+# The columns that add up to the count; Radeons have others.
+KINDS = ("other_alu", "conversion", "transcendental", "scalar", "memory", "control_flow", "waiting")
+# What compares or chooses between two numbers: `sel` is the smaller and the larger one, too.
+GUARDS = ("cmp", "csel", "sel")
+
+_CONTROL_FLOW = {"if", "else", "endif", "while", "do", "break", "cont", "halt", "jmpi", "brd", "brc", "call", "ret"}
+_SENDS = {"send", "sendc", "sends", "sendsc"}
+_WAITING = {"sync", "wait"}
+_CONVERSIONS = {"f16to32", "f32to16"}
+_ALU = {
+    *("mov", "sel", "csel", "not", "and", "or", "xor", "shr", "shl", "asr", "ror", "rol", "cmp", "cmpn", "bfrev"),
+    *("bfe", "bfi1", "bfi2", "add", "add3", "mul", "avg", "frc", "rndu", "rndd", "rnde", "rndz", "mac", "mach"),
+    *("lzd", "fbh", "fbl", "cbit", "addc", "subb", "dp4", "dph", "dp3", "dp2", "dp4a", "line", "pln", "mad", "lrp"),
+    *("madm", "movi", "smov", "pln"),
+}
+# (predicate) name.modifiers function(lanes): "(+f0.0) sel(16)", "cmp.g.f0.0(16)", "math rsq(16)", "sync nop(1)".
+_INSTRUCTION = re.compile(r"^(\([^)]*\)\s*)?([a-z][a-z0-9]*)(?:\.[a-z0-9.]+)?(?: ([a-z]\w*)(?:\.\w+)?)?\((\d+)\)(.*)")
+_TYPE = re.compile(r"(?:>|[0-9a-f])(HF|DF|F|UD|D|UW|W|UB|B|UQ|Q)\b")
+_FLOATS = {"HF", "F", "DF"}
+
+
+class Instruction(NamedTuple):
+    """One line of a listing: its name, what it is a function of ("math rsq") or waits for, its lanes and operands."""
+
+    is_predicated: bool
+    name: str
+    function: str
+    lanes: int
+    operands: str
+
+
+def instructions(assembly: str) -> Iterator[Instruction]:
+    """All but `nop`, in order; a message's second line and labels are none."""
+    for line in assembly.splitlines():
+        if (match := _INSTRUCTION.match(line)) and match[2] != "nop":
+            yield Instruction(bool(match[1]), match[2], match[3] or "", int(match[4]), match[5])
+
+
+def names(assembly: str) -> list[str]:
+    """The name of each instruction, in order."""
+    return [one.name for one in instructions(assembly)]
+
+
+@cache
+def kind(one: Instruction) -> str:
+    """The kind of an instruction. Raises ValueError for one that is of none."""
+    if one.name in _SENDS:
+        return "memory"
+    if one.name in _CONTROL_FLOW:
+        return "control_flow"
+    if one.name in _WAITING:
+        return "waiting"
+    if one.name == "math":
+        # The quotient and the rest of integers are not transcendental, but the same unit computes them.
+        return "transcendental"
+    if one.name not in _ALU | _CONVERSIONS:
+        raise ValueError(f"unknown instruction {one.name}")
+    if one.lanes == 1:
+        return "scalar"
+    return "conversion" if one.name in _CONVERSIONS or _converts(one) else "other_alu"
+
+
+def _converts(one: Instruction) -> bool:
+    """Whether it moves between floats and integers, or between floats of two sizes."""
+    types = _TYPE.findall(one.operands.split("{")[0])
+    if one.name != "mov" or len(types) < 2:
+        return False
+    return types[0] != types[1] and bool(_FLOATS & {*types[:2]})
+
+
+def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
+    """How many instructions of each kind; None where the text does not list `total` instructions that are known."""
+    every = list(instructions(assembly))
+    without = [one for one in every if (one.name, one.function) != ("sync", "nop")]
+    listed = next((some for some in (every, without) if len(some) == total), None)
+    try:
+        counts = Counter(kind(one) for one in listed or ())
+    except ValueError:
+        return None
+    return {name: counts[name] for name in KINDS} if listed else None
+
+
+def issue_slots(_: Mapping[str, int], __: str) -> None:
+    """Nothing: the rates depend on the unit's width and on operands, and the driver's model tells of cycles alone."""
+    return
+
+
+def jumps(assembly: str) -> tuple[int, int]:
+    """(branches, loops): conditional jumps ahead, and jumps back."""
+    found = list(instructions(assembly))
+    loops = sum(one.name == "while" for one in found)
+    return sum(one.name == "if" or (one.name == "jmpi" and one.is_predicated) for one in found), loops

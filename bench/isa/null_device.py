@@ -1,0 +1,80 @@
+"""The Intel GPU that is not there: null_i915.c, built once into the user's cache folder.
+
+Its name there says what it was built of and what it holds: another source, or a damaged file, is built again.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from ..output import cache as kept
+
+SOURCE = Path(__file__).with_name("null_i915.c")
+COMPILER = "cc"
+NO_COMPILER = f"no C compiler: Intel's counts need {COMPILER}; install it (Debian: apt-get install gcc libc6-dev)"
+# A build takes a tenth of a second.
+SECONDS = 60.0
+SAID = "NORMALBENCH_NULL_I915"
+
+
+class NullDeviceError(Exception):
+    """It cannot be built; one line. `is_missing` where something is to be installed."""
+
+    def __init__(self, said: str, is_missing: bool = False):
+        super().__init__(said)
+        self.is_missing = is_missing
+
+
+def library() -> Path:
+    """The shared library that stands for an Intel GPU. Raises NullDeviceError."""
+    folder = kept.folder()
+    stem = f"null_i915-{kept.key_of(SOURCE.read_bytes(), platform.machine())[:16]}"
+    sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _name(stem, path))
+    return next(sound, None) or _built(folder, stem)
+
+
+def variables(words: str) -> dict[str, str]:
+    """What has a process find the GPU that the words describe. Raises NullDeviceError."""
+    others = filter(None, [os.environ.get("LD_PRELOAD", "")])
+    return {"LD_PRELOAD": os.pathsep.join([str(library()), *others]), SAID: words}
+
+
+def _name(stem: str, path: Path) -> str:
+    """What a library is called, by what it holds; nothing that is the name of a file where it cannot be read."""
+    try:
+        return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so"
+    except OSError:
+        return ""
+
+
+def _built(folder: Path, stem: str) -> Path:
+    if not shutil.which(COMPILER):
+        raise NullDeviceError(NO_COMPILER, is_missing=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        # Others see a whole file or none: it is moved there once it is complete.
+        with tempfile.TemporaryDirectory(dir=folder) as made:
+            _compile(Path(made) / "null_i915.so")
+            path = folder / _name(stem, Path(made) / "null_i915.so")
+            (Path(made) / "null_i915.so").replace(path)
+            return path
+    except OSError as error:
+        said = f"the null Intel device cannot be written into the cache folder {folder}: {error.strerror or error}"
+        raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
+
+
+def _compile(path: Path) -> None:
+    command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(SOURCE)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {SOURCE.name}") from error
+    if done.returncode or not path.exists():
+        last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
+        said = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.returncode}'}"
+        raise NullDeviceError(f"{said}; the headers of libc may be missing (Debian: apt-get install gcc libc6-dev)")

@@ -1,0 +1,42 @@
+mov(8)          g55<1>F         g2<8,8,1>F                      { align1 WE_all 1Q compacted };
+mov(8)          g56<1>F         g4<8,8,1>F                      { align1 WE_all 1Q compacted };
+mov(8)          g11<1>F         g3<8,8,1>F                      { align1 WE_all 1Q compacted };
+mov(8)          g12<1>F         g5<8,8,1>F                      { align1 WE_all 1Q compacted };
+mov(1)          g57<1>D         1056964608D                     { align1 WE_all 1N };
+sync nop(1)                     null<0,1,0>UB                   { align1 WE_all 1N @2 };
+mad(16)         g18<1>F         g6.3<0,1,0>F    g6.1<0,1,0>F    g11<1,1,1>F { align1 1H };
+mad(16)         g20<1>F         g6.7<0,1,0>F    g6.5<0,1,0>F    g11<1,1,1>F { align1 1H };
+mad(16)         g22<1>F         g8.3<0,1,0>F    g8.1<0,1,0>F    g11<1,1,1>F { align1 1H };
+mad(16)         g24<1>F         g8.7<0,1,0>F    g8.5<0,1,0>F    g11<1,1,1>F { align1 1H };
+mad(16)         g26<1>F         g9.3<0,1,0>F    g9.1<0,1,0>F    g11<1,1,1>F { align1 1H };
+sync nop(1)                     null<0,1,0>UB                   { align1 WE_all 1N @5 };
+mad(16)         g10<1>F         g18<8,8,1>F     g6.0<0,1,0>F    g55<1,1,1>F { align1 1H compacted };
+mad(16)         g12<1>F         g20<8,8,1>F     g6.4<0,1,0>F    g55<1,1,1>F { align1 1H @5 compacted };
+mad(16)         g119<1>F        g22<8,8,1>F     g8.0<0,1,0>F    g55<1,1,1>F { align1 1H @5 compacted };
+mad(16)         g121<1>F        g24<8,8,1>F     g8.4<0,1,0>F    g55<1,1,1>F { align1 1H @5 compacted };
+mad(16)         g123<1>F        g26<8,8,1>F     g9.0<0,1,0>F    g55<1,1,1>F { align1 1H @5 compacted };
+sync nop(1)                     null<0,1,0>UB                   { align1 WE_all 1N @5 };
+mad.sat(16)     g27<1>F         0x3800HF        g57.0<0,1,0>F   g10<1,1,1>F { align1 1H };
+mad.sat(16)     g38<1>F         0x3800HF        g57.0<0,1,0>F   g12<1,1,1>F { align1 1H @5 };
+mul(16)         g29<1>F         g27<8,8,1>F     0x457ff000F  /* 4095F */ { align1 1H @2 };
+mul(16)         g40<1>F         g38<8,8,1>F     0x457ff000F  /* 4095F */ { align1 1H @2 };
+rnde(16)        g31<1>F         g29<8,8,1>F                     { align1 1H @2 compacted };
+rnde(16)        g42<1>F         g40<8,8,1>F                     { align1 1H @2 compacted };
+mov(16)         g33<1>D         g31<8,8,1>F                     { align1 1H @2 compacted };
+mov(16)         g44<1>D         g42<8,8,1>F                     { align1 1H @2 compacted };
+shr(16)         g35<1>UD        g33<8,8,1>UD    0x00000004UD    { align1 1H @2 compacted };
+shl(16)         g37<1>D         g33<8,8,1>D     0x00000004UD    { align1 1H };
+shr(16)         g46<1>UD        g44<8,8,1>UD    0x00000008UD    { align1 1H @3 compacted };
+mov(16)         g52<1>F         g44<32,8,4>UB                   { align1 1H };
+mov(16)         g50<1>F         g35<32,8,4>UB                   { align1 1H @4 };
+or(16)          g48<1>UD        g37<8,8,1>UD    g46<8,8,1>UD    { align1 1H @3 compacted };
+mul(16)         g58<1>F         g52<8,8,1>F     0x3b808081F  /* 0.00392157F */ { align1 1H @3 };
+mul(16)         g54<1>F         g50<8,8,1>F     0x3b808081F  /* 0.00392157F */ { align1 1H @3 };
+mov(16)         g51<1>F         g48<32,8,4>UB                   { align1 1H @3 };
+mul(16)         g56<1>F         g51<8,8,1>F     0x3b808081F  /* 0.00392157F */ { align1 1H @1 };
+sendc(16)       nullUD          g54UD           nullUD          0x10030000                0x00000000
+                            render MsgDesc: RT write SIMD16 Surface = 0 mlen 8 ex_mlen 0 rlen 0 { align1 1H @1 $0 };
+sendc(16)       nullUD          g10UD           nullUD          0x10030001                0x00001000
+                            render MsgDesc: RT write SIMD16 Surface = 1 mlen 8 ex_mlen 0 rlen 0 { align1 1H $1 };
+sendc(16)       nullUD          g119UD          nullUD          0x10031002                0x00002000
+                            render MsgDesc: RT write SIMD16 LastRT Surface = 2 mlen 8 ex_mlen 0 rlen 0 { align1 1H @1 EOT };
