@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
@@ -17,6 +19,7 @@ from .tables import table_files
 from .verify import interface_of
 
 WIDTH = 118
+GUARDED = ("hlsl", "slang", "glsl", "essl", "msl", "c")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +47,17 @@ class Code:
     def text(self, head: Iterable[str]) -> str:
         """The file, under a comment of these paragraphs."""
         mark = LANGUAGES[self.language].mark
-        lines = (line for said in head for line in textwrap.wrap(said, WIDTH, subsequent_indent="  ") or [""])
-        return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines) + f"\n{self.body}"
+        wrapped = (textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""] for said in head)
+        comment = "".join(f"{mark} {line}".rstrip() + "\n" for lines in wrapped for line in lines)
+        return f"{comment}\n{self._guarded}"
+
+    @property
+    def _guarded(self) -> str:
+        """The text, which languages with a preprocessor take once however often it is included."""
+        if self.language not in GUARDED:
+            return self.body
+        guard = f"{identifier(self.prefix).upper()}_INCLUDED"
+        return f"#ifndef {guard}\n#define {guard}\n\n{self.body}\n#endif\n"
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
         """All its files, by name."""
@@ -70,16 +82,26 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         UsageError: the encoding has what cannot be translated.
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
     """
+    if codec.encoding.before:
+        raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
     prefix = prefix or identifier(codec.name)
     try:
         program = program_of(codec, prefix)
         interface = interface_of(codec, prefix, _takes_view(program, prefix))
         writer = LANGUAGES[language].writer
         sizes = {name: (table.shape[1], table.shape[2]) for name, table in interface.tables.items()}
-        body = writer(prefix, sizes).program(program) if writer else numpy_source(codec, prefix)
+        body = writer(prefix, sizes).program(program) if writer else _python(codec, prefix)
     except TranslationError as error:
         raise UsageError(_untranslatable(codec, str(error))) from error
     return Code(codec, language, prefix, body, interface)
+
+
+def _python(codec: Codec, prefix: str) -> str:
+    if codec.encoding.name.partition(":")[0] not in ENCODINGS:
+        raise UsageError(
+            f"{codec.encoding.title}: Python is written of the catalogue's encodings; C is written of yours"
+        )
+    return numpy_source(codec, prefix)
 
 
 def _untranslatable(codec: Codec, said: str) -> str:
@@ -87,7 +109,8 @@ def _untranslatable(codec: Codec, said: str) -> str:
     encoding = codec.encoding
     if encoding.source in (None, encoding.glsl):
         return f"{encoding.glsl}: {said}"
-    return f"{encoding.source}: its translation to GLSL has what is not written in other languages: {said}"
+    what = re.sub(r"^\d+:\d+: ", "", said).replace("is not a type that is known here", "parameters or types")
+    return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"
 
 
 def _takes_view(program: Program, prefix: str) -> bool:

@@ -38,7 +38,7 @@ def header(tables: Mapping[str, np.ndarray]) -> str:
 def _array(name: str, table: np.ndarray) -> str:
     height, width, channels = table.shape
     rows = ("    " + ", ".join(f"{number!s}f" for number in row.ravel()) + "," for row in table)
-    size = f"{height} rows of {width} texels of {channels} numbers"
+    size = f"{height} rows of {width} texels of {channels} {'number' if channels == 1 else 'numbers'}"
     return "\n".join([f"// {size}.", f"static const float {name}[{table.size}] = {{", *rows, "};", ""])
 
 
@@ -56,5 +56,5 @@ def table_files(tables: Mapping[str, np.ndarray], language: str, prefix: str) ->
     if language == "c":
         return {f"{prefix}_tables.h": header(tables).encode()}
     if language == "python":
-        return {f"{prefix}_{name}.npy": npy(table) for name, table in tables.items()}
+        return {f"{name}.npy": npy(table) for name, table in tables.items()}
     return {f"{name}.dds": dds(table) for name, table in tables.items()}

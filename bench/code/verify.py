@@ -72,25 +72,26 @@ class Agreement:
     def says(self) -> str:
         """In words."""
         if not self.differing:
-            codes = f"all {self.count} texels are the catalogue's, bit for bit"
+            codes = f"all {self.count} texels are equal, bit for bit"
         elif self.searches:
-            codes = (
-                f"{self.differing} of {self.count} texels are others, as near to within {self.worse_deg:.1g} degrees"
-            )
+            near = "as near" if self.worse_deg <= SEARCHED_DEG else f"up to {self.worse_deg:.1g} degrees farther off"
+            codes = f"{self.differing} of {self.count} texels differ, {near}: a search finds several codes alike"
         else:
             codes = f"{self.differing} of {self.count} texels differ, by {self.steps} step at most"
         codes += "" if self.are_ties or self.searches else ", which is more than a tie"
         wrong = f"; {self.unpacked} numbers come back otherwise" if self.unpacked else ""
         wrong += f"; {self.targets} texels of the render target differ" if self.targets else ""
         far = f", {self.far} of them next to where the map is singular" if self.far else ""
-        return f"{codes}; decoded normals are within {self.decoded / EPSILON:.3g} x 2^-23{far}{wrong}"
+        decoded = f"within {self.decoded / EPSILON:.3g} x 2^-23" if self.decoded else "equal"
+        return f"{codes}; decoded normals are {decoded}{far}{wrong}"
 
 
 def interface_of(codec: Codec, prefix: str, takes_view: bool) -> Interface:
     """What the functions of a codec's code are called with."""
     encoding = codec.encoding
     size = encoding.components + encoding.sign_bits
-    return Interface(prefix, size, encoding.sign_bits, Channels(codec).words, takes_view, dict(encoding.tables()))
+    tables = {f"{prefix}_{name}": table for name, table in encoding.tables().items()}
+    return Interface(prefix, size, encoding.sign_bits, Channels(codec).words, takes_view, tables)
 
 
 def agreement(codec: Codec, language: str, path: Path, interface: Interface) -> Agreement:

@@ -227,7 +227,7 @@ def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
 def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
     if not path.exists():
-        return _lacking(f"{path} is not there: this encoding is in GLSL only")
+        return _lacking(f"{path} is not there: this encoding has no Python twin")
     try:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader

@@ -1,6 +1,6 @@
-// The two functions that were translated; codes that fill [0, 1] become [-1, 1] here.
 CODE NAME_encode(vec3 n, vec3 view) {
 #if BIASED
+    // the code fills [0, 1]
     return ENCODE_main(n, view) * 2.0 - 1.0;
 #else
     return ENCODE_main(n, view);

@@ -18,10 +18,11 @@ from ..code.run import runner
 from ..code.verify import Agreement, agreement
 from ..codecs.names import codecs_named, fitting
 from ..options.code import CodeOptions
+from ..options.targets import what_is_left
 from ..output.errors import MissingError, UsageError, leave_out, pick, tell
 from ..output.progress import progress
 from ..output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
-from .code_figures import head
+from .code_figures import head, is_catalogues
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -38,8 +39,12 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     _check_prefix(options.prefix)
     languages = pick("language", options.to, {name: name for name in LANGUAGES})
     codecs = _codecs(options)
+    if options.prefix and len(codecs) > 1 and not options.check:
+        raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")
     if options.check:
         return _check(codecs, languages, options, format, output)
+    if output and output.is_file():
+        raise UsageError(f"{output} is a file; code writes into a folder")
     check_is_folder(output, "code writes into")
     if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
         raise UsageError(
@@ -74,8 +79,8 @@ def _codecs(options: CodeOptions) -> list[Codec]:
 def _write(codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
     status = 0
     for codec in codecs:
-        for language in languages:
-            code = _made(codec, language, options.prefix)
+        for code in _all_made([codec], languages, options.prefix):
+            language = code.language
             row = verified(code)
             if row["verdict"] == DIFFERS:
                 status = 1
@@ -83,19 +88,31 @@ def _write(codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptio
                 continue
             if row["verdict"] == NOT_RUN:
                 tell(f"{codec.name} in {language}: {row['says']}")
+            if code.interface.tables and output is None:
+                raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
             _save(code, head(code, _command(codec, language, options.prefix), row["says"]), output)
     return status
 
 
-def _made(codec: Codec, language: str, prefix: str) -> Code:
-    try:
-        return code_of(codec, language, prefix)
-    except ShaderError as error:
-        raise UsageError(str(error)) from error
+def _all_made(codecs: Sequence[Codec], languages: Sequence[str], prefix: str) -> list[Code]:
+    """The code of each codec in each language; what cannot be written is named on standard error.
+
+    Raises:
+        UsageError: nothing can be.
+    """
+    made, complaints = [], []
+    for codec in codecs:
+        for language in languages:
+            try:
+                made.append(code_of(codec, language, prefix))
+            except (UsageError, ShaderError) as error:
+                complaints.append(str(error))
+    return what_is_left(made, complaints)
 
 
 def _command(codec: Codec, language: str, prefix: str) -> str:
-    words = ["normalbench", "code", codec.encoding.name, "--storage", codec.storage.name, "--to", language]
+    name = codec.encoding.name if is_catalogues(codec.encoding) else codec.encoding.citation
+    words = ["normalbench", "code", name, "--storage", codec.storage.name, "--to", language]
     words += ["--rounding", codec.rounding] if codec.rounding != "nearest" else []
     return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])
 
@@ -148,11 +165,11 @@ def _check(
     if output:
         check_writable(output)
     rows: list[Row] = []
-    with progress(len(codecs) * len(languages)) as tick:
-        for codec in codecs:
-            for language in languages:
-                rows.append(verified(_made(codec, language, options.prefix)))
-                tick(f"{codec.name} in {language}")
+    made = _all_made(codecs, languages, options.prefix)
+    with progress(len(made)) as tick:
+        for code in made:
+            rows.append(verified(code))
+            tick(f"{code.codec.name} in {code.language}")
     for line in dict.fromkeys(row["says"] for row in rows if row["verdict"] == NOT_RUN):
         tell(line)
     failed = [row for row in rows if row["verdict"] == DIFFERS]

@@ -7,7 +7,9 @@ from importlib.metadata import version
 from types import MappingProxyType
 from typing import Any
 
+from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
 from ..code.emit import LANGUAGES
 from ..code.files import Code
 from ..normals.normal_sets import NORMAL_SETS
@@ -33,7 +35,7 @@ ADVICE: Mapping[str, str] = MappingProxyType(
         "essl": "For GLSL ES 3.1 and later.",
         "hlsl": "For shader model 5 and later.",
         "slang": "For Slang, which reads HLSL.",
-        "wgsl": "For WebGPU. Give tables a binding that is free.",
+        "wgsl": "For WebGPU.",
         "msl": "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise.",
         "c": "For C99. Compile with -ffp-contract=off: fused products round otherwise.",
         "python": "For NumPy 2 and later. Arrays have shape (..., 3).",
@@ -50,6 +52,13 @@ def head(code: Code, command: str, verified: str) -> list[str]:
         verified: how its results compare with the catalogue's.
     """
     codec, encoding = code.codec, code.codec.encoding
+    compared = (
+        verified.replace("texels are equal", "texels are the catalogue's") if is_catalogues(encoding) else verified
+    )
+    tables = [
+        f"Table: {name}, {table.shape[1]} x {table.shape[0]} texels of {table.shape[2]} floats of 32 bits."
+        for name, table in code.interface.tables.items()
+    ]
     names = ", ".join(f"{code.prefix}_{name}" for name in ("encode", "pack", "unpack", "decode"))
     return [
         f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target {code.prefix}_to_target and "
@@ -59,10 +68,25 @@ def head(code: Code, command: str, verified: str) -> list[str]:
         f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. "
         f"Normals: {HOLDS[encoding.domain]}.",
         *figures(codec),
-        f"Verified: {verified}.",
+        *tables,
+        f"Verified: {compared}.",
         f"Made by normalbench {version('normalbench')}: {command}",
-        "MIT License, Copyright (c) 2026 The normalbench authors.",
+        _licence(codec),
     ]
+
+
+def is_catalogues(encoding: Encoding) -> bool:
+    """Whether an encoding is the catalogue's, or a variant of one."""
+    return encoding.name.partition(":")[0] in ENCODINGS
+
+
+def _licence(codec: Codec) -> str:
+    licence = "MIT License, Copyright (c) 2026 The normalbench authors"
+    return (
+        f"{licence}."
+        if is_catalogues(codec.encoding)
+        else f"Encode and decode are yours. The other functions: {licence}."
+    )
 
 
 def figures(codec: Codec) -> list[str]:

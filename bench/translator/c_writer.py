@@ -70,7 +70,7 @@ class CWriter(Writer):
     has_tables = False
     reserved = words(
         "auto char double enum extern inline long register restrict short signed sizeof static struct switch typedef "
-        "union unsigned void volatile half y0 y1 yn j0 j1 jn"
+        "union unsigned void volatile half small near far y0 y1 yn j0 j1 jn"
     )
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
@@ -87,7 +87,7 @@ class CWriter(Writer):
         used = [kind for kind in STRUCTS if kind in kinds]
         includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>", "#include <string.h>"]
         includes += [f'#include "{self._prefix}_tables.h"'] if program.tables else []
-        contract = "#pragma STDC FP_CONTRACT OFF"
+        contract = "#ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif"
         calls = {(node.name, scalar_of(node.kind)) for node in nodes if isinstance(node, Call) and not node.is_own}
         return ["\n".join(includes), contract, self._structs(used, "mat3" in kinds), *self._helpers(calls)]
 

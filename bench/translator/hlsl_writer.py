@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from .tree import Binary, Call, Construct, Declare, Elements, Literal, Name, Table, size_of
+from .tree import Binary, Call, Choice, Construct, Declare, Elements, Literal, Name, Table, size_of
 from .writer import PRIMARY, Writer, words
 
 KINDS: Mapping[str, str] = MappingProxyType(
@@ -36,8 +36,13 @@ class HlslWriter(Writer):
         }
     )
     reserved = words(
-        "half sample point line triangle texture matrix vector linear centroid in out inout shared pass technique "
-        "sampler buffer register export interface class string dword fixed this"
+        "asm auto bool2 bool3 bool4 buffer catch centroid char class column_major const_cast default delete "
+        "double double2 double3 double4 dword enum explicit export fixed float2 float2x2 float3 float3x3 float4 "
+        "float4x4 friend goto half half2 half3 half4 in inout int2 int3 int4 interface line linear long matrix "
+        "min16float mutable namespace new operator out packoffset pass point precise private protected public "
+        "register row_major sample sampler shared short signed sizeof snorm string switch technique template "
+        "texture this throw triangle try typedef typename uint2 uint3 uint4 union unorm unsigned using vector "
+        "virtual"
     )
 
     def _table(self, table: Table) -> str:
@@ -57,6 +62,18 @@ class HlslWriter(Writer):
         if value.operator == "*" and "mat" in value.left.kind + value.right.kind:
             return f"mul({self._text(value.right)}, {self._text(value.left)})", PRIMARY
         return super()._binary(value)
+
+    def _choice(self, value: Choice) -> tuple[str, int]:
+        """Of vectors one component after the other: HLSL 2021 has no `?:` of vectors, earlier ones have no select."""
+        size = size_of(value.condition.kind)
+        if size == 1:
+            return super()._choice(value)
+        parts = (value.condition, value.chosen, value.other)
+        each = (
+            "{} ? {} : {}".format(*(f"{self._text(part, PRIMARY)}.{field}" for part in parts))
+            for field in "xyzw"[:size]
+        )
+        return f"{self._kind(value.kind)}({', '.join(each)})", PRIMARY
 
     def _construct(self, value: Construct) -> str:
         size, given = size_of(value.kind), value.arguments

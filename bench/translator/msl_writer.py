@@ -26,7 +26,13 @@ class MslWriter(Writer):
             "uintBitsToFloat": "as_type<float>",
         }
     )
-    reserved = words("half sample vertex fragment kernel device constant thread texture sampler access")
+    reserved = words(
+        "half sample vertex fragment kernel device constant thread texture sampler access bool2 bool3 bool4 "
+        "int2 int3 int4 uint2 uint3 uint4 float2 float3 float4 half2 half3 half4 "
+        "short2 ushort2 char uchar short ushort long ulong "
+        "typename template operator namespace using unsigned signed asm auto catch class default delete enum explicit "
+        "friend goto mutable new private protected public sizeof switch throw try typedef union virtual this matrix"
+    )
     float_suffix = "f"
     head = "#include <metal_stdlib>\nusing namespace metal;"
     has_tables = False

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from .tree import Call, Declare, Function, Name, Program, inside, plain_name, size_of
+from .tree import Call, Declare, Function, Name, Program, Table, inside, plain_name, size_of
 
 # A parameter that functions have for others' sake.
 VIEW = "view"
+# What an encoding's own functions are called where others go around them: no reader takes them for another pair.
+INNER = {"encode": "own_code", "decode": "own_normal"}
 # Whoever calls one of them with a view calls the other with it.
 PAIR = ("encode", "decode")
 
@@ -30,6 +32,8 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     constants = _used_constants(program.constants, used)
     _rename(functions, {keys[name]: f"{prefix}_{called}" for name, called in roots.items()}, prefix, own)
     tables = [table for table in program.tables if table.name in used]
+    _replace(functions, {table.name: f"{prefix}_{table.name}" for table in tables})
+    tables = [Table(f"{prefix}_{table.name}") for table in tables]
     _rename_constants(constants, functions, prefix, own)
     return Program(constants, tables, functions)
 
@@ -88,7 +92,7 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
             short = plain_name(function)
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
             mine = re.sub(f"^{own}_(?=.)", "", short)
-            mine = f"{mine}_own" if f"{prefix}_{mine}" in names.values() else mine
+            mine = INNER.get(mine, mine) if f"{prefix}_{mine}" in names.values() else mine
             names[function.name] = f"{prefix}_{mine}{size or ''}"
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
@@ -110,12 +114,16 @@ def _rename_constants(constants: list[Declare], functions: list[Function], prefi
     short = {constant.name: _without(own, constant.name) for constant in constants}
     taken = list(short.values())
     names = {name: f"{prefix.upper()}_{new if taken.count(new) == 1 else name}" for name, new in short.items()}
-    for function in functions:
-        for node in inside(function.body):
-            if isinstance(node, Name) and node.name in names:
-                node.name = names[node.name]
+    _replace(functions, names)
     for constant in constants:
         for node in inside(constant.value):
             if isinstance(node, Name) and node.name in names:
                 node.name = names[node.name]
         constant.name = names[constant.name]
+
+
+def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
+    for function in functions:
+        for node in inside(function.body):
+            if isinstance(node, Name) and node.name in names:
+                node.name = names[node.name]

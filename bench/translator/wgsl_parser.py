@@ -8,6 +8,7 @@ from types import MappingProxyType
 from .parser import Parser
 from .tokens import END, Token, tokens, with_a_point
 from .tree import (
+    Binary,
     Call,
     Construct,
     Declare,
@@ -18,10 +19,12 @@ from .tree import (
     If,
     Leave,
     Literal,
+    Name,
     Parameter,
     Program,
     Return,
     Statement,
+    Unary,
     While,
     inside,
     scalar_of,
@@ -51,6 +54,7 @@ BITS: Mapping[tuple[str, str], str] = MappingProxyType(
         ("uint", "float"): "uintBitsToFloat",
     }
 )
+SCALAR_NAMES = {"float": "f32", "int": "i32", "uint": "u32", "bool": "bool"}
 ONE, ZERO = Literal("float", "1.0"), Literal("float", "0.0")
 SKIPPED = frozenset(("alias", "enable", "requires", "diagnostic", "const_assert"))
 
@@ -67,6 +71,7 @@ class WgslParser(Parser):
         super().__init__(given)
         self._made = Program([], [], [])
         self._aliases: dict[str, str] = {}
+        self._abstract: set[str] = set()
 
     def program(self) -> Program:
         """All of it; functions that call later ones come after these."""
@@ -229,6 +234,10 @@ class WgslParser(Parser):
             raise self._error(f"{name} has neither a type nor a value")
         if value is not None and kind and size_of(kind) == 1 and kind in SCALARS.values():
             value = self._converted(value, kind)
+        if value is not None and kind and scalar_of(kind) != scalar_of(value.kind):
+            value = self._converted(value, scalar_of(kind))
+        if is_constant and kind is None:
+            self._abstract.add(name)
         kind = kind or (value.kind if value else "")
         self._declared(name, kind)
         return Declare(kind, name, value, is_constant)
@@ -294,6 +303,16 @@ class WgslParser(Parser):
         if name == "saturate" and len(arguments) == 1:
             return self._called("clamp", [*arguments, ZERO, ONE])
         return self._called(NAMES.get(name, name), arguments, token.place)
+
+    def _converted(self, value: Expression, scalar: str) -> Expression:
+        """WGSL converts nothing but numbers that are written out, and constants without a type."""
+        if scalar_of(value.kind) != scalar and not self._is_abstract(value):
+            raise self._error(f"{value.kind} where {scalar} is expected; WGSL converts by {SCALAR_NAMES[scalar]}()")
+        return super()._converted(value, scalar)
+
+    def _is_abstract(self, value: Expression) -> bool:
+        leaves = [node for node in inside(value) if not isinstance(node, Binary | Unary)]
+        return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
     def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
         if mark == "%" and "float" in (scalar_of(left.kind), scalar_of(right.kind)):

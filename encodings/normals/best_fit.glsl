@@ -9,7 +9,7 @@ vec3 best_fit_sorted(vec3 a) {
 }
 
 ivec2 best_fit_texel(vec3 a) {
-    // i = floor(y SIZE / z), j = floor(x SIZE / y), in whole numbers: GLSL's division of floats is not exact
+    // i = floor(y SIZE / z), j = floor(x SIZE / y), in whole numbers: a shader's division of floats is not exact
     uvec3 q = uvec3(a * BEST_FIT_FIXED);
     uvec2 ij = q.yx * uint(BEST_FIT_SIZE) / uvec2(q.z, max(q.y, 1u));
     return ivec2(min(ij, uint(BEST_FIT_SIZE - 1)));

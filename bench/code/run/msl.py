@@ -81,7 +81,7 @@ def _bound(library: ctypes.CDLL, tables: Mapping[str, np.ndarray]) -> Iterator[n
 def how() -> str:
     """clang, and that it is not Metal. Raises MissingError."""
     checked = f"syntax by {first_line(METAL, '--version')}, " if shutil.which(METAL) else ""
-    return f"{checked}run by {first_line(compiler(), '--version')}, not by Metal"
+    return f"{checked}{first_line(compiler(), '--version')}, not by Metal"
 
 
 RUNNER = Runner(prepared, how)

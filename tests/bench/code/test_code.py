@@ -3,6 +3,7 @@
 import json
 import re
 import struct
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from normalbench.bench.code.tables import dds, header
 from normalbench.bench.code.verify import agreement
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.codecs.user_encodings import encodings_named
+from normalbench.bench.suite.code_command import SHIPPED
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
@@ -71,14 +73,14 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
-    """As above, of every storage that fits. Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions;
-    test_numpy_source.py has Python's."""
-    languages = ("hlsl", "essl", "wgsl", "msl", "c")
-    for language in languages:
+    """As above, of every storage that fits. Metal and GLSL ES, which start a process each, have those that people ship;
+    Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions; test_numpy_source.py has Python's."""
+    quick, slow = ("hlsl", "wgsl", "c"), ("essl", "msl")
+    for language in (*quick, *slow):
         require_runner(language)
     wrong = []
     for codec in (codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits):
-        for language in languages:
+        for language in (*quick, *slow) if codec.storage.name in SHIPPED.split(",") else quick:
             code = code_of(codec, language)
             found = agreement(codec, language, written(tmp_path, code), code.interface)
             wrong += [] if found.holds else [f"{codec.name} in {language}: {found.says}"]
@@ -241,9 +243,37 @@ def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
     """The header of C and the texture of shaders lie beside them."""
     status, _, err = run("code", "spherical_lut", "--storage", "rg8", "--to", "hlsl,c", "-o", str(tmp_path / "made"))
     assert status == 0, err
+    assert "Table: spherical_lut_rg8_spherical_lut_xy, 256 x 256 texels of 2 floats" in _unwrapped(tmp_path / "made")
     names = {path.name for path in (tmp_path / "made").iterdir()}
-    tables = {"spherical_lut_angle.dds", "spherical_lut_xy.dds", "spherical_lut_rg8_tables.h"}
+    tables = {f"spherical_lut_rg8_{name}" for name in ("spherical_lut_angle.dds", "spherical_lut_xy.dds", "tables.h")}
     assert names == {"spherical_lut_rg8.hlsl", "spherical_lut_rg8.h", *tables}
+
+
+def _unwrapped(folder: Path) -> str:
+    return " ".join((folder / "spherical_lut_rg8.hlsl").read_text().replace("//", "").split())
+
+
+def test_code_of_a_user_is_the_users(run, tmp_path):
+    """Its head names no licence for encode and decode, and the command that was typed; Python is left out in a line."""
+    (tmp_path / "many.glsl").write_text(MANY_WORDS)
+    path, made = str(tmp_path / "many.glsl"), tmp_path / "made"
+    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl,python", "-o", str(made))
+    assert status == 0 and "left out: " in err and "Python is written of the catalogue's encodings" in err
+    text = " ".join((made / "many_rg8.glsl").read_text().replace("//", "").split())
+    assert "Encode and decode are yours." in text and f"normalbench code {path}" in text
+    assert "the catalogue's" not in text
+
+
+def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
+    """All warnings are errors; two codecs of one encoding stand next to each other."""
+    require_runner("c")
+    for storage in ("rgba8", "rgba16f"):
+        written(tmp_path, code_of(codec_of(f"xyz_renormalised/{storage}"), "c"))
+    lines = [f'#include "xyz_renormalised_{storage}.h"' for storage in ("rgba8", "rgba16f", "rgba8")]
+    (tmp_path / "both.c").write_text("\n".join([*lines, "int main(void) { return 0; }", ""]))
+    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-c", "both.c", "-o", "both.o"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert not done.returncode, done.stderr
 
 
 @pytest.mark.usefixtures("gl")
@@ -267,6 +297,8 @@ def test_check_says_of_every_language_how_many_texels_differ(run):
         (["octahedral/rgb8_12_12+xyz"], "chain"),
         (["octahedral:arithmetic=half"], "half arithmetic"),
         (["xyz", "--storage", "rg8"], "3 components"),
+        (["spherical_lut", "--storage", "rg8"], "look-up tables beside its code"),
+        (["xyz,octahedral", "--prefix", "same", "-o", "made"], "would collide"),
         (["xyz", "--prefix", "1x"], "a letter first"),
         (["xyz", "--prefix", "a b"], "single underscores"),
         (["xyz", "--prefix", "a__b"], "single underscores"),

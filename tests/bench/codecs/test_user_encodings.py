@@ -52,7 +52,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     jax_row, gl_row = json.loads(out)
-    assert status == 0 and "in GLSL only" in jax_row["skipped"] and "mine.py is not there" in err
+    assert status == 0 and "has no Python twin" in jax_row["skipped"] and "mine.py is not there" in err
     (tmp_path / "mine.py").write_text(TWIN)
     _, out, err = run("quality", "--encoding", path, *QUICK)
     by_jax, by_gl = json.loads(out)
