@@ -18,8 +18,8 @@ import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
-from normalbench.bench.isa.families import ANV, HASVK, RADV
 from normalbench.bench.metrics import published
+from normalbench.bench.options.gpu_families import ANV, HASVK, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]

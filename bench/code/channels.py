@@ -113,6 +113,7 @@ class Channels:
 
     @cached_property
     def channels(self) -> list[Channel]:
+        """Where each number of the code is kept."""
         storage, count = self.codec.storage, self.codec.encoding.components
         return [
             Channel(

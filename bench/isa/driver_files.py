@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from ..machine import children
-from .families import RADV, TITLES
+from ..options.gpu_families import RADV, TITLES
 
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.

@@ -18,11 +18,11 @@ from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
 from ..machine.cores import cores
+from ..options.gpu_families import FAMILIES, RADV, TITLES
 from ..output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
 from .driver_files import driver_file, no_driver
-from .families import FAMILIES, RADV, TITLES
 from .null_device import NullDeviceError
 from .process import Driver, child
 

@@ -13,8 +13,8 @@ from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
-from ..isa.families import ANV, HASVK, RADV
 from ..languages import tools
+from ..options.gpu_families import ANV, HASVK, RADV
 from ..output.errors import MissingError
 
 ROUNDS = {

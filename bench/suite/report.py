@@ -23,7 +23,7 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
-from ..isa.families import FAMILIES
+from ..options.gpu_families import FAMILIES
 from ..output import cache
 from ..output.errors import UsageError, tell
 from ..output.sources import sources

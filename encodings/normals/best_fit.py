@@ -112,7 +112,7 @@ def _sorted(a: Vec3) -> Vec3:
 
 
 def _texel(a: Vec3):
-    # i = floor(y SIZE / z), j = floor(x SIZE / y), in whole numbers: GLSL's division of floats is not exact
+    # i = floor(y SIZE / z), j = floor(x SIZE / y), in whole numbers: a shader's division of floats is not exact
     x, y, z = ((c * FIXED).astype(jnp.uint32) for c in a)
     i, j = y * SIZE // z, x * SIZE // maximum(y, 1)
     return minimum(j, SIZE - 1), minimum(i, SIZE - 1)

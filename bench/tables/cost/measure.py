@@ -14,9 +14,9 @@ from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
 from ...isa import disassembly, intel_disassembly, isa, spirv
-from ...isa.families import FAMILIES
 from ...isa.isa import Failure, Job, Kernel, Outcome
 from ...machine.cores import on_all_cores
+from ...options.gpu_families import FAMILIES
 from ...output.errors import MissingError
 from .table import TABLE
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from ...isa.families import CHOICES, titled
+from ...options.gpu_families import CHOICES, titled
 from ...options.option import Encodings, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..quality.table import COMMON

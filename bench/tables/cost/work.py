@@ -18,7 +18,8 @@ from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.user_encodings import encodings_named
-from ...isa import families, isa, spirv
+from ...isa import isa, spirv
+from ...options import gpu_families as families
 from ...options import listing
 from ...options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...output.errors import MissingError, UsageError, pick

@@ -14,11 +14,11 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...codecs.names import check_twin, codecs_named
-from ...isa.families import FAMILIES
 from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
+from ...options.gpu_families import FAMILIES
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...output.writing import check_folder

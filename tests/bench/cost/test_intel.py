@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench.isa import families, intel_disassembly, isa, null_device
+from normalbench.bench.isa import intel_disassembly, isa, null_device
 from normalbench.bench.isa import process as isa_process
-from normalbench.bench.isa.families import CHOICES, FAMILIES
 from normalbench.bench.isa.isa import Compiled, Kernel
+from normalbench.bench.options import gpu_families as families
+from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.results.machine import require_intel
 from normalbench.bench.suite import report

@@ -2,7 +2,7 @@
 
 import pytest
 
-from normalbench.bench.isa.families import CHOICES
+from normalbench.bench.options.gpu_families import CHOICES
 from normalbench.bench.output.errors import UsageError, pick
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
