@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
 from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
@@ -96,8 +97,13 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
     return Code(codec, language, prefix, body, interface)
 
 
+def is_catalogues(encoding: Encoding) -> bool:
+    """Whether an encoding is the catalogue's, or a variant of one."""
+    return encoding.name.partition(":")[0] in ENCODINGS
+
+
 def _python(codec: Codec, prefix: str) -> str:
-    if codec.encoding.name.partition(":")[0] not in ENCODINGS:
+    if not is_catalogues(codec.encoding):
         raise UsageError(
             f"{codec.encoding.title}: Python is written of the catalogue's encodings; C is written of yours"
         )

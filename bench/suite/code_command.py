@@ -13,7 +13,7 @@ from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..code.emit import LANGUAGES
-from ..code.files import Code, code_of, file_name
+from ..code.files import Code, code_of, file_name, is_catalogues
 from ..code.run import runner
 from ..code.verify import Agreement, agreement
 from ..codecs.names import codecs_named, fitting
@@ -22,7 +22,7 @@ from ..options.targets import what_is_left
 from ..output.errors import MissingError, UsageError, leave_out, pick, tell
 from ..output.progress import progress
 from ..output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
-from .code_figures import head, is_catalogues
+from .code_figures import head
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"

@@ -7,11 +7,9 @@ from importlib.metadata import version
 from types import MappingProxyType
 from typing import Any
 
-from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.encoding import Encoding
 from ..code.emit import LANGUAGES
-from ..code.files import Code
+from ..code.files import Code, is_catalogues
 from ..normals.normal_sets import NORMAL_SETS
 from ..options.counts import DEFAULT_COUNT
 from ..tables.cost import measure as cost
@@ -73,11 +71,6 @@ def head(code: Code, command: str, verified: str) -> list[str]:
         f"Made by normalbench {version('normalbench')}: {command}",
         _licence(codec),
     ]
-
-
-def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one."""
-    return encoding.name.partition(":")[0] in ENCODINGS
 
 
 def _licence(codec: Codec) -> str:

@@ -152,13 +152,6 @@ class CWriter(Writer):
                 return self._block(f"while ({self._text(condition)})", body, indent)
         return f"{indent}{self._plain(statement)};{behind}\n"
 
-    def _if(self, statement: If, indent: str) -> str:
-        condition = self._text(statement.condition)
-        text = self._block(f"if ({condition})", statement.chosen, indent)
-        if not statement.other:
-            return text
-        return text.rstrip("\n") + self._block(" else", statement.other, indent).removeprefix(indent)
-
     def _plain(self, statement: Statement) -> str:
         match statement:
             case Assign(target, mark, value) if size_of(target.kind) > 1:

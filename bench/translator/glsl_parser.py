@@ -132,15 +132,6 @@ class GlslParser(Parser):
 
     # Statements.
 
-    def _block(self) -> list[Statement]:
-        self._take("{")
-        self._scopes.append({})
-        found: list[Statement] = []
-        while not self._skip("}"):
-            found += self._deeper(self._statement)
-        self._scopes.pop()
-        return found
-
     def _body(self) -> list[Statement]:
         if self._next.text == "{":
             return self._block()

@@ -318,6 +318,19 @@ class Parser:
 
     # Statements.
 
+    def _statement(self) -> list[Statement]:
+        raise NotImplementedError
+
+    def _block(self) -> list[Statement]:
+        """Statements between braces, in a scope of their own."""
+        self._take("{")
+        self._scopes.append({})
+        found: list[Statement] = []
+        while not self._skip("}"):
+            found += self._deeper(self._statement)
+        self._scopes.pop()
+        return found
+
     def _about(self, statement: Statement, first: Token) -> Statement:
         """A statement with the comments around its tokens, the last of which was just taken."""
         statement.above = [*first.above, *statement.above]

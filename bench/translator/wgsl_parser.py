@@ -163,15 +163,6 @@ class WgslParser(Parser):
 
     # Statements.
 
-    def _block(self) -> list[Statement]:
-        self._take("{")
-        self._scopes.append({})
-        found: list[Statement] = []
-        while not self._skip("}"):
-            found += self._deeper(self._statement)
-        self._scopes.pop()
-        return found
-
     def _statement(self) -> list[Statement]:
         first = self._next
         if self._skip(";"):
