@@ -191,7 +191,7 @@ def gathered(folder: Path, done: Done) -> Found:
         remarks.append(f"This version does not know these tables, which are in the run's folder: {', '.join(unknown)}.")
     if facts.get("sources") != sources():
         remarks.append("Another version of the program measured this run: what columns mean may have changed since.")
-    quality = tables.get("quality", [])
+    quality, family = tables.get("quality", []), usual_family(tables)
     found = Found(
         name=str(plain_text(folder.resolve().name)),
         facts=facts,
@@ -202,8 +202,9 @@ def gathered(folder: Path, done: Done) -> Found:
         subjects=list(_subjects(folder, tables, remarks)),
         maps=list(_maps(folder / MAPS, quality)),
         fronts=list(_fronts(tables, remarks)),
-        listings=_listings(folder / LISTINGS, tables.get("cost", [])),
-        order=_order(folder / LISTINGS, tables.get("cost", [])),
+        listings=_listings(folder / LISTINGS, family),
+        order=_order(folder / LISTINGS, family, tables.get("cost", [])),
+        family=family,
         remarks=remarks,
     )
     asked = _asked(facts)
@@ -315,42 +316,57 @@ def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
-    """Instructions of each vendor's last GPU family against errors of normals, of the first set, and of images; which
-    codecs have no place among them is added to the remarks."""
-    known = [row for row in tables.get("cost", ()) if row.get("stage") == STAGE and is_number(row.get("instructions"))]
+    """Instructions of each GPU family against errors of normals, of the first set, and of images; which codecs have no
+    place among them is added to the remarks."""
+    known = _counted(tables)
+    costs = {
+        family: drawings.for_drawing([row for row in known if row["family"] == family])
+        for family in dict.fromkeys(row["family"] for row in known)
+    }
     lost: dict[str, dict[str, None]] = {}
-    for family in _last_of_each_vendor(known):
-        costs = drawings.for_drawing([row for row in known if str(row.get("family")) == family])
-        yield from _fronts_on(family, costs, tables, lost)
-    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
-
-
-def _last_of_each_vendor(costs: Sequence[Row]) -> list[str]:
-    """The last GPU family of the rows of each vendor: two vendors' counts are not drawn in one chart."""
-    found = dict.fromkeys(str(row.get("family")) for row in costs)
-    return list({FAMILIES[name].vendor if name in FAMILIES else "": name for name in found}.values())
-
-
-def _fronts_on(
-    family: str, costs: Sequence[Row], tables: Mapping[str, Sequence[Row]], lost: dict[str, dict[str, None]]
-) -> Iterator[Front]:
-    """Instructions on one GPU family against errors; `lost` is told which codecs have no place, by the reason."""
     for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
         rows = [
             row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
         ]
         where = str(rows[0].get(by)) if rows else ""
         chosen = [row for row in rows if str(row.get(by)) == where]
-        errors = {codec: row[LEADING] for row in chosen if (codec := _codec(row))}
         for row in chosen if costs else ():
             if not _codec(row):
                 lost.setdefault("it is not of the catalogue", {})[CodecKey.of(row).label] = None
-        points = {o: list(_points(costs, o, errors, lost)) for o in OPERATIONS} if costs else {}
-        said = f"instructions for {family}, fragment shaders"
-        unit = "instructions to {}, with its storage's"
-        panels = [Panel(f"{o}: {said}", unit.format(o), part) for o, part in points.items() if part]
+        errors = {codec: row[LEADING] for row in chosen if (codec := _codec(row))}
+        panels = list(_panels(costs, errors, usual_family(tables), lost))
         if panels:
-            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels, family)
+            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
+    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
+    """The rows of fragment shaders that have instructions."""
+    rows = tables.get("cost", ())
+    return [r for r in rows if r.get("stage") == STAGE and r.get("family") and is_number(r.get("instructions"))]
+
+
+def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
+    """The GPU family that the page speaks of: the last of the first vendor; empty where nothing was counted."""
+    families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables)))
+    vendor_of = {name: FAMILIES[name].vendor if name in FAMILIES else "" for name in families}
+    return [name for name in families if vendor_of[name] == vendor_of[families[0]]][-1] if families else ""
+
+
+def _panels(
+    costs: Mapping[str, Sequence[Row]], errors: Mapping[Codec, float], usual: str, lost: dict[str, dict[str, None]]
+) -> Iterator[Panel]:
+    """Instructions on each GPU family, to encode and to decode; `lost` is told which codecs have no place, by the
+    reason."""
+    for family, rows in costs.items():
+        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else drawings.as_text(family)
+        for operation in OPERATIONS:
+            points = list(_points(rows, operation, errors, lost))
+            if points:
+                title = f"{operation}: instructions for {machine}, fragment shaders"
+                unit = f"instructions to {operation}, with its storage's"
+                about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
+                yield Panel(title, unit, points, **about)
 
 
 def _points(
@@ -374,16 +390,15 @@ def _codec(row: Row) -> Codec | None:
     return Codec(encoding, storage, str(row.get("rounding"))) if encoding and storage else None
 
 
-def _last_family(folder: Path, rows: Sequence[Row]) -> tuple[str, Mapping[str, Path]]:
-    """The last GPU family of the rows, and the files that hold its kernels, by name."""
-    families = [str(row["family"]) for row in rows if row.get("family")]
+def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
+    """The files that hold a GPU family's kernels, by name."""
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
-    return (families[-1], files_of(known[families[-1]])) if families and families[-1] in known else ("", {})
+    return files_of(known[family]) if family in known else {}
 
 
-def _order(folder: Path, rows: Sequence[Row]) -> list[str]:
-    """Where the last GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
-    family, there = _last_family(folder, rows)
+def _order(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
+    """Where a GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
+    there = _kernels(folder, family)
     try:
         chosen = [row for row in rows if (row["family"], row["stage"]) == (family, STAGE) and row["encoding"]]
         paths = [(row, there.get(listing(row, "")[0].name)) for row in chosen]
@@ -393,11 +408,10 @@ def _order(folder: Path, rows: Sequence[Row]) -> list[str]:
         return []
 
 
-def _listings(folder: Path, rows: Sequence[Row]) -> dict[str, str]:
-    """The last GPU family's kernels, as far as a page holds them."""
-    family, there = _last_family(folder, rows)
+def _listings(folder: Path, family: str) -> dict[str, str]:
+    """A GPU family's kernels, as far as a page holds them."""
     listed, size = {}, 0
-    for name, path in sorted(there.items()):
+    for name, path in sorted(_kernels(folder, family).items()):
         if not name.startswith(STAGE):
             continue
         text = path.read_text(encoding="utf-8", errors="replace")

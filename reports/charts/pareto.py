@@ -13,7 +13,11 @@ from ..ties import TIE_DB, TIE_SHARE
 from .plots import COLOURS, MARKERS, drawn_off_screen
 
 # Where a label may stand around its point, the nearest first: in points, at so many angles.
-DISTANCES, ANGLES = (7, 12, 18, 26, 36, 48, 62), 16
+DISTANCES, ANGLES = (7, 12, 18, 26, 36, 48, 62, 78, 96, 116), 24
+# Where instructions are marked on their axis, which is logarithmic beyond the first few.
+TICKS, LINEAR_TO = (0, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000), 8
+# A figure of more panels nobody reads.
+MOST_PANELS = 12
 GREY = "grey: another is no dearer, no worse and takes no more bits"
 
 
@@ -41,11 +45,24 @@ class Point:
 
 @dataclass(frozen=True)
 class Panel:
-    """A title, what the cost is, and points."""
+    """Points of one kind and machine.
+
+    Attributes:
+        title: what stands above it.
+        unit: what the cost is.
+        points: one at least.
+        kind, machine: what the costs are of, and on what; an interactive chart has a switch between machines.
+        is_counted: whether the cost is a count, whose axis is logarithmic beyond the first few.
+        is_usual: whether a switch shows it first.
+    """
 
     title: str
     unit: str
     points: Sequence[Point]
+    kind: str = ""
+    machine: str = ""
+    is_counted: bool = False
+    is_usual: bool = True
 
 
 @dataclass(frozen=True)
@@ -65,6 +82,10 @@ class Error:
     def loss(self, error: float) -> float:
         """Less is better, and `step` is no difference."""
         return -error if self.more_is_better else math.log(error)
+
+    def of_loss(self, loss: float) -> float:
+        """The error of a loss."""
+        return -loss if self.more_is_better else math.exp(loss)
 
     @property
     def step(self) -> float:
@@ -166,6 +187,12 @@ def _draw(axis: Any, panel: Panel, error: Error, styles: dict[int, dict[str, str
     axis.set_title(panel.title, size=9)
     if not error.more_is_better:
         axis.set_yscale("log")
+    if panel.is_counted:
+        axis.set_xscale("symlog", linthresh=LINEAR_TO)
+        most = max(point.cost for point in panel.points)
+        ticks = [tick for tick in TICKS if tick <= 1.3 * most]
+        axis.set_xticks(ticks, list(map(str, ticks)), minor=False)
+        axis.set_xticks([], minor=True)
     axis.grid(alpha=0.3)
 
 

@@ -1,4 +1,4 @@
-"""Interactive charts as Vega-Lite specifications; `charts.py`, `pareto.py` and `plots.py` draw the same as files.
+"""Interactive charts as Vega-Lite specifications; `charts.py` and `plots.py` draw the same as files.
 
 A row of data that has a codec names it in `codec`, as tables and pictures do. Every specification has a parameter
 `picked`, the codec that the page highlights, empty for none. Colours are page.css's, so that they follow its theme.
@@ -13,7 +13,6 @@ from typing import Any
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
 from .charts import LEAST_DEG, MIX_RANGE, Row, bins, frame_label, frame_total, mix_cells, passes_of, steps, vector_lines
-from .pareto import Error, Panel, Point, pareto_front
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
@@ -50,14 +49,14 @@ def if_lit(lit: float, other: float) -> Spec:
     return {"condition": {"test": IS_LIT, "value": lit}, "value": other}
 
 
-def _by_bits(rows: Sequence[Row]) -> Spec:
+def by_bits(rows: Sequence[Row]) -> Spec:
     """Colour by the number of bits."""
     all_bits = sorted({row["bits"] for row in rows})
     scale = {"domain": all_bits, "range": [PALETTE[at % len(PALETTE)] for at in range(len(all_bits))]}
     return {"field": "bits", "type": "nominal", "scale": scale, "title": "bits"}
 
 
-def _shape_by_bits(rows: Sequence[Row]) -> Spec:
+def shape_by_bits(rows: Sequence[Row]) -> Spec:
     """A shape as well, for those who do not see all colours."""
     scale = {"domain": sorted({row["bits"] for row in rows}), "range": SHAPES}
     return {"field": "bits", "type": "nominal", "scale": scale, "title": "bits"}
@@ -87,7 +86,7 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
         "title": "angle, degrees",
     }
     y = {"field": "y", "type": "quantitative", "title": "density, % of normals per octave"}
-    encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "line"}, "color": _by_bits(points)}
+    encoding = {"x": x | {"axis": {"format": "~g"}}, "y": y, "detail": {"field": "line"}, "color": by_bits(points)}
     tooltip = tips(codec="codec", bits="bits", mean="mean, degrees", largest="largest, degrees")
     layers = [
         _line(interpolate="step-after") | {"encoding": {"opacity": if_lit(1, 0.12), "strokeWidth": if_lit(1.6, 1)}},
@@ -116,7 +115,7 @@ def rounded(value: Any) -> float | None:
     return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
 
 
-def _title(text: str) -> Spec:
+def titled(text: str) -> Spec:
     return {"text": text, "color": MUTED, "fontWeight": "normal", "anchor": "start"}
 
 
@@ -212,42 +211,6 @@ def mix_specs(rows: Sequence[Row]) -> list[Spec]:
     return [spec(found, said, encoding={"x": x, "y": y}, layer=layers, height=24 * len(y["sort"]))]
 
 
-def pareto_specs(panels: Sequence[Panel], error: Error) -> list[Spec]:
-    """Cost against error, a chart for each panel: what no other codec beats is named and joined by steps."""
-    return [_pareto(panel, error) for panel in panels]
-
-
-def _pareto(panel: Panel, error: Error) -> Spec:
-    front = pareto_front(panel.points, error)
-    rows = [_point(point, point in front) for point in [*front, *(p for p in panel.points if p not in front)]]
-    log = {} if error.more_is_better else {"type": "log"}
-    x = {"field": "cost", "type": "quantitative", "title": panel.unit}
-    y = {"field": "error", "type": "quantitative", "title": error.label, "scale": {"zero": False, "padding": 8, **log}}
-    tooltip = tips(codec="codec", bits="bits", cost="instructions", error="error")
-    lit = if_lit(1, 0.15)
-    best = [{"filter": "datum.best"}]
-    line = {"type": "line", "interpolate": "step-after", "strokeWidth": 1, "opacity": 0.5}
-    named = [{"filter": "datum.best && picked == '' || picked != '' && " + IS_PICKED}]
-    colour = {"condition": {"test": "datum.best", **_by_bits(rows)}, "value": "var(--faint)"}
-    text = {"type": "text", "align": "left", "dx": 6, "dy": -5, "fontSize": 11, "color": INK}
-    layers = [
-        {"transform": best, "mark": line, "encoding": {"color": _by_bits(rows)}},
-        {
-            "mark": {"type": "point", "filled": True, "size": 55},
-            "encoding": {"color": colour, "shape": _shape_by_bits(rows), "opacity": lit, "tooltip": tooltip},
-        },
-        {"transform": named, "mark": text, "encoding": {"text": {"field": "name"}}},
-    ]
-    parts = {"encoding": {"x": x, "y": y}, "layer": layers, "height": 380, "title": _title(panel.title)}
-    return spec(rows, f"{panel.title}: each codec's {error.label} over {panel.unit}.", **parts)
-
-
-def _point(point: Point, is_best: bool) -> Row:
-    name = point.name + "*" * point.is_starred
-    about = {"codec": point.codec, "name": name, "cost": rounded(point.cost), "error": rounded(point.error)}
-    return about | {"bits": point.bits, "best": is_best}
-
-
 def passes_specs(rows: Sequence[Row]) -> list[Spec]:
     """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
 
@@ -301,7 +264,7 @@ def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
     encoding = {"x": x, "y": y | {"axis": {"format": "~e"}}, "color": _named("depth"), "strokeDash": _named("storage")}
     encoding |= {"detail": detail, "tooltip": [*detail, *tips(x="distance", y="error")]}
     said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
-    title = _title(f"near {near:g}, far {far:g}")
+    title = titled(f"near {near:g}, far {far:g}")
     return spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
 
 
@@ -335,7 +298,7 @@ def _vectors(rows: Sequence[Row], bits: int, colour: Spec) -> Spec:
     lost["encoding"] = {"x": encoding["x"], "y": encoding["y"] | {"field": "x"}}
     layers = [*({**line, "encoding": encoding} for line in (_line(strokeWidth=2), _line(**HIDDEN))), lost]
     said = f"The mean error of motion vectors over their speed, {bits} bits, a line for each code."
-    return spec(found, said, layer=layers, height=360, title=_title(f"{bits} bits"))
+    return spec(found, said, layer=layers, height=360, title=titled(f"{bits} bits"))
 
 
 def _named(column: str) -> Spec:
@@ -378,4 +341,4 @@ def _lights(title: str, lines: Lines) -> Spec:
         },
     ]
     said = f"Error over the number of lights: {title}. Dotted: the most it can be. Errors below 1e-6 are drawn at 1e-6."
-    return spec(found, said, encoding=encoding, layer=layers, height=380, title=_title(title))
+    return spec(found, said, encoding=encoding, layer=layers, height=380, title=titled(title))

@@ -29,11 +29,10 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost on a GPU family against error, as `pareto.pareto_figure` takes them."""
+    """Cost against error, as `pareto.pareto_figure` takes them: panels for each GPU family."""
 
     error: Error
     panels: Sequence[Panel]
-    family: str = ""
 
 
 @dataclass(frozen=True)
@@ -53,6 +52,7 @@ class Found:
         fronts: cost against error.
         listings: disassemblies, text by name.
         order: where costs are in another order than the article's, and why, in lines.
+        family: the GPU family whose instructions the page names where it names one.
         remarks: what does not fit, in sentences.
     """
 
@@ -68,6 +68,7 @@ class Found:
     fronts: Sequence[Front] = ()
     listings: Mapping[str, str] = field(default_factory=dict)
     order: Sequence[str] = ()
+    family: str = ""
     remarks: Sequence[str] = ()
 
     def with_remarks(self, more: Sequence[str]) -> Found:

@@ -142,21 +142,19 @@ def _codec(row: Row, encodings: Container[str]) -> str:
     return CodecKey(encoding, str(storage), rounding).label if storage else encoding
 
 
-def instructions(rows: Sequence[Row]) -> tuple[dict[str, float], str]:
-    """Instructions to encode and decode, together, by encoding: of the last GPU family in fragment shaders; and which
-    family that is."""
-    usable = [r for r in rows if r.get("stage") == STAGE and r.get("encoding") and is_number(r.get("instructions"))]
-    family = usable[-1].get("family") if usable else ""
+def instructions(rows: Sequence[Row], family: str) -> dict[str, float]:
+    """Instructions to encode and decode, together, by encoding: of one GPU family in fragment shaders."""
+    chosen = [r for r in rows if (r.get("stage"), r.get("family")) == (STAGE, family) and r.get("encoding")]
     both: dict[str, list[float]] = {}
-    for row in usable:
-        if row.get("family") == family:
+    for row in chosen:
+        if is_number(row.get("instructions")):
             both.setdefault(row["encoding"], []).append(row["instructions"])
-    return {name: sum(counts) for name, counts in both.items() if len(counts) == 2}, str(family)
+    return {name: sum(counts) for name, counts in both.items() if len(counts) == 2}
 
 
 def judged(found: Found) -> list[Contest]:
     """The questions that the run answers."""
-    costs, _ = instructions(found.tables.get("cost", ()))
+    costs = instructions(found.tables.get("cost", ()), found.family)
     return contests(found.tables.get("quality", ()), found.tables.get("render", ()), costs, found.domains)
 
 
@@ -255,7 +253,7 @@ def html(
         remarks=remarks(found),
         nav=navigation(found, bool(gallery.subjects)),
         contests=[(contest, table(title, contest.rows, lambda name: CONTEST[name])) for contest, title in titled],
-        family=instructions(found.tables.get("cost", ()))[1],
+        family=found.family,
         parts=parts,
         leading=[part for part in parts if part.section.leads and part.is_there],
         spheres=spheres.globes(found.maps),

@@ -21,7 +21,7 @@ from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import charts, pareto, plots, specs
+from normalbench.reports.charts import charts, front_specs, pareto, plots, specs
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
@@ -277,7 +277,7 @@ def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     (spec,) = specs.image_specs([image | {"layout": name} for name in ("thin", "wide")])
     assert [row["line"] for row in spec["data"]["values"]] == ["xy rgba8 thin", "xy rgba8 wide"]
     panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
-    made = [spec, *specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
+    made = [spec, *front_specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
     json.dumps(made, allow_nan=False)
     assert all(vl_convert.vegalite_to_vega(one)["marks"] for one in made)
 
@@ -310,7 +310,7 @@ def test_every_chart_is_one_that_vega_lite_draws():
     made = [
         *specs.histogram_specs([quality_row("xy")]),
         *specs.image_specs([image]),
-        *specs.pareto_specs([panel], pareto.decibels("PSNR")),
+        *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
         *specs.depth_specs([depth | {"distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]),
         *specs.lights_specs([light]),
         *specs.passes_specs([frame]),

@@ -24,8 +24,6 @@ from .measure import Row
 UNITS = MappingProxyType(
     {"isa": ("instructions", "instructions", 1.0), "time": ("ns_per_megapixel", "ms a megapixel", 1e-6)}
 )
-# A figure of more panels nobody reads.
-MOST_PANELS = 12
 
 
 @dataclass(frozen=True)
@@ -57,8 +55,8 @@ def draw(
     """
     wanted = list(_wanted(rows, chosen, sets))
     drawing = Drawing(rows, encodings, error)
-    made = [panel for want in wanted[:MOST_PANELS] if (panel := drawing.panel(want)).points]
-    for line in (*drawing.left_out(), *_beyond(wanted[MOST_PANELS:])):
+    made = [panel for want in wanted[: pareto.MOST_PANELS] if (panel := drawing.panel(want)).points]
+    for line in (*drawing.left_out(), *_beyond(wanted[pareto.MOST_PANELS :])):
         tell(f"--plot: {line}")
     if not made:
         return False
@@ -78,7 +76,7 @@ def _wanted(rows: Sequence[Row], chosen: Sequence[Storage], sets: Sequence[Norma
 def _beyond(wanted: Sequence[Wanted]) -> Iterator[str]:
     if wanted:
         names = ", ".join(want.name for want in wanted)
-        yield f"there is room for {MOST_PANELS} panels; left out: {names}"
+        yield f"there is room for {pareto.MOST_PANELS} panels; left out: {names}"
 
 
 class Drawing:
@@ -99,7 +97,9 @@ class Drawing:
         """A panel's points, some of which may be missing."""
         codecs = (Codec(encoding, want.storage) for encoding in self._encodings)
         points = [point for codec in codecs if (point := self._point(want, codec))]
-        return pareto.Panel(self._title(want), UNITS[want.where.measure][1], points)
+        return pareto.Panel(
+            self._title(want), UNITS[want.where.measure][1], points, is_counted=want.where.measure == "isa"
+        )
 
     def _title(self, want: Wanted) -> str:
         measure, family, stage = want.where.measure, want.where.family, want.where.stage

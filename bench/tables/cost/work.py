@@ -15,8 +15,10 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES, Storage, storage_of
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
-from ....reports.charts import pareto, specs
+from ....reports.charts import pareto
 from ....reports.charts.drawings import Drawing
+from ....reports.charts.front_specs import pareto_specs
+from ....reports.charts.pareto import MOST_PANELS
 from ...codecs.user_encodings import encodings_named
 from ...isa import isa, spirv
 from ...options import gpu_families as families
@@ -222,12 +224,21 @@ def _texts(done: Measured) -> list[tuple[Row, str]]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """Families side by side, those of one vendor in one sheet."""
     first = next((row for row in rows if row["stage"]), None)
-    if first:
-        chosen = [row for row in rows if row["stage"] == first["stage"] and row["encoding"]]
-        names = dict.fromkeys(row["encoding"] for row in chosen)
-        sheet = sheets.isa_sheet(chosen, sheets.article_rows(names, measure.OPERATIONS))
-        yield Sheet(f"instructions, {first['stage']}, {first['driver']}; the article's are of ps_3_0", sheet)
+    chosen = [row for row in rows if first and row["stage"] == first["stage"] and row["encoding"]]
+    article = sheets.article_rows(dict.fromkeys(row["encoding"] for row in chosen), measure.OPERATIONS)
+    for vendor in dict.fromkeys(map(_vendor, chosen)):
+        part = [row for row in chosen if _vendor(row) == vendor]
+        drivers = ", ".join(dict.fromkeys(row["driver"] for row in part if row["driver"]))
+        title = f"instructions, {', '.join(filter(None, (vendor, part[0]['stage'], drivers)))}"
+        title += "; the article's are of ps_3_0"
+        yield Sheet(title, sheets.isa_sheet(part, article))
+
+
+def _vendor(row: Row) -> str:
+    known = families.FAMILIES.get(row["family"])
+    return known.vendor if known else ""
 
 
 def _write(done: Measured, _: Tick) -> None:
@@ -255,13 +266,14 @@ def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
 
 def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
     for at, front in enumerate(found.fronts):
-        title = f"Instructions on {front.family} against {front.error.label.removesuffix(', dB')}"
+        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
         said = (
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )
         said += "another is no dearer, no worse and takes no more bits. The figures are in the tables."
-        both = (partial(draw, front.panels, front.error) for draw in (pareto.pareto_figure, specs.pareto_specs))
-        yield Drawing(f"cost-{at}", title, said, *both)
+        shown = [panel for panel in front.panels if panel.is_usual] if len(front.panels) > MOST_PANELS else front.panels
+        draws = partial(pareto.pareto_figure, shown, front.error), partial(pareto_specs, front.panels, front.error)
+        yield Drawing(f"cost-{at}", title, said, *draws)
 
 
 def _missing() -> str:

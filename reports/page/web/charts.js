@@ -35,18 +35,30 @@ function withColours(spec) {
 const OPTIONS = { ast: true, actions: false, renderer: "svg", tooltip: { theme: "page" } };
 
 async function draw(figure) {
-  const [all] = await Promise.all([specs(), library()]);
+  const [all] = await Promise.all([specs(), library()]), shown = [];
   const plots = Array.from(figure.querySelectorAll(".plot"));
   for (const [at, spec] of all[figure.dataset.chart].entries()) {
     const { view } = await vegaEmbed(plots[at], spec, OPTIONS);
     charts.views.push(view);
     if (picked.name) view.signal("picked", picked.name).runAsync();
     view.addEventListener("click", (_, item) => item?.datum?.codec && picked.pick(item.datum.codec));
-    const title = element("span", { class: "visually-hidden" }, `: ${spec.title?.text || spec.description}`);
+    const said = typeof spec.title?.text === "string" ? spec.title.text : spec.description;
+    const title = element("span", { class: "visually-hidden" }, `: ${said}`);
     const button = element("button", { type: "button", "data-png": "" }, "Save as PNG", title);
     button.addEventListener("click", () => png(spec, view, plots[at].clientWidth, figure.dataset.chart));
     figure.querySelector(".tools").append(button);
+    shown.push(view);
   }
+  if (all[figure.dataset.chart][0].usermeta?.switch) figure.prepend(control(all[figure.dataset.chart][0], shown));
+}
+
+// One control for all charts of a figure, which sets a parameter that each of them has.
+function control(spec, views) {
+  const { param, label, options } = spec.usermeta.switch;
+  const chosen = spec.params.find(({ name }) => name === param).value;
+  const select = element("select", {}, ...options.map((name) => element("option", name === chosen ? { selected: "" } : {}, name)));
+  select.addEventListener("change", () => views.forEach((view) => view.signal(param, select.value).runAsync()));
+  return element("p", { class: "tools" }, element("label", {}, `${label} `, select));
 }
 
 // As it is shown: with what is highlighted and the bits that are chosen.

@@ -203,7 +203,7 @@ def test_every_family_stage_and_storage_has_a_panel_and_what_has_none_is_said(tm
     titles = [panel.title.splitlines()[1] for panel in panels]
     assert titles == [f"{f}, {s}, Mesa 1.2.3" for f in "ab" for s in ("fragment", "compute")] and said == ""
     panels, said = plotted(rows, tmp_path, capsys, monkeypatch, "rgba8", "rgba8_snorm")
-    assert len(panels) == cost_plot.MOST_PANELS
+    assert len(panels) == pareto.MOST_PANELS
     (line,) = said.splitlines()
     assert (
         "room for 12 panels; left out: rgba8 axes g fragment encode, rgba8 axes g compute encode, rgba8_snorm" in line

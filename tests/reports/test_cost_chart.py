@@ -1,0 +1,115 @@
+"""The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
+points."""
+
+from itertools import combinations, pairwise
+
+import pytest
+from browsing import DESKTOP, PHONE, Opened
+from hypothesis import given
+from hypothesis import strategies as st
+from test_report import a_run, quality_row, reported
+
+from normalbench.bench.tables.registry import TABLES
+from normalbench.reports.charts import front_specs
+from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
+
+# Instructions to encode and to decode (normalbench cost --isa --family navi31,dg2), and PSNR in rgba8 (quality).
+CODECS = {
+    "xy": ((0, 4), (0, 1), 18.62),
+    "spheremap": ((8, 11), (8, 11), 48.59),
+    "cryengine3": ((15, 8), (14, 7), 48.59),
+    "octahedral": ((15, 17), (11, 11), 49.95),
+    "octahedral_precise": ((120, 17), (128, 11), 50.52),
+}
+FAMILIES = ("navi31", "dg2")
+
+
+def points(family: int = 0, operation: int = 0) -> list[Point]:
+    return [Point(name, counts[family][operation], counts[2], 16) for name, counts in CODECS.items()]
+
+
+@given(st.lists(st.floats(10, 110), min_size=1, max_size=24, unique=True))
+def test_no_two_names_stand_on_one_line_and_they_keep_the_order_of_their_points(errors):
+    error, made = decibels("PSNR"), [Point(str(at), at, error, 16) for at, error in enumerate(errors)]
+    places = front_specs.label_places(made, error, (0, 120))
+    ordered = sorted(made, key=lambda point: point.error)
+    pixels = [places[point] * front_specs.HEIGHT / 120 for point in ordered]
+    assert all(b - a >= front_specs.LINE_HEIGHT - 1e-6 for a, b in pairwise(pixels))
+
+
+def test_names_far_apart_stand_beside_their_points():
+    for error in (decibels("PSNR"), ERRORS["max"][1]):
+        made = [Point("a", 1, 0.1, 16), Point("b", 2, 5.0, 16)]
+        places = front_specs.label_places(made, error, (0.05, 6.0))
+        assert [places[point] for point in made] == pytest.approx([0.1, 5.0])
+
+
+def test_the_dearest_codec_leaves_the_others_room():
+    """octahedral_precise takes 120 instructions where the others take up to 15: they have over half of the axis."""
+    panel = Panel("encode", "instructions", points(), is_counted=True)
+    assert front_specs._share(panel, 15, 120) > 0.35
+    assert front_specs._share(Panel("encode", "ms", points()), 15, 120) == 0.125
+    (spec,) = front_specs.pareto_specs([panel], decibels("PSNR"))
+    assert spec["encoding"]["x"]["scale"]["type"] == "symlog"
+    assert spec["encoding"]["x"]["axis"]["values"] == [0, 2, 5, 10, 20, 50, 100]
+
+
+def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
+    panels = [
+        Panel(f"encode on {name}", "instructions", points(at), "encode", name, is_usual=name == "dg2")
+        for at, name in enumerate(FAMILIES)
+    ]
+    (spec,) = front_specs.pareto_specs(panels, decibels("PSNR"))
+    assert spec["usermeta"]["switch"]["options"] == list(FAMILIES)
+    assert {"name": "machine", "value": "dg2"} in spec["params"]
+    assert {row["machine"] for row in spec["data"]["values"]} == set(FAMILIES)
+    (alone,) = front_specs.pareto_specs(panels[:1], decibels("PSNR"))
+    assert "usermeta" not in alone and alone["title"]["text"] == "encode on navi31"
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    """A run whose costs are of two vendors' GPUs."""
+    costs = []
+    for at, family in enumerate(FAMILIES):
+        about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
+        for side, (operation, packed) in enumerate((("encode", "pack"), ("decode", "unpack"))):
+            counts = {name: CODECS[name][at][side] for name in CODECS}
+            costs += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
+            costs.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
+    quality = [quality_row(name, psnr_db=CODECS[name][2]) for name in CODECS]
+    return a_run(tmp_path_factory.mktemp("costs") / "run", {"quality": quality, "cost": costs})
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=str)
+def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder, browser, size):
+    reported(run, run_folder)
+    page = Opened(browser, run_folder / "report.html", size)
+    try:
+        figure = page.page.locator("figure[data-chart=cost-0]")
+        figure.scroll_into_view_if_needed()
+        choice = figure.get_by_role("combobox", name="GPU")
+        choice.wait_for()
+        titles = figure.locator(".plot").all_text_contents()
+        assert [f"{o}, Navi 3x (navi31)" in t for o, t in zip(("encode", "decode"), titles, strict=True)] == [True] * 2
+        for name in ("Navi 3x (navi31)", "Arc A770 (dg2)"):
+            choice.select_option(name)
+            figure.get_by_text(f"encode, {name}").wait_for()
+            assert_no_names_overlap(figure)
+        assert page.said == []
+    finally:
+        page.context.close()
+
+
+def assert_no_names_overlap(figure) -> None:
+    for plot in figure.locator(".plot").all():
+        texts = plot.locator("svg .mark-text.role-mark text").all()
+        boxes = {(at, text.text_content()): text.bounding_box() for at, text in enumerate(texts)}
+        assert len(boxes) >= 3
+        for (a, one), (b, other) in combinations(boxes.items(), 2):
+            apart = one["y"] + one["height"] <= other["y"] + 1 or other["y"] + other["height"] <= one["y"] + 1
+            beside = one["x"] + one["width"] <= other["x"] or other["x"] + other["width"] <= one["x"]
+            assert apart or beside, (a, b)
+        frame = plot.bounding_box()
+        for name, box in boxes.items():
+            assert frame["x"] <= box["x"] and box["x"] + box["width"] <= frame["x"] + frame["width"], name
