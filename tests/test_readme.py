@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from dataclasses import fields
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
+    "normalbench cost half",
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
     *("normalbench maps", "normalbench vectors", "normalbench code"),
 }
@@ -538,6 +540,26 @@ def test_the_cost_table_of_two_vendors_is_what_is_measured(run):
         for family, names in zip(families, columns, strict=True):
             counts = [found[name, operation, family] for name in names.split(", ")]
             assert counts == sorted(counts), (operation, family, names)
+
+
+@pytest.mark.usefixtures("intel")
+def test_the_cost_table_of_half_arithmetic_is_what_is_measured(run):
+    """And the loop above it."""
+    shown = table("normalbench cost half")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d+)" * 8 + r" \|$", shown, re.M)
+    names = [line[0] for line in lines]
+    words = ["--isa", "--family", "navi21,skl", "--stage", "fragment", "--storage", "rgba8", "--format", "json"]
+    status, out, _ = run("cost", "--arithmetic", "all", "--encoding", ",".join([*names, "best_fit_searched"]), *words)
+    rows = {(row["encoding"], row["operation"], row["family"]): row for row in json.loads(out)}
+    assert status == 0 and len(lines) == 3
+    if {row["driver"] for row in rows.values()} != {mesa}:
+        pytest.skip(f"this machine's compiler is not {mesa}")
+    for name, *figures in lines:
+        keys = product((name,), ("encode", "decode"), ("navi21", "skl"), ("", ":arithmetic=half"))
+        assert [int(figure) for figure in figures] == [rows[n + half, o, f]["instructions"] for n, o, f, half in keys]
+    loop = rows["best_fit_searched", "encode", "navi21"]
+    assert (loop["instructions"], loop["looped"], loop["loops"]) == (57, 38, 1)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

@@ -277,6 +277,7 @@ def cost(
     family: Names = ...,
     stage: Names = ...,
     operation: Names = ...,
+    arithmetic: Names = ...,
     storage: Names = ...,
     size: Names | None = ...,
     repeats: int = ...,
@@ -298,6 +299,7 @@ def cost(
         family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
+        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
         storage: Storages and packings whose own cost is shown, comma-separated, or all.
         size: WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024.
         repeats: Repetitions that medians are taken over.

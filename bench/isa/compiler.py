@@ -7,6 +7,7 @@ null_i915.c. Runs in a child process (`child`), because drivers crash.
 from __future__ import annotations
 
 import hashlib
+import struct
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -18,6 +19,8 @@ DRIVERS = ("libvulkan_", "libLLVM")
 VULKAN_1_3 = 1 << 22 | 3 << 12
 # What kernel.frag writes.
 TARGETS = 3
+# Of SPIR-V.
+OP_CAPABILITY, FLOAT16 = 17, 9
 
 
 class DriverError(Exception):
@@ -71,6 +74,17 @@ def _instance(vk: Any) -> Any:
         raise DriverError(f"the Vulkan loader takes no driver: {type(error).__name__}") from error
 
 
+def uses_halves(code: bytes) -> bool:
+    """Whether a SPIR-V module computes in 16 bits: its capabilities, which come first, say so."""
+    words = struct.unpack(f"<{len(code) // 4}I", code)
+    at = 5
+    while at < len(words) and words[at] & 0xFFFF == OP_CAPABILITY:
+        if words[at + 1] == FLOAT16:
+            return True
+        at += 2
+    return False
+
+
 class Compiler:
     """A logical device that compiles, and tells what it made.
 
@@ -93,6 +107,7 @@ class Compiler:
         extensions = {e.extensionName for e in vk.vkEnumerateDeviceExtensionProperties(physical, None)}
         if EXTENSION not in extensions:
             raise DriverError(f"{self.device} (Mesa {self.version}) lacks {EXTENSION}")
+        self._has_halves = bool(self._halves(physical).shaderFloat16)
         self._device = self._logical_device(physical)
         self._layout = None
 
@@ -103,9 +118,17 @@ class Compiler:
         except (vk.VkError, IndexError) as error:
             raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
 
+    def _halves(self, physical: Any) -> Any:
+        """What the device computes in 16 bits."""
+        vk = self._vk
+        halves = vk.VkPhysicalDeviceShaderFloat16Int8Features()
+        vk.vkGetPhysicalDeviceFeatures2(physical, vk.VkPhysicalDeviceFeatures2(pNext=halves))
+        return halves
+
     def _logical_device(self, physical: Any) -> Any:
         vk = self._vk
-        tells = vk.VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR(pipelineExecutableInfo=1)
+        halves = vk.VkPhysicalDeviceShaderFloat16Int8Features(shaderFloat16=int(self._has_halves))
+        tells = vk.VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR(pipelineExecutableInfo=1, pNext=halves)
         renders = vk.VkPhysicalDeviceDynamicRenderingFeatures(dynamicRendering=1, pNext=tells)
         queue = vk.VkDeviceQueueCreateInfo(queueFamilyIndex=0, pQueuePriorities=[1.0])
         info = vk.VkDeviceCreateInfo(pNext=renders, pQueueCreateInfos=[queue], ppEnabledExtensionNames=[EXTENSION])
@@ -130,6 +153,8 @@ class Compiler:
             DriverError: it does not compile.
         """
         vk = self._vk
+        if not self._has_halves and uses_halves(code):
+            raise DriverError(f"{self.device} computes no shaders in 16 bits")
         self._layout = self._layout or self._pipeline_layout(planes)
         try:
             made = self._compute(code) if stage == "compute" else self._graphics(code, vertex)

@@ -89,6 +89,28 @@ def issue_slots(counts: Mapping[str, int], family: str) -> int | None:
     return sum(rate * counts[name] for name, rate in rates.items()) if rates else None
 
 
+def packed(assembly: str) -> int:
+    """How many instructions compute two numbers of 16 bits at once."""
+    return sum(name.startswith("v_pk_") for name in names(assembly))
+
+
+def looped(assembly: str) -> int:
+    """How many instructions lie in loops: from the label that a jump goes back to, to that jump."""
+    begins: dict[str, int] = {}
+    inside: set[int] = set()
+    at = 0
+    for line in assembly.splitlines():
+        if label := _LABEL.match(line):
+            begins[label[1]] = at
+        elif match := _INSTRUCTION.match(line):
+            at += 1
+            if match[1].startswith(("s_cbranch", "s_branch")) and match[2] in begins:
+                inside.update(range(begins[match[2]], at))
+        elif match := _REPEATED.match(line):
+            at += int(match[1])
+    return len(inside)
+
+
 def jumps(assembly: str) -> tuple[int, int]:
     """(branches, loops): conditional jumps ahead, over what not every wave runs; and jumps back."""
     ahead = back = 0

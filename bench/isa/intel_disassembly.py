@@ -29,6 +29,7 @@ _ALU = {
 }
 # (predicate) name.modifiers function(lanes): "(+f0.0) sel(16)", "cmp.g.f0.0(16)", "math rsq(16)", "sync nop(1)".
 _INSTRUCTION = re.compile(r"^(\([^)]*\)\s*)?([a-z][a-z0-9]*)(?:\.[a-z0-9.]+)?(?: ([a-z]\w*)(?:\.\w+)?)?\((\d+)\)(.*)")
+_LABEL, _TARGET = re.compile(r"^(LABEL\d+):"), re.compile(r"JIP:\s+(LABEL\d+)")
 _TYPE = re.compile(r"(?:>|[0-9a-f])(HF|DF|F|UD|D|UW|W|UB|B|UQ|Q)\b")
 _FLOATS = {"HF", "F", "DF"}
 
@@ -97,6 +98,27 @@ def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
 def issue_slots(_: Mapping[str, int], __: str) -> None:
     """Nothing: the rates depend on the unit's width and on operands, and the driver's model tells of cycles alone."""
     return
+
+
+def packed(_: str) -> None:
+    """Nothing: an instruction on numbers of 16 bits is for as many lanes as one on 32."""
+    return
+
+
+def looped(assembly: str) -> int:
+    """How many instructions lie in loops: from the label that a `while` goes back to, to that `while`."""
+    begins: dict[str, int] = {}
+    inside: set[int] = set()
+    at = 0
+    for line in assembly.splitlines():
+        if label := _LABEL.match(line):
+            begins[label[1]] = at
+        for one in instructions(line):
+            at += 1
+            target = _TARGET.search(one.operands)
+            if one.name == "while" and target and target[1] in begins:
+                inside.update(range(begins[target[1]], at))
+    return len(inside)
 
 
 def jumps(assembly: str) -> tuple[int, int]:

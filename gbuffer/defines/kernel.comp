@@ -1,4 +1,4 @@
-#version 430
+#version 450
 // One operation between loads and stores, for a compiler to be asked what it costs. What goes in is stored again, so that
 // no load is dropped for want of a use; numbers lie in planes, so that no store wants them in neighbouring registers.
 // Planes are used twice, each of a store's after its loads: farther ones are out of reach of GCN's offsets of 4095

@@ -1,4 +1,4 @@
-#version 430
+#version 450
 // One operation between interpolation and export, for a compiler to be asked what it costs. What goes in is written
 // again, so that no input is dropped for want of a use; numbers are moved one by one, as the compute kernel does it, so
 // that SPIR-V takes vectors apart and together in the operation alone.

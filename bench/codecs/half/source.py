@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ....gbuffer.gl.shader import Line, Source
 
+HERE = Path(__file__).resolve().parent
 LARGEST = 65504.0
 # A number with a point or an exponent; whole numbers without are integers.
 NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)(?![\w.])")
@@ -17,13 +18,18 @@ BITS = re.compile(r"\b(floatBitsToUint|floatBitsToInt|uintBitsToFloat|intBitsToF
 
 
 class HalfSource(Source):
-    """A shader whose includes, and the macros at its head, are in 16-bit types; its own lines stay as they are.
+    """A shader whose includes, and the macros at its head, are in 16-bit types; its own lines, and those of this
+    folder's files, stay as they are.
 
     Args:
         path, defines, names: as `Source` takes them.
+        kept: macros that stay as they are.
     """
 
-    def __init__(self, path: str | Path, defines: Mapping[str, object], names: Mapping[str, Path]):
+    def __init__(
+        self, path: str | Path, defines: Mapping[str, object], names: Mapping[str, Path], kept: Collection[str] = ()
+    ):
+        self._kept = tuple(f"#define {name} " for name in kept)
         super().__init__(path, defines, names)
         changed = [self._changed(line) for line in self._lines]
         # The macros hold numbers of 16 bits, which the extension must have made known.
@@ -32,8 +38,8 @@ class HalfSource(Source):
 
     def _changed(self, line: Line) -> Line:
         text, path, number = line
-        is_ours = path == self.place or path.name == "half.glsl"
-        is_macro = number == 1 and text.startswith("#define")
+        is_ours = path == self.place or path.parent == HERE
+        is_macro = number == 1 and text.startswith("#define") and not text.startswith(self._kept)
         return (in_halves(text), path, number) if is_macro or not is_ours else line
 
 

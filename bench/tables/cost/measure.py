@@ -13,7 +13,8 @@ from ....gbuffer.defines import kernels
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
-from ...isa import disassembly, intel_disassembly, isa, spirv
+from ...codecs.half.kernels import half_operation
+from ...isa import disassembly, intel_disassembly, isa, occupancy, spirv
 from ...isa.isa import Failure, Job, Kernel, Outcome
 from ...machine.cores import on_all_cores
 from ...options.gpu_families import FAMILIES
@@ -43,7 +44,7 @@ WHOLE = {
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
 KINDS = tuple(dict.fromkeys((*disassembly.KINDS, *intel_disassembly.KINDS)))
-LISTED = ("issue_slots", *KINDS, "branches", "loops")
+LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
 GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
@@ -77,12 +78,17 @@ class Case:
 
 def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[Case]:
     """Every operation of each encoding, and what the packings add to it."""
-    makers = {"encode": kernels.encode, "decode": kernels.decode}
-    found = [Case(e, None, name, partial(makers[name], e)) for e in encodings for name in operations]
+    found = [Case(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
         found += [Case(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
     return found
+
+
+def _operation(encoding: Encoding, operation: str) -> Operation:
+    if encoding.is_half:
+        return half_operation(encoding, operation)
+    return {"encode": kernels.encode, "decode": kernels.decode}[operation](encoding)
 
 
 @dataclass(frozen=True)
@@ -181,6 +187,7 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     ours, theirs = (_listed(k.assembly, int(_total(k, INSTRUCTIONS) or -1), row["family"]) for k in compared)
     if ours and theirs:
         row |= {column: _difference(ours[column], theirs[column]) for column in ours}
+    row["kernel_waves"] = occupancy.waves(row["family"], row["kernel_vgprs"])
     about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": f"Mesa {outcome.version}"}
     return row | about, kernel.assembly
 
@@ -216,11 +223,13 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     if counts is None:
         return None
     branches, loops = read.jumps(assembly)
-    return {"issue_slots": read.issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+    static = {"packed": read.packed(assembly), "branches": branches, "loops": loops, "looped": read.looped(assembly)}
+    return {"issue_slots": read.issue_slots(counts, family), **counts, **static}
 
 
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots` and GUARDS."""
+    """What reads the listings of a family's vendor: `names`, `kinds`, `packed`, `jumps`, `looped`,
+    `issue_slots` and GUARDS."""
     known = FAMILIES.get(family)
     return intel_disassembly if known and known.vendor == "intel" else disassembly
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from ...options.gpu_families import CHOICES, titled
-from ...options.option import Encodings, Option, Plot, Seed
+from ...options.option import Arithmetics, Encodings, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
@@ -35,6 +35,7 @@ class CostOptions:
     ] = "radeon"
     stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
     operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
+    arithmetic: Arithmetics = "float"
     storage: Annotated[
         str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True)
     ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
@@ -105,8 +106,10 @@ COLUMNS = (
     _count("waiting", "Waits and hints about order.", 10),
     _count("control_flow", "Intel: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
     _count("other_alu", "Intel: all other arithmetic, moves, compares and selections; interpolation, too.", 19),
+    _count("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
+    _count("looped", "Of instructions those in loops, which run again at each turn.", 21),
     _count(
         "spirv_instructions",
         "SPIR-V instructions after spirv-opt, loops unrolled: portable, and of vectors; they depend on the spelling. "
@@ -125,6 +128,13 @@ COLUMNS = (
     ),
     Column("kernel_vgprs", "All vector registers of the kernel.", HOW, drops=6),
     Column("kernel_sgprs", "All scalar registers of the kernel.", HOW, drops=5),
+    Column(
+        "kernel_waves",
+        "How many waves of 64 lanes a Radeon's SIMD holds of the whole kernel, by its vector registers; of Intel's, "
+        "threads of an execution unit, each of which has its own registers. More hide more latency.",
+        HOW,
+        drops=6,
+    ),
     Column(
         "kernel_latency",
         "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts. The "

@@ -30,6 +30,7 @@ from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .table import TABLE, CostOptions, CostOutputs
 
+FLOAT = "float"
 MEASURES = ("isa", "time", "jax")
 
 
@@ -92,7 +93,7 @@ def costing(options: CostOptions) -> Costing:
     pick("normal set", options.normals, listing.NORMAL_SETS)
     made = Costing(
         options,
-        encodings_named(options.encoding),
+        _encodings(options),
         packings(options.storage),
         pick("operation", options.operation, {name: name for name in measure.OPERATIONS}),
         pick("stage", options.stage, {name: name for name in STAGES}),
@@ -104,6 +105,15 @@ def costing(options: CostOptions) -> Costing:
         for encoding in made.encodings:
             check_twin(encoding)
     return made
+
+
+def _encodings(options: CostOptions) -> list[Encoding]:
+    named = encodings_named(options.encoding)
+    if options.arithmetic == FLOAT:
+        return named
+    from ...codecs.names import with_arithmetics
+
+    return with_arithmetics(named, options.arithmetic)
 
 
 def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:

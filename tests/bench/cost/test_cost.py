@@ -41,7 +41,7 @@ def whole_table(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers
 
 
 # Of a Radeon's row.
-LISTED = ("issue_slots", *KINDS, "branches", "loops")
+LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
 IDENTITIES = [
     ("two", "n.xy", "e.xyx", 2),
     ("crossed", "n.zy", "vec3(view.y, e.yx)", 2),

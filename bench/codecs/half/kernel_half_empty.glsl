@@ -1,0 +1,4 @@
+// The operation that does nothing but make 16 bits of each number and 32 of them again.
+#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+
+MADE kernel_operation(GIVEN given, BESIDE beside) { return MADE(HALF_GIVEN(given).TAKEN); }

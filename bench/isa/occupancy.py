@@ -1,0 +1,50 @@
+"""How many waves of a kernel a GPU's SIMD holds at once, by how many registers each takes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class Occupancy:
+    """What a SIMD has for its waves.
+
+    Attributes:
+        waves: the most that it holds, however few registers they take.
+        registers: how many it has of as many lanes as a wave has; 0 where each wave has its own share.
+    """
+
+    waves: int
+    registers: int = 0
+
+    def of(self, registers: float) -> int:
+        """How many waves that take so many registers it holds.
+
+        Args:
+            registers: as a driver allots them, in its own steps.
+        """
+        return min(self.waves, int(self.registers // max(registers, 1))) if self.registers else self.waves
+
+
+_GCN, _RDNA2 = Occupancy(10, 256), Occupancy(16, 512)
+# Waves of 64 lanes. GCN: 256 registers of 64 lanes and 10 waves a SIMD (AMD, Graphics Core Next Architecture Generation
+# 3 ISA, 2016); Polaris 8 waves (Mesa's ac_gpu_info.c). RDNA: 1024 registers of 32 lanes, which are 512 of 64, and 20
+# waves (AMD, RDNA whitepaper, 2019); RDNA 2 16 waves (AMD, RDNA 2 ISA, 2020); Navi 31 half as many registers again
+# (AMD, RDNA 3 ISA, 2022). Intel: threads of an execution unit, each with 128 registers of its own: 7, Arc 8 (Intel,
+# Programmer's Reference Manuals).
+OCCUPANCY: Mapping[str, Occupancy] = MappingProxyType(
+    {"polaris10": Occupancy(8, 256), "vega10": _GCN, "navi10": Occupancy(20, 512), "navi21": _RDNA2}
+    | {"navi31": Occupancy(16, 768)}
+    | dict.fromkeys(("hsw", "bdw", "skl", "tgl", "adl"), Occupancy(7))
+    | {"dg2": Occupancy(8)}
+)
+
+
+def waves(family: str, registers: float | None) -> int | None:
+    """How many waves of a kernel a SIMD of a GPU family holds; None where that is not known."""
+    rule = OCCUPANCY.get(family)
+    if rule is None or (rule.registers and registers is None):
+        return None
+    return rule.of(registers or 0)
