@@ -163,13 +163,17 @@ def check(
     run: Annotated[
         Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
     ] = None,
+    write_baseline: Annotated[
+        bool,
+        typer.Option("--write-baseline", help="Write the baselines that gates name instead of comparing with them."),
+    ] = False,
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
     """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
     from ..gates.check_command import check_command
 
-    return check_command(gates, run, format_of(format, output), output)
+    return check_command(gates, run, write_baseline, format_of(format, output), output)
 
 
 class FailOn(StrEnum):

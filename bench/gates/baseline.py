@@ -17,23 +17,29 @@ from ..output.writing import whole_file
 from ..results.comparison import difference, same
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Table
+from .listings import differences as listing_differences
+from .listings import lines_of
 
 Entry = dict[str, Any]
 # How a row was measured, which is not a figure of it.
 HOW = ("device", "rounded_by", "clock")
 
 
-def entry(table: Table, asked: Mapping[str, Any], row: Row) -> Entry:
+def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
     """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked.
 
     Times, and what only a program reads, are left out.
+
+    Args:
+        listing: the instructions that its figures were counted in; empty where there are none.
     """
     known = fields_of(table.options)
     key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
     # Several rows of one request differ in their keys.
     key |= {column.name: row.get(column.name) for column in table.of_role(Role.KEY)}
+    key |= {name: row.get(name) for name in table.compilers}
     (plain,) = json.loads(to_json([{name: value for name, value in row.items() if _is_kept(table, name)}]))
-    return {"table": table.name, "key": key, "row": plain}
+    return {"table": table.name, "key": key, "row": plain} | ({"listing": lines_of(listing)} if listing else {})
 
 
 def _is_kept(table: Table, name: str) -> bool:
@@ -77,10 +83,16 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
 
 @dataclass
 class Baseline:
-    """A file of entries; what is recorded is written by `write_baseline`, once."""
+    """A file of entries; what is recorded is written by `write_baseline`, once.
+
+    Attributes:
+        writes: whether rows are recorded.
+        writer: the option that has them recorded.
+    """
 
     path: Path
     writes: bool
+    writer: str = "--normalbench-write-baseline"
     recorded: dict[str, Entry] = field(default_factory=dict)
     _read: dict[str, Entry] | None = None
 
@@ -101,16 +113,37 @@ class Baseline:
             self._read = read_baseline(self.path) if self.path.exists() else {}
         before = self._read.get(_text(one))
         if before is None:
-            raise AssertionError(f"{self.path} has no row {_name(one)}; --normalbench-write-baseline writes it")
+            raise AssertionError(
+                f"{self.path} has no row {_name(one)}{self._other_compilers(one)}; {self.writer} writes it"
+            )
         found = list(changes(before["row"], one["row"], tolerances))
+        if found and before.get("listing") and one.get("listing"):
+            changed = list(listing_differences(before["listing"], one["listing"]))
+            found.append("\n  ".join(["its instructions, with + and - where they changed:", *changed]))
         devices = [row.get("device") for row in (before["row"], one["row"])]
         if found and devices[0] != devices[1]:
             found.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
         return found
 
+    def _other_compilers(self, one: Entry) -> str:
+        """By which other compilers the file has a row; empty for none."""
+        table = table_of_run(one["table"])
+        names = table.compilers if table else ()
+        alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(one, names)]
+        if not names or not alike:
+            return ""
+        differ = [name for name in names if any(key.get(name) != one["key"].get(name) for key in alike)]
+        mine, *others = (", ".join(str(key.get(name)) for name in differ) for key in (one["key"], *alike))
+        return f" by {mine}; it has one by {' and by '.join(dict.fromkeys(others))}"
+
     def dumped(self) -> str:
         """What was recorded, as text; none for nothing."""
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
+
+
+def _less(one: Entry, names: Sequence[str]) -> str:
+    """An entry's key without some of its parts, as text."""
+    return _text({**one, "key": {name: value for name, value in one["key"].items() if name not in names}})
 
 
 def _name(one: Entry) -> str:

@@ -2,28 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from ..output.errors import tell
+from ..output.errors import UsageError, tell, tell_together
 from ..output.progress import progress
 from ..output.writing import check_writable, without, write
-from .gates import checked, read_gates
+from .gates import BASELINE, Baselines, Gate, checked, read_gates
 
 
-def check_command(gates: Path, run: Path | None, format: str, output: Path | None) -> int:
-    """Measure what the gates ask for, or take it from a run, and write what holds. Exit status: 1 if a gate fails."""
-    found = read_gates(gates)
+def check_command(gates: Path, run: Path | None, writes: bool, format: str, output: Path | None) -> int:
+    """Measure what the gates ask for, or take it from a run, and write what holds. Exit status: 1 if a gate fails.
+
+    Args:
+        writes: whether rows are written into the gates' baselines instead of being compared with them.
+    """
+    found, baselines = read_gates(gates), Baselines(writes)
+    if writes:
+        _check_baselines(gates, found, run)
     if output:
         check_writable(output)
     with progress(len(found)) as tick:
-        rows = list(checked(found, run, tick))
+        rows = list(checked(found, run, tick, baselines))
+    for path in baselines.write():
+        tell(f"written: {path}")
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
         tell(f"rows without figures: {reason}")
+    for row in rows:
+        if row["changed"]:
+            tell_together(row["row"], row["changed"].splitlines())
     if format == "table":
-        hidden = ("skipped",) if any(row["worst_normal"] for row in rows) else ("skipped", "worst_normal")
-        rows = without(rows, hidden)
+        empty = [name for name in ("worst_normal", "column", "figure") if all(row[name] is None for row in rows)]
+        rows = without(rows, ("skipped", "changed", *empty))
     write(rows, format, output, ("table",))
     failed = sum(row["holds"] == "FAIL" for row in rows)
     if failed:
         tell(f"{failed} of {len(rows)} limits do not hold")
     return int(failed > 0)
+
+
+def _check_baselines(path: Path, gates: Sequence[Gate], run: Path | None) -> None:
+    """Raises UsageError where there is no baseline to write, or it cannot be written."""
+    if run:
+        raise UsageError("--write-baseline writes what is measured now; leave out --run")
+    named = dict.fromkeys(gate.baseline for gate in gates if gate.baseline)
+    if not named:
+        raise UsageError(f'{path}: no gate names a baseline; add {BASELINE} = "costs.json" to one')
+    for baseline in named:
+        check_writable(baseline, makes_folder=True)

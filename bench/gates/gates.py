@@ -12,10 +12,13 @@ from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
+from .baseline import Baseline, entry, write_baseline
 from .limits import Limit, split_limits
 from .measured import Found, measured, table_named, with_their_options
 
 MAX_GATES = 1000
+BASELINE = "matches_baseline"
+WRITER = "normalbench check --write-baseline"
 
 
 @dataclass(frozen=True)
@@ -27,12 +30,14 @@ class Gate:
         options: what is measured, by the table's options; of a run's rows, which, by the values of their columns.
         limits: one for each column.
         place: file and number, for messages.
+        baseline: the file that every row is compared with, beside the limits or without any; None for none.
     """
 
     table: Table
     options: Mapping[str, Any]
     limits: tuple[Limit, ...]
     place: str
+    baseline: Path | None = None
 
 
 def read_gates(path: Path) -> list[Gate]:
@@ -52,21 +57,24 @@ def read_gates(path: Path) -> list[Gate]:
         raise UsageError(f"{path}: there is no [[gate]] table in it")
     if not 1 <= len(found) <= MAX_GATES:
         raise UsageError(f"{path}: {len(found)} gates; from 1 to {MAX_GATES}")
-    return [_gate(f"{path}, gate {number}", values) for number, values in enumerate(found, 1)]
+    return [_gate(f"{path}, gate {number}", values, path.parent) for number, values in enumerate(found, 1)]
 
 
-def _gate(place: str, values: dict[str, Any]) -> Gate:
+def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
+    named = values.pop(BASELINE, None)
     try:
+        if named is not None and not (isinstance(named, str) and named):
+            raise UsageError(f"{BASELINE} is {named!r}; it must be a file's name")
         for name, value in values.items():
             if not isinstance(value, str | int | float):
                 raise UsageError(f"{name} is {value!r}; it must be a text or a number")
         table = table_named(values.pop("table", "quality"))
-        options, limits = split_limits(values, table)
+        options, limits = split_limits(values, table, may_lack=named is not None)
         for limit in limits:
             limit.check(table)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from error
-    return Gate(table, options, limits, place)
+    return Gate(table, options, limits, place, folder / named if named else None)
 
 
 Measure = Callable[[Gate], list[Found]]
@@ -129,21 +137,57 @@ def _is(value: Any, asked: Any) -> bool:
     return value in [word.strip() for word in asked.split(",")] if isinstance(asked, str) else value == asked
 
 
-def checked(gates: list[Gate], run: Path | None, tick: Callable[[str], None]) -> Iterator[Row]:
-    """A row for each limit on each row of each gate: the figure, the limit, whether it holds, or the worst normal.
+def checked(
+    gates: list[Gate], run: Path | None, tick: Callable[[str], None], baselines: Baselines | None = None
+) -> Iterator[Row]:
+    """A row for each limit on each row of each gate, and for its baseline: the figure, the limit, whether it holds, the
+    worst normal, and what the baseline says differently.
 
     Args:
         run: a results folder to take the figures from; None to measure them.
+        baselines: those that rows are compared with, or written into.
 
     Raises:
         UsageError: a table, option or column that there is not.
         MissingError: a table needs a GL device and there is none.
     """
     measure = _rows_of_run(run) if run else measured_for
+    baselines = baselines or Baselines(False)
     for gate in gates:
         found = measure(gate)
         yield from (_held(gate, one, limit) for one in found for limit in gate.limits)
+        if gate.baseline:
+            yield from (_compared(gate, one, baselines.of(gate.baseline)) for one in found)
         tick(gate.place)
+
+
+class Baselines:
+    """The baselines that gates name, each read once.
+
+    Args:
+        writes: whether rows are written into them instead of being compared.
+    """
+
+    def __init__(self, writes: bool):
+        self.writes = writes
+        self._by_path: dict[Path, Baseline] = {}
+
+    def of(self, path: Path) -> Baseline:
+        """The baseline of a file."""
+        return self._by_path.setdefault(path, Baseline(path, self.writes, WRITER))
+
+    def write(self) -> Iterator[Path]:
+        """Write what was recorded, and tell where. Raises UsageError."""
+        for path, baseline in self._by_path.items():
+            if self.writes and (dumped := baseline.dumped()):
+                write_baseline(path, [dumped])
+                yield path
+
+
+def _row(gate: Gate, found: Found, **more: Any) -> Row:
+    row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(found.row)}
+    row |= {"column": None, "figure": None, "limit": None, "holds": "pass", "worst_normal": None}
+    return row | {"changed": None, "skipped": found.row.get("skipped")} | more
 
 
 def _held(gate: Gate, found: Found, limit: Limit) -> Row:
@@ -151,14 +195,20 @@ def _held(gate: Gate, found: Found, limit: Limit) -> Row:
         broken = limit.broken_by(gate.table, found.row)
     except UsageError as error:
         raise UsageError(f"{gate.place}: {gate.table.name}: {error}") from error
-    return {
-        "gate": gate.place.rsplit(" ", 1)[-1],
-        "table": gate.table.name,
-        "row": gate.table.name_of(found.row),
-        "column": limit.column,
-        "figure": found.row[limit.column],
-        "limit": str(limit),
-        "holds": "FAIL" if broken else "pass",
-        "worst_normal": str(found.worst) if broken and found.worst else None,
-        "skipped": found.row.get("skipped"),
-    }
+    worst = str(found.worst) if broken and found.worst else None
+    figure, holds = found.row[limit.column], "FAIL" if broken else "pass"
+    return _row(gate, found, column=limit.column, figure=figure, limit=str(limit), holds=holds, worst_normal=worst)
+
+
+def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
+    """One row: whether the baseline says the same, and where not, what."""
+    one = entry(gate.table, found.asked, found.row, found.listing)
+    if baseline.writes:
+        baseline.record(one)
+        return _row(gate, found, limit=f"written into {baseline.path.name}")
+    try:
+        said = baseline.differences(one, {})
+    except AssertionError as error:
+        said = [str(error)]
+    holds, changed = "FAIL" if said else "pass", "\n".join(said) or None
+    return _row(gate, found, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)

@@ -85,14 +85,17 @@ def not_a_limit(column: str, value: Any) -> UsageError:
     return UsageError(f'{column}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
 
 
-def split_limits(values: Mapping[str, Any], table: Table) -> tuple[dict[str, Any], tuple[Limit, ...]]:
-    """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them."""
+def split_limits(
+    values: Mapping[str, Any], table: Table, may_lack: bool = False
+) -> tuple[dict[str, Any], tuple[Limit, ...]]:
+    """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them and there must
+    be one."""
     found = {name: limit(name, value) for name, value in values.items()}
     options = {name: value for name, value in values.items() if found[name] is None}
     limits = tuple(one for one in found.values() if one)
     figures = [name for name in options if (column := table.column(name)) and column.role in (Role.FIGURE, Role.TIME)]
     if not limits and figures:
         raise not_a_limit(figures[0], values[figures[0]])
-    if not limits:
+    if not limits and not may_lack:
         raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
     return options, limits

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
@@ -13,16 +13,23 @@ from ..options.option import checked_options
 from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps
 from ..tables.registry import TABLES
-from ..tables.table import Row, Table
+from ..tables.table import Row, Step, Table
 from .limits import Limit
 
 
 @dataclass(frozen=True)
 class Found:
-    """A row, and how to find the normal that came back farthest off, which takes a second look."""
+    """A row, and how to find the normal that came back farthest off, which takes a second look.
+
+    Attributes:
+        asked: every option that it was measured with; empty of a run's rows.
+        listing: the instructions that it was counted in; empty where there are none.
+    """
 
     row: Row
     find: Callable[[], Worst | None]
+    asked: Mapping[str, Any] = field(default_factory=dict)
+    listing: str = ""
 
     @cached_property
     def worst(self) -> Worst | None:
@@ -48,8 +55,9 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
         MissingError: this machine lacks what they need.
     """
     given = {**checked_options(table.options, usual or {}), **checked_options(table.options, values)}
+    options = table.options(**single(table, given))
     with noting_what_is_left_out() as left_out:
-        ask = asked(table, table.options(**single(table, given)))
+        ask = asked(table, options)
     # What is named and not there would pass unseen; of "all" some never fit.
     if left_out and not any(str(value) == "all" for value in given.values()):
         raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
@@ -57,7 +65,11 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
     # By name: a finished row may be another object.
     step_of = {table.name_of(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
     rows = table.work.finish([row for rows in steps for row in rows])
-    return [Found(row, partial(table.work.worst, step_of[table.name_of(row)])) for row in rows]
+    return [_found(table, row, step_of[table.name_of(row)], asdict(options)) for row in rows]
+
+
+def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Found:
+    return Found(row, partial(table.work.worst, step), options, table.work.listing(step, row) or "")
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:

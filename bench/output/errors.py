@@ -77,6 +77,14 @@ def tell(line: str) -> None:
         print(f"normalbench: {shown}", file=sys.stderr)
 
 
+def tell_together(first: str, lines: Iterable[str]) -> None:
+    """A line to standard error, and indented ones that belong to it; all of them, however often they were said."""
+    from ...reports.tables import visible
+
+    for at, line in enumerate((first, *lines)):
+        print(("  " if at else "normalbench: ") + visible(" ".join(line.split())), file=sys.stderr)
+
+
 def pick(what: str, names: str, known: Mapping[str, T]) -> list[T]:
     """The values that comma-separated names stand for, however they are spelled, or all of them for "all".
 

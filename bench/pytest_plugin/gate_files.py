@@ -35,7 +35,10 @@ class GateItem(pytest.Item):
     def runtest(self) -> None:
         bench = Normalbench(session_of(self.config), self.config.invocation_params.dir)
         try:
-            bench.hold(self.gate.table, self.gate.options, self.gate.limits)
+            if self.gate.limits:
+                bench.hold(self.gate.table, self.gate.options, self.gate.limits)
+            if self.gate.baseline:
+                bench.matches(self.gate.table, self.gate.options, self.gate.baseline)
         except UsageError as error:
             raise UsageError(f"{self.gate.place}: {error}") from None
 

@@ -6,7 +6,7 @@ import functools
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
@@ -14,6 +14,7 @@ import pytest
 
 from ...encodings.codecs.files import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
+from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
 from ..languages.words import file_of
@@ -161,7 +162,7 @@ class Measured:
         checked_tolerances(tolerances, list(self.rows[0]))
         wrong: list[tuple[Found, list[str]]] = []
         for one in self._measurable():
-            said = entry(self.table, self._request(), one.row)
+            said = entry(self.table, self._request(), one.row, one.listing)
             if baseline.writes:
                 baseline.record(said)
             else:
@@ -223,6 +224,11 @@ class Normalbench:
         for one in limits:
             one.check(table)
         self._measured(table, **with_their_options(table, options, limits)).hold(limits)
+
+    def matches(self, table: Table, options: Mapping[str, Any], path: Path) -> None:
+        """Measure, and compare every row with a baseline; see Measured.matches_baseline."""
+        measured = self._measured(table, **options)
+        replace(measured, session=replace(measured.session, baseline=Baseline(path, False, WRITER))).matches_baseline()
 
     @ends_here
     def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:

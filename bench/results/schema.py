@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, NotRequired
 
 from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, ValidationError, with_config
 from typing_extensions import TypedDict
@@ -67,6 +67,7 @@ class BaselineEntry(TypedDict):
     table: str
     key: dict[str, JsonValue]
     row: dict[str, JsonValue]
+    listing: NotRequired[list[str]]
 
 
 @with_config(STRICT)

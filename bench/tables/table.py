@@ -175,6 +175,7 @@ class Work:
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
+        listing: the instructions that a step's row was counted in, as text; None where there are none.
         lacking: what this machine turned out to lack; makes the exit status 3.
         missing: why `run` leaves the table out on this machine; empty where it does not.
     """
@@ -192,6 +193,7 @@ class Work:
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     worst: Callable[[Step], Any] = _none
+    listing: Callable[[Step, Row], str | None] = _none
     lacking: Callable[[Measured], Iterable[str]] = _nothing
     missing: Callable[[], str] = str
 
@@ -218,6 +220,7 @@ class Table:
         in_all: whether `run` measures it without being asked to.
         old_names: what older runs call the table.
         renamed: columns of older runs, by what they are called now.
+        compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
     name: str
@@ -237,6 +240,7 @@ class Table:
     in_all: bool = True
     old_names: tuple[str, ...] = ()
     renamed: Mapping[str, str] = field(default_factory=dict)
+    compilers: tuple[str, ...] = ()
 
     @property
     def work(self) -> Work:

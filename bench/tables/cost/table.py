@@ -202,6 +202,7 @@ TABLE = Table(
     files={"disassembly": "disassembly"},
     by="measure",
     partial=True,
+    compilers=("driver", "compiler"),
     section=Section(
         title="What it costs",
         short="Cost",

@@ -267,6 +267,12 @@ def _plot(done: Measured) -> bool:
     return draw(done.rows, asked.encodings, asked.drawn_storages, sets, options.error, done.outputs.plot)
 
 
+def _listing(step: Step, row: Row) -> str | None:
+    """The kernel that a row was counted in; None of what no compiler made."""
+    name = TABLE.name_of(row)
+    return next((text for one, text in step.case.asked.listed if TABLE.name_of(one) == name and text), None)
+
+
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
     """Each row's disassembly as a file, what it costs at its head, in a folder for each family."""
     for path, text in (measure.listing(row, text) for row, text in listed if text):
@@ -299,6 +305,7 @@ WORK = Work(
     warnings=_warnings,
     write=_write,
     drawings=_drawings,
+    listing=_listing,
     lacking=_lacking,
     missing=_missing,
 )

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from normalbench.bench.gates import listings
 from normalbench.bench.gates.gates import checked, read_gates
 from normalbench.bench.gates.limits import Limit
 from normalbench.bench.output.errors import MissingError, UsageError
@@ -213,3 +214,88 @@ def test_no_gates_give_a_traceback(tmp_path_factory, content):
         list(checked(gates, None, lambda _: None))
     except (UsageError, MissingError) as error:
         assert "\n" not in str(error) or "gates" in str(error)
+
+
+MINE = """
+vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
+vec3 mine_decode(vec2 e, vec3 view) { return DECODED; }
+"""
+PLAIN = "vec3(e, sqrt(max(1.0 - dot(e, e), 0.0)))"
+
+
+def golden_gate(tmp_path, decoded: str) -> str:
+    """A gate that compares what an encoder's decode costs with a file; the encoder's decode as given."""
+    (tmp_path / "mine.glsl").write_text(MINE.replace("DECODED", decoded))
+    path = tmp_path / "gates.toml"
+    asked = f'encoding = "{tmp_path}/mine.glsl"\nfamily = "navi21"\noperation = "decode"\nstage = "fragment"\n'
+    path.write_text(f'[[gate]]\ntable = "cost"\n{asked}storage = "rgba8"\nmatches_baseline = "kept/costs.json"\n')
+    return str(path)
+
+
+@pytest.mark.usefixtures("radv")
+def test_a_cost_that_grew_is_shown_with_the_instructions_that_came_to_it(run, tmp_path):
+    gates = golden_gate(tmp_path, PLAIN)
+    assert run("check", gates, "--write-baseline")[0] == 0
+    status, out, _ = run("check", gates, "--format", "json")
+    assert status == 0 and {row["holds"] for row in json.loads(out)} == {"pass"}
+    status, out, err = run("check", golden_gate(tmp_path, f"normalize({PLAIN})"), "--format", "json")
+    (row,) = [row for row in json.loads(out) if row["holds"] == "FAIL"]
+    assert status == 1 and "instructions is 10, the baseline says 4 (+6)" in row["changed"]
+    added = [line.split() for line in row["changed"].splitlines() if line.startswith(("  +", "  -"))]
+    names = [f"{sign} {name}" for sign, name, *_ in added]
+    # Two multiply-adds make the squared length, then its reciprocal root scales three components.
+    assert names == ["+ v_fmac_f32_e32", "+ v_fmac_f32_e32", "+ v_rsq_f32_e32", *["+ v_mul_f32_e32"] * 3]
+    assert "\n  + v_rsq_f32_e32" in err and err.count("+ v_mul_f32_e32") == 3
+
+
+@pytest.mark.usefixtures("radv")
+def test_costs_by_another_compiler_are_not_compared_and_both_are_kept(run, tmp_path):
+    gates, kept = golden_gate(tmp_path, PLAIN), tmp_path / "kept" / "costs.json"
+    status, _, err = run("check", gates)
+    assert status == 1 and "has no row isa mine decode fragment navi21; normalbench check --write-baseline" in err
+    run("check", gates, "--write-baseline")
+    entries = json.loads(kept.read_text())
+    mesa = entries[0]["key"]["driver"]
+    kept.write_text(kept.read_text().replace(mesa, "Mesa 0.0.1"))
+    status, _, err = run("check", gates)
+    assert status == 1 and f"by {mesa}; it has one by Mesa 0.0.1" in err
+    run("check", gates, "--write-baseline")
+    assert len(json.loads(kept.read_text())) == 2 * len(entries) and run("check", gates)[0] == 0
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ('matches_baseline = 3\npsnr_db = "at least 3"', "matches_baseline is 3; it must be a file's name"),
+        ('matches_baseline = "gates.toml"', "gates.toml is not a baseline"),
+        ('psnr_db = "at least 3"', 'no gate names a baseline; add matches_baseline = "costs.json" to one'),
+    ],
+)
+def test_what_is_no_baseline_is_said_in_a_line(run, tmp_path, words, said):
+    path = tmp_path / "gates.toml"
+    path.write_text(f'[[gate]]\nencoding = "xy"\nstorage = "rg8"\nnormals = "axes"\n{words}\n')
+    for more in ([], ["--write-baseline"]) if "no gate" not in said else (["--write-baseline"],):
+        status, out, err = run("check", str(path), *more)
+        assert (status, out) == (2, "") and said in err
+
+
+def test_figures_of_any_table_are_compared_with_a_baseline(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        PASSES.replace("psnr_db", "mse").replace("at least 47.5", "at most 1") + 'matches_baseline = "q.json"\n'
+    )
+    assert run("check", str(path), "--write-baseline")[0] == 0 and run("check", str(path))[0] == 0
+    kept = json.loads((tmp_path / "q.json").read_text())
+    kept[0]["row"]["psnr_db"] += 1.0
+    (tmp_path / "q.json").write_text(json.dumps(kept))
+    status, _, err = run("check", str(path))
+    assert status == 1 and "psnr_db is 48.56" in err and "1 of 2 limits do not hold" in err
+
+
+def test_registers_alone_are_no_difference_between_listings():
+    before = ["v_mul_f32 v1, v2, s[2:3]", "mul(16) g2<1>F -g13<8,8,1>F", "s_endpgm"]
+    after = ["v_mul_f32 v7, v9, s[4:5]", "mul(16) g18<1>F -g12<8,8,1>F", "v_add_f32 v1, v2, v3", "s_endpgm"]
+    assert list(listings.differences(before, after)) == ["+ v_add_f32 v1, v2, v3"]
+    assert list(listings.differences(after, before)) == ["- v_add_f32 v1, v2, v3"]
+    long = list(listings.differences([], [f"v_op{at}" for at in range(100)]))
+    assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 lines more"

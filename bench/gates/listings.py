@@ -1,0 +1,36 @@
+"""What two listings of instructions say differently, line by line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher
+
+# A reader of a message has no use for more.
+MOST_LINES = 40
+# Which register holds a number is no difference: v3, s[2:5], g17.1, R8, %rd4.
+_REGISTER = re.compile(r"\b(v|s|g|r|R|UR|P|UP)(?:\d+(?:\.\d+)?|\[\d+(?::\d+)?\])")
+# The bytes of an instruction, behind its text.
+_BYTES = re.compile(r"\s*;[\s0-9a-f]*$|\s*/\*\s*0x[0-9a-f]+\s*\*/\s*$")
+
+
+def lines_of(listing: str) -> list[str]:
+    """The lines that a baseline keeps: instructions and labels, without comments, bytes and blank lines."""
+    lines = (" ".join(_BYTES.sub("", line).split()) for line in listing.splitlines())
+    return [line for line in lines if line and not line.startswith((";", "//", "#"))]
+
+
+def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
+    """Lines that were added, with +, and left out, with -, and how many more where they are too many."""
+    found = list(_changed(before, after))
+    yield from found[:MOST_LINES]
+    if len(found) > MOST_LINES:
+        yield f"... and {len(found) - MOST_LINES} lines more"
+
+
+def _changed(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
+    plain = [[_REGISTER.sub(r"\1", line) for line in lines] for lines in (before, after)]
+    for what, a, b, c, d in SequenceMatcher(None, *plain, autojunk=False).get_opcodes():
+        if what != "equal":
+            yield from (f"- {line}" for line in before[a:b])
+            yield from (f"+ {line}" for line in after[c:d])
