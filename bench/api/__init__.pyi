@@ -309,6 +309,30 @@ def cost(
         error: --plot: psnr, mean or max, the largest angle.
     """
 
+def roofline(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    gpu: Names = ...,
+    size: Names = ...,
+    reads: Names = ...,
+    overdraw: float = ...,
+    cache_share: float = ...,
+) -> Rows:
+    """Bytes saved against instructions spent: which code is faster on which GPU, by a model.
+
+    A code's bytes take memory bandwidth. Its instructions, as `cost --isa` counts them, take arithmetic. The longer of the two is its time. Nothing is timed, and the GPUs need not be there.
+
+    Args:
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        gpu: GPUs, comma-separated, or all: rx480 (Radeon RX 480), vega64 (Radeon RX Vega 64), rx5700xt (Radeon RX 5700 XT), rx6800xt (Radeon RX 6800 XT), rx7900xtx (Radeon RX 7900 XTX), series_x (Xbox Series X), steam_deck (Steam Deck), hd530 (HD Graphics 530, two channels of DDR4-2133), iris_xe (Iris Xe of a Core i7-1185G7, LPDDR4x-4266), a770 (Arc A770). NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). A family with these is a GPU of that family.
+        size: WIDTHxHEIGHT of the G-buffer, comma-separated.
+        reads: Passes that read and decode each pixel's normal, comma-separated.
+        overdraw: How often each pixel's normal is encoded and written.
+        cache_share: The share of the last-level cache that normals may have, 0 to 1.
+    """
+
 def effects(
     *,
     effect: Names = ...,

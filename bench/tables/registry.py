@@ -15,6 +15,7 @@ FOLDERS = (
     "mix",
     "maps",
     "cost",
+    "roofline",
     "effects",
     "motion",
     "lights",

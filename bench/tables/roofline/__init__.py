@@ -1,0 +1,1 @@
+"""Bytes against instructions: which code is faster on which GPU."""

@@ -1,0 +1,193 @@
+"""What a code's bytes and instructions take of a frame, by the roofline model.
+
+Williams, Waterman, Patterson (2009), Roofline: An Insightful Visual Performance Model for Multicore Architectures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import prod
+from typing import Any
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.defines.packings import SIGN, packing_of
+from ..cost import measure as cost
+from ..cost.codec_costs import Costs, LeftOutError, Where
+from .rates import Rates
+from .table import TABLE
+
+Row = dict[str, Any]
+STAGE = "fragment"
+# Full-rate instructions where a family's rates are known, and instructions as they are elsewhere.
+COLUMNS = ("issue_slots", "instructions")
+# Two times that differ by less are one: counts are whole numbers.
+TIE = 1e-9
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What is done with a G-buffer in a frame.
+
+    Attributes:
+        size: width and height in pixels.
+        reads: passes that read and decode each pixel's normal.
+        overdraw: how often each pixel's normal is encoded and written.
+        cache_share: the share of the last-level cache that normals may have.
+    """
+
+    size: tuple[int, int]
+    reads: int
+    overdraw: float
+    cache_share: float
+
+    @property
+    def pixels(self) -> int:
+        return prod(self.size)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a code takes of a pixel: bytes, and instructions to encode and to decode."""
+
+    bytes: float
+    encode: float
+    decode: float
+
+    def instructions(self, frame: Frame) -> float:
+        """Of a pixel in a frame."""
+        return frame.overdraw * self.encode + frame.reads * self.decode
+
+    def traffic(self, frame: Frame) -> float:
+        """Bytes of a frame."""
+        return frame.pixels * self.bytes * (frame.overdraw + frame.reads)
+
+    def is_cached(self, frame: Frame, rates: Rates) -> bool:
+        """Whether all normals fit into their share of the cache."""
+        return 0 < frame.pixels * self.bytes <= frame.cache_share * rates.cache * 1e6
+
+    def times(self, frame: Frame, rates: Rates) -> tuple[float, float]:
+        """Seconds that bytes take, and that instructions do."""
+        bandwidth = rates.cached if self.is_cached(frame, rates) else rates.memory
+        return (
+            self.traffic(frame) / (bandwidth * 1e9),
+            frame.pixels * self.instructions(frame) / rates.instructions,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """Codes on one GPU, in several frames."""
+
+    codecs: Sequence[Codec]
+    gpu: str
+    rates: Rates
+    frames: Sequence[Frame]
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each code and frame."""
+        for codec in self.codecs:
+            found = self.work(codec)
+            for frame in self.frames:
+                yield self._row(codec, frame) | (_figures(found, frame, self.rates) if found else self._lost[codec])
+
+    def work(self, codec: Codec) -> Work | None:
+        """What a code takes; None where it is not known."""
+        return self._works.get(codec)
+
+    @cached_property
+    def _works(self) -> dict[Codec, Work]:
+        packings = dict.fromkeys(packing_of(codec) for codec in self.codecs)
+        encodings = dict.fromkeys(codec.encoding for codec in self.codecs)
+        chosen = cost.cases(encodings, [*packings, *SIGN], cost.OPERATIONS)
+        rows = [row for row, _ in cost.isa_rows(chosen, [STAGE], [self.rates.family], self._lacks, cost.nobody)]
+        self._about["driver"] = next((row["driver"] for row in rows if row["driver"]), None)
+        costs, found = Costs(rows), {}
+        for codec in self.codecs:
+            try:
+                encode, decode = (self._counted(costs, rows, codec, operation) for operation in cost.OPERATIONS)
+                found[codec] = Work(codec.bits / 8, encode, decode)
+            except LeftOutError as reason:
+                said = next((row["skipped"] for row in rows if row["skipped"] and not row["encoding"]), None)
+                self._lost[codec] = {"skipped": said or str(reason)}
+        return found
+
+    def _counted(self, costs: Costs, rows: Sequence[Row], codec: Codec, operation: str) -> float:
+        column = COLUMNS[all(row[COLUMNS[0]] is None for row in rows)]
+        return costs.of(codec, Where("isa", self.rates.family, STAGE), operation, column).cost
+
+    @cached_property
+    def _lacks(self) -> list[str]:
+        return []
+
+    @cached_property
+    def _lost(self) -> dict[Codec, Row]:
+        return {}
+
+    @cached_property
+    def _about(self) -> Row:
+        return {}
+
+    def _row(self, codec: Codec, frame: Frame) -> Row:
+        size = "x".join(map(str, frame.size))
+        about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "gpu": self.gpu, "size": size}
+        about |= {"reads": frame.reads, "overdraw": frame.overdraw, "bits": codec.bits, "ridge": self.rates.ridge}
+        return TABLE.empty() | about | {"family": self.rates.family} | self._about
+
+
+def _figures(work: Work, frame: Frame, rates: Rates) -> Row:
+    memory, alu = work.times(frame, rates)
+    figures: Row = {"bytes_per_pixel": work.bytes, "encode": work.encode, "decode": work.decode}
+    figures |= {"instructions": work.instructions(frame), "megabytes": work.traffic(frame) / 1e6}
+    figures |= {"memory_us": memory * 1e6, "alu_us": alu * 1e6, "frame_us": max(memory, alu) * 1e6}
+    return figures | {"bound": "memory" if memory >= alu else "alu", "in_cache": work.is_cached(frame, rates)}
+
+
+def ranked(rows: Sequence[Row]) -> list[Row]:
+    """Rows by GPU, size and reads, the fastest first, with their ranks; those without figures last."""
+    groups: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row["gpu"], row["size"], row["reads"]), []).append(row)
+    return [row for group in groups.values() for row in _ranked(group)]
+
+
+def _ranked(group: Sequence[Row]) -> Iterator[Row]:
+    known = sorted((row for row in group if row["frame_us"] is not None), key=lambda row: row["frame_us"])
+    for row in known:
+        faster = sum(other["frame_us"] < row["frame_us"] * (1 - TIE) for other in known)
+        yield row | {"rank": 1 + faster}
+    yield from (row for row in group if row["frame_us"] is None)
+
+
+MOST_READS = 64
+
+
+def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
+    """From how many reads on one code is faster than another: "always", "never", "from 3", "up to 2", "equal".
+
+    Each time is the larger of two lines in the number of reads, so one may also be faster between two numbers.
+    """
+    wins, loses = [], []
+    for reads in range(1, MOST_READS + 1):
+        at = Frame(frame.size, reads, frame.overdraw, frame.cache_share)
+        a, b = (max(work.times(at, rates)) for work in (one, other))
+        wins += [reads] if a < b * (1 - TIE) else []
+        loses += [reads] if b < a * (1 - TIE) else []
+    if not wins:
+        return "never" if loses else "equal"
+    if len(wins) == MOST_READS:
+        return "always"
+    first, last = wins[0], wins[-1]
+    if last == MOST_READS:
+        return f"from {first}"
+    return f"up to {last}" if first == 1 else f"from {first} to {last}"
+
+
+def works_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, Work]:
+    """What each code of rows takes, by its name."""
+    known = (row for row in rows if row["frame_us"] is not None)
+    return {
+        f"{row['encoding']} {row['storage']}": Work(row["bytes_per_pixel"], row["encode"], row["decode"])
+        for row in known
+    }

@@ -1,0 +1,114 @@
+"""GPUs by what they compute and move in a second. Imports nothing heavy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
+
+from ...options.gpu_families import FAMILIES
+from ...output.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Rates:
+    """What a GPU does in a second.
+
+    Attributes:
+        title: what people call it.
+        family: whose compiler counts for it.
+        lanes: how many lanes' instructions it issues a clock.
+        clock: in GHz, the boost clock.
+        memory: GB/s of its memory.
+        cache: MB of its last-level cache; 0 where its bandwidth is not published.
+        cached: GB/s of what that cache holds.
+    """
+
+    title: str
+    family: str
+    lanes: float
+    clock: float
+    memory: float
+    cache: float = 0.0
+    cached: float = 0.0
+
+    @property
+    def instructions(self) -> float:
+        """Lanes' instructions in a second."""
+        return self.lanes * self.clock * 1e9
+
+    @property
+    def ridge(self) -> float:
+        """Instructions that take as long as moving one byte does."""
+        return self.instructions / (self.memory * 1e9)
+
+
+# Shading units, boost clock, memory bandwidth as their makers' product pages give them (AMD, Intel, Microsoft, Valve).
+# RDNA 3 issues two instructions a lane and clock where its compiler pairs them; this counts one. Cached: AMD's
+# "effective memory bandwidth" with Infinity Cache. Intel's execution units compute 8 lanes.
+GPUS: Mapping[str, Rates] = MappingProxyType(
+    {
+        "rx480": Rates("Radeon RX 480", "polaris10", 2304, 1.266, 256),
+        "vega64": Rates("Radeon RX Vega 64", "vega10", 4096, 1.546, 484),
+        "rx5700xt": Rates("Radeon RX 5700 XT", "navi10", 2560, 1.905, 448),
+        "rx6800xt": Rates("Radeon RX 6800 XT", "navi21", 4608, 2.250, 512, 128, 1664),
+        "rx7900xtx": Rates("Radeon RX 7900 XTX", "navi31", 6144, 2.500, 960, 96, 3500),
+        "series_x": Rates("Xbox Series X", "navi21", 3328, 1.825, 560),
+        "steam_deck": Rates("Steam Deck", "navi21", 512, 1.600, 88),
+        "hd530": Rates("HD Graphics 530, two channels of DDR4-2133", "skl", 24 * 8, 1.150, 34.1),
+        "iris_xe": Rates("Iris Xe of a Core i7-1185G7, LPDDR4x-4266", "tgl", 96 * 8, 1.350, 68.3),
+        "a770": Rates("Arc A770", "dg2", 4096, 2.100, 560),
+    }
+)
+USUAL = "rx480,rx6800xt,steam_deck,iris_xe"
+# The least and the most that a setting may be.
+RANGES = MappingProxyType(
+    {"lanes": (1.0, 1e6), "clock": (0.01, 100.0), "memory": (0.1, 1e6), "cache": (0.0, 1e5), "cached": (0.0, 1e7)}
+)
+
+
+def gpus_named(words: str) -> dict[str, Rates]:
+    """The GPUs of comma-separated names, or all. NAME:memory=400:clock=2 changes one's rates; a family's name with
+    lanes, clock and memory is a GPU of that family.
+
+    Raises:
+        UsageError: an unknown name or setting, or a rate that no GPU has.
+    """
+    named = [word for word in map(str.strip, words.split(",")) if word]
+    if not named:
+        raise UsageError(f"no GPU named; known: all, {', '.join(GPUS)}")
+    return {word: rates for name in named for word, rates in (GPUS.items() if name == "all" else [_gpu(name)])}
+
+
+def _gpu(word: str) -> tuple[str, Rates]:
+    name, *settings = word.split(":")
+    changed = dict(_setting(word, setting) for setting in settings)
+    if name in GPUS:
+        made = replace(GPUS[name], **changed)
+    elif name in FAMILIES:
+        if missing := [one for one in ("lanes", "clock", "memory") if one not in changed]:
+            raise UsageError(
+                f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {name}:{missing[0]}=2"
+            )
+        made = Rates(FAMILIES[name].title, name, **changed)
+    else:
+        raise UsageError(f"--gpu {word}: unknown GPU; known: all, {', '.join(GPUS)}, or a family with its rates")
+    if bool(made.cache) != bool(made.cached):
+        raise UsageError(f"--gpu {word}: cache, in MB, and cached, in GB/s, go together")
+    return word, made
+
+
+def _setting(word: str, setting: str) -> tuple[str, float]:
+    name, equals, value = setting.partition("=")
+    known = [field.name for field in fields(Rates) if field.name in RANGES]
+    if name not in known or not equals:
+        raise UsageError(f"--gpu {word}: unknown setting {setting!r}; known: {', '.join(known)}")
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    low, high = RANGES[name]
+    if not low <= number <= high:
+        raise UsageError(f"--gpu {word}: {name} is {value!r}; from {low:g} to {high:g}")
+    return name, number

@@ -1,0 +1,106 @@
+"""The roofline table: what a code's bytes and its instructions take of a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import Encodings, Option, Plot, StorageNames
+from .. import shared_columns as shared
+from ..table import Column, Role, Section, Table
+from .rates import GPUS, USUAL
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class RooflineOptions:
+    """What `roofline` computes. Names are comma-separated."""
+
+    encoding: Encodings = "xyz,spheremap,octahedral,octahedral_precise"
+    storage: StorageNames = "rg8,rgb10a2,rgba16f"
+    gpu: Annotated[
+        str,
+        Option(
+            "--gpu",
+            f"GPUs, comma-separated, or all: {', '.join(f'{name} ({gpu.title})' for name, gpu in GPUS.items())}. "
+            "NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). "
+            "A family with these is a GPU of that family.",
+            in_run=True,
+        ),
+    ] = USUAL
+    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the G-buffer, comma-separated.")] = "1920x1080,3840x2160"
+    reads: Annotated[str, Option("--reads", "Passes that read and decode each pixel's normal, comma-separated.")] = (
+        "1,4"
+    )
+    overdraw: Annotated[float, Option("--overdraw", "How often each pixel's normal is encoded and written.")] = 1.0
+    cache_share: Annotated[
+        float, Option("--cache-share", "The share of the last-level cache that normals may have, 0 to 1.")
+    ] = 0.25
+
+
+@dataclass(frozen=True, kw_only=True)
+class RooflineOutputs:
+    """What `roofline` writes beside its rows."""
+
+    plot: Plot = None
+
+
+COLUMNS = (
+    shared.ENCODING,
+    shared.STORAGE,
+    Column("gpu", "The GPU, with the rates that were changed.", KEY),
+    Column("size", "Width and height of the G-buffer in pixels.", KEY),
+    Column("reads", "Passes that read and decode each pixel's normal.", KEY),
+    shared.BITS,
+    Column("bytes_per_pixel", "Of the normal alone: what lies beside it in the texel is not its cost.", better="less"),
+    Column(
+        "encode", "Instructions to encode and pack, in full-rate ones where they are known.", better="less", drops=5
+    ),
+    Column("decode", "Instructions to unpack and decode.", better="less", drops=5),
+    Column("instructions", "Instructions a pixel and frame: `overdraw` encodes and `reads` decodes.", better="less"),
+    Column("megabytes", "Megabytes that are written and read in a frame.", better="less", drops=8),
+    Column("memory_us", "How long the bytes take.", unit="us", better="less", drops=4),
+    Column("alu_us", "How long the instructions take.", unit="us", better="less", drops=4),
+    Column("frame_us", "The longer of the two: they run beside each other.", unit="us", better="less"),
+    Column("bound", "Which of the two is longer: memory or alu.", HOW),
+    Column("rank", "The place by frame_us among the codes on this GPU, size and reads; equal ones share it.", HOW),
+    Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),
+    Column("ridge", "Instructions that take as long as one byte from memory on this GPU.", HOW, drops=6),
+    Column("overdraw", "How often each pixel's normal is encoded and written.", HOW, drops=10),
+    Column("family", "The GPU family that instructions are counted for.", HOW, drops=9),
+    Column("driver", "The compiler of the counts.", HOW, drops=11),
+    shared.SKIPPED,
+)
+ALSO = (
+    Column("code", "An encoding in its storage."),
+    Column("* *x*", "frame_us on that GPU at that size.", unit="us", better="less"),
+)
+
+TABLE = Table(
+    name="roofline",
+    package=__package__ or "",
+    help="Bytes saved against instructions spent: which code is faster on which GPU, by a model.\n\n"
+    "A code's bytes take memory bandwidth. Its instructions, as `cost --isa` counts them, take arithmetic. The longer "
+    "of the two is its time. Nothing is timed, and the GPUs need not be there.",
+    example="normalbench roofline --encoding xyz,octahedral --storage rgba16f,rg8 --gpu rx6800xt,iris_xe",
+    options=RooflineOptions,
+    outputs=RooflineOutputs,
+    columns=COLUMNS,
+    also=ALSO,
+    usual=({"encoding": "xyz,spheremap,octahedral,octahedral_precise", "storage": "rg8,rgb10a2,rgba16f"},),
+    single={"encoding": "octahedral", "storage": "rg8", "gpu": "rx6800xt", "size": "1920x1080", "reads": "1"},
+    by="gpu",
+    in_all=False,
+    compilers=("driver",),
+    section=Section(
+        title="Bytes against instructions",
+        short="Roofline",
+        intro="Is a smaller code worth its instructions?",
+        method="Instructions are counted for the GPU's family: of encoding with packing, of unpacking with decoding. A "
+        "frame encodes and writes each pixel's normal `overdraw` times. Each pass reads and decodes it once. Bytes "
+        "over bandwidth is one time, instructions over the rate of full-rate ones another. The longer counts. Where "
+        "the normals fit into their share of the last-level cache, the bandwidth is the cache's. Compression of "
+        "targets, latency and what else the passes do are left out.",
+    ),
+)

@@ -1,0 +1,161 @@
+"""How the roofline table is computed and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from ....reports.charts import roofline as charts
+from ....reports.charts.drawings import Drawing
+from ...codecs.names import codecs_named
+from ...isa import spirv
+from ...options.counts import checked_numbers, checked_sides
+from ...options.targets import that_fit
+from ...output.errors import UsageError
+from ...output.writing import check_plot, save_plot
+from ..charts import drawing, having
+from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from . import measure
+from .measure import Case, Frame
+from .rates import RANGES, gpus_named
+from .table import TABLE, RooflineOptions, RooflineOutputs
+
+MOST_SIDE, MOST_READS = 32768, 1024
+# Of more codes nobody reads every pair.
+MOST_PAIRS = 6
+
+
+def cases(options: RooflineOptions) -> list[Case]:
+    """One for each GPU. Raises UsageError for what is unknown or out of range."""
+    if not 0.01 <= options.overdraw <= 1000:
+        raise UsageError(f"--overdraw {options.overdraw}: from 0.01 to 1000")
+    if not 0 <= options.cache_share <= 1:
+        raise UsageError(f"--cache-share {options.cache_share}: a share is 0 to 1")
+    sizes = [checked_sides(word, MOST_SIDE, "here") for word in options.size.split(",")]
+    reads = checked_numbers("--reads", options.reads, int, 0, MOST_READS)
+    gpus = gpus_named(options.gpu)
+    codecs = that_fit(codecs_named(options.encoding, options.storage, "nearest"))
+    frames = [Frame(size, count, options.overdraw, options.cache_share) for size in sizes for count in reads]
+    return [Case(codecs, name, rates, frames) for name, rates in gpus.items()]
+
+
+def _steps(options: RooflineOptions, _: RooflineOutputs) -> list[Step]:
+    return [Step(_key(case), case, case.gpu) for case in cases(options)]
+
+
+def _key(case: Case) -> Row:
+    rates = {name: getattr(case.rates, name) for name in ("family", *RANGES)}
+    frames = [[*frame.size, frame.reads, frame.overdraw, frame.cache_share] for frame in case.frames]
+    return {"gpu": case.gpu, **rates, "codecs": [codec.name for codec in case.codecs], "frames": frames}
+
+
+def _check(outputs: RooflineOutputs, _: Sequence[Step]) -> None:
+    check_plot(outputs.plot)
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    yield from _sheets(done.rows)
+    notes = [line for step in done.steps for line in _duels(step.case)]
+    if notes:
+        yield Sheet("", (), notes=tuple(notes))
+
+
+def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """A table for each GPU and size, the fastest code first, of the fewest reads."""
+    hidden = ("encoding", "storage", "gpu", "size", "overdraw", "ridge", "family", "driver", "in_cache", "skipped")
+    known = [row for row in rows if row["frame_us"] is not None]
+    for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
+        part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]
+        about = f"one byte takes as long as {part[0]['ridge']:.3g} instructions, {part[0]['driver']}"
+        lines = [
+            {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in hidden}
+            for row in part
+        ]
+        yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines))
+
+
+def _duels(case: Case) -> Iterator[str]:
+    """Of each pair of codes of different size, from how many reads on the smaller is faster, at which sizes. Where
+    there are many pairs, those alone in which it is not always so."""
+    works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
+    known = sorted(((name, work) for name, work in works.items() if work), key=lambda one: one[1].bytes)
+    pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]
+    said = {(small[0], large[0]): _by_size(case, small[1], large[1]) for small, large in pairs}
+    few = said if len(said) <= MOST_PAIRS else {pair: sizes for pair, sizes in said.items() if [*sizes] != ["always"]}
+    if len(few) < len(said):
+        yield f"{case.gpu}: the smaller code is always faster in {len(said) - len(few)} of {len(said)} pairs"
+    for (small, large), sizes in list(few.items())[:MOST_PAIRS]:
+        answers = (_said(answer, at if len(sizes) > 1 else []) for answer, at in sizes.items())
+        yield f"{case.gpu}: {small} is faster than {large}: {'; '.join(answers)}"
+    if len(few) > MOST_PAIRS:
+        yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer codes to see them"
+
+
+def _by_size(case: Case, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
+    """The sizes by the answer that holds for them."""
+    found: dict[str, list[str]] = {}
+    for size, frame in {frame.size: frame for frame in case.frames}.items():
+        answer = measure.from_reads(one, other, case.rates, frame)
+        found.setdefault(answer, []).append("x".join(map(str, size)))
+    return found
+
+
+def _said(said: str, sizes: Sequence[str]) -> str:
+    reads = "" if said in ("always", "never", "equal") else " reads of the G-buffer"
+    return said + reads + (f" at {', '.join(sizes)}" if sizes else "")
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """A line for each code, GPUs and sizes side by side."""
+    known = [row for row in rows if row["frame_us"] is not None]
+    for reads in dict.fromkeys(row["reads"] for row in known):
+        part = [row for row in known if row["reads"] == reads]
+        lines: dict[str, Row] = {}
+        for row in sorted(part, key=lambda row: row["bits"]):
+            code = f"{row['encoding']} {row['storage']}"
+            line = lines.setdefault(code, {"code": code, "bits": row["bits"]})
+            line[f"{row['gpu']} {row['size']}"] = row["frame_us"]
+        times = "1 read" if reads == 1 else f"{reads} reads"
+        yield Sheet(f"microseconds that a code takes of a frame, {times} of the G-buffer", list(lines.values()))
+
+
+def _write(done: Measured, _: Tick) -> None:
+    if done.outputs.plot:
+        rows = having(done.rows, "instructions", "bytes_per_pixel")
+        if not rows:
+            raise UsageError("--plot: there is nothing to draw; see why above")
+        save_plot(done.outputs.plot, charts.roofline_chart(rows))
+
+
+def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
+    usable = having(rows, "instructions", "bytes_per_pixel")
+    if usable:
+        said = (
+            "Each code by the instructions and the bytes of a pixel and frame. Above the GPU's line a code's bytes "
+            "take longer than its instructions, below it the instructions do. The figures are in the table."
+        )
+        yield drawing(
+            "roofline", "Bytes against instructions", said, usable, charts.roofline_chart, charts.roofline_specs
+        )
+
+
+def _lacking(done: Measured) -> list[str]:
+    return list(dict.fromkeys(row["skipped"] for row in done.rows if row["skipped"]))
+
+
+def _missing() -> str:
+    return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else ""
+
+
+WORK = Work(
+    steps=_steps,
+    check=_check,
+    measure=each(lambda case: list(case.rows())),
+    finish=measure.ranked,
+    shown=_shown,
+    summary=_summary,
+    write=_write,
+    drawings=_drawings,
+    lacking=_lacking,
+    missing=_missing,
+)

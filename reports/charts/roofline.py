@@ -1,0 +1,157 @@
+"""Charts of bytes against instructions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from .charts import Row, codec_label
+from .pareto import LINEAR_TO, TICKS
+from .plots import COLOURS, MARKERS, drawn_off_screen
+from .specs import INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, tips, titled
+
+STEPS = 40
+LINE = "where bytes take as long as instructions"
+
+
+def points(rows: Sequence[Row]) -> list[Row]:
+    """What charts draw of rows: instructions, and bytes written and read, of a pixel and frame of the fewest reads."""
+    reads = min(row["reads"] for row in rows)
+    found = {
+        (row["gpu"], codec_label(row)): {
+            **{name: row[name] for name in ("gpu", "encoding", "storage", "reads", "ridge")},
+            "codec": codec_label(row),
+            "x": row["instructions"],
+            "y": row["bytes_per_pixel"] * (row["overdraw"] + row["reads"]),
+        }
+        for row in rows
+        if row["reads"] == reads
+    }
+    return list(found.values())
+
+
+def ridge_line(found: Sequence[Row], ridge: float) -> list[tuple[float, float]]:
+    """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on."""
+    most, (least, _) = max(point["x"] for point in found) * 1.3 + 1, _bytes(found)
+    return [(x, x / ridge) for x in (most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)) if x / ridge >= least]
+
+
+def _bytes(found: Sequence[Row]) -> tuple[float, float]:
+    """The axis of bytes, which has room for the points alone."""
+    return min(point["y"] for point in found) / 1.5, max(point["y"] for point in found) * 1.5
+
+
+def _ticks(found: Sequence[Row]) -> list[int]:
+    return [tick for tick in TICKS if tick <= 1.3 * max(point["x"] for point in found)]
+
+
+def _names(found: Sequence[Row], column: str) -> list[str]:
+    return list(dict.fromkeys(point[column] for point in found))
+
+
+def roofline_chart(rows: Sequence[Row]) -> Any:
+    """Bytes over instructions of a pixel and frame, a panel for each GPU: above the line memory takes longer, below it
+    arithmetic.
+
+    Args:
+        rows: of the roofline table: encoding, storage, gpu, reads, overdraw, instructions, bytes_per_pixel, ridge.
+    """
+    found = points(rows)
+    gpus, encodings, storages = (_names(found, name) for name in ("gpu", "encoding", "storage"))
+    across = min(len(gpus), 2 if len(gpus) <= 4 else 3)
+    down = -(-len(gpus) // across)
+    figure, axes = drawn_off_screen().subplots(
+        down, across, figsize=(4.6 * across, 3.6 * down + 1), squeeze=False, layout="constrained"
+    )
+    for axis, gpu in zip(axes.flat, gpus, strict=False):
+        part = [point for point in found if point["gpu"] == gpu]
+        for point in part:
+            colour = COLOURS[encodings.index(point["encoding"]) % len(COLOURS)]
+            mark = MARKERS[storages.index(point["storage"]) % len(MARKERS)]
+            axis.scatter(point["x"], point["y"], color=colour, marker=mark, s=36, zorder=3)
+        line = ridge_line(found, part[0]["ridge"])
+        axis.plot([x for x, _ in line], [y for _, y in line], color="#777777", linewidth=1)
+        _axes(axis, found, gpu)
+    for axis in axes.flat[len(gpus) :]:
+        axis.remove()
+    _legend(figure, encodings, storages)
+    return figure
+
+
+def _axes(axis: Any, found: Sequence[Row], gpu: str) -> None:
+    reads = found[0]["reads"]
+    axis.set(yscale="log", title=gpu, ylim=_bytes(found), ylabel="bytes written and read")
+    axis.set_xlabel(f"instructions of a pixel and frame, {reads} {'read' if reads == 1 else 'reads'}")
+    axis.set_xscale("symlog", linthresh=LINEAR_TO)
+    axis.set_xlim(-1, 1.3 * max(point["x"] for point in found) + 1)
+    axis.set_xticks(_ticks(found), list(map(str, _ticks(found))))
+    axis.set_xticks([], minor=True)
+    for which in (axis.yaxis.set_major_formatter, axis.yaxis.set_minor_formatter):
+        which("{x:g}")
+    axis.tick_params(axis="y", which="both", labelsize=7)
+    axis.grid(alpha=0.3)
+
+
+def _legend(figure: Any, encodings: Sequence[str], storages: Sequence[str]) -> None:
+    from matplotlib.lines import Line2D
+
+    dots = [Line2D([], [], linestyle="", marker="o", color=COLOURS[i % len(COLOURS)]) for i in range(len(encodings))]
+    marks = [
+        Line2D([], [], linestyle="", marker=MARKERS[i % len(MARKERS)], color="#555555") for i in range(len(storages))
+    ]
+    line = Line2D([], [], color="#777777", linewidth=1)
+    labels = [*encodings, *storages, LINE]
+    figure.legend([*dots, *marks, line], labels, loc="outside lower center", ncols=4, fontsize=7)
+
+
+def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
+    """The same as one chart with a switch between the GPUs.
+
+    Args:
+        rows: as `roofline_chart` takes them.
+    """
+    found = points(rows)
+    gpus = _names(found, "gpu")
+    lines = [
+        {"machine": gpu, "x": rounded(x), "y": rounded(y)}
+        for gpu in gpus
+        for x, y in ridge_line(found, next(point["ridge"] for point in found if point["gpu"] == gpu))
+    ]
+    data = [point | {"machine": point["gpu"], "x": rounded(point["x"]), "y": rounded(point["y"])} for point in found]
+    shown = [{"filter": "datum.machine == machine"}]
+    layers = [
+        {
+            "data": {"values": lines},
+            "transform": shown,
+            "mark": {"type": "line", "clip": True, "color": INK, "strokeWidth": 1, "opacity": 0.6},
+            "encoding": _places(found),
+        },
+        {
+            "transform": shown,
+            "mark": {"type": "point", "filled": True, "size": 70},
+            "encoding": {**_places(found), **_looks(found), "opacity": if_lit(1, 0.2)},
+        },
+    ]
+    params = [{"name": "machine", "value": gpus[0]}]
+    switch = {"switch": {"param": "machine", "label": "GPU", "options": gpus}}
+    title = titled("") | {"text": {"expr": f"machine + '; line: {LINE}'"}}
+    said = "Bytes over instructions of a pixel and frame. Above the line memory takes longer, below it arithmetic."
+    return [spec(data, said, params=params, usermeta=switch, layer=layers, height=380, title=title)]
+
+
+def _places(found: Sequence[Row]) -> Spec:
+    x: Spec = {"field": "x", "type": "quantitative", "title": "instructions of a pixel and frame"}
+    x["scale"] = {"type": "symlog", "constant": LINEAR_TO, "nice": False, "padding": 12}
+    x["axis"] = {"values": _ticks(found)}
+    y: Spec = {"field": "y", "type": "quantitative", "title": "bytes written and read", "axis": {"format": "~g"}}
+    y["scale"] = {"type": "log", "domain": list(_bytes(found)), "nice": False}
+    return {"x": x, "y": y}
+
+
+def _looks(found: Sequence[Row]) -> Spec:
+    encodings, storages = (_names(found, name) for name in ("encoding", "storage"))
+    colours = [PALETTE[i % len(PALETTE)] for i in range(len(encodings))]
+    colour = {"field": "encoding", "type": "nominal", "scale": {"domain": encodings, "range": colours}, "title": None}
+    shape = {"field": "storage", "type": "nominal", "scale": {"domain": storages, "range": SHAPES}, "title": None}
+    tooltip = tips(codec="codec", x="instructions", y="bytes", reads="reads", machine="GPU")
+    return {"color": colour, "shape": shape, "tooltip": tooltip}

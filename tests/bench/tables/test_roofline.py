@@ -1,0 +1,189 @@
+"""Bytes against instructions: the model by hand, from how many reads on a code is faster, and GPUs by their rates."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from normalbench.bench.isa import spirv
+from normalbench.bench.options.gpu_families import FAMILIES
+from normalbench.bench.output.errors import UsageError
+from normalbench.bench.tables.roofline import measure
+from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
+from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named
+
+FULL_HD = (1920, 1080)
+ONE = Rates("of one lane", "navi21", 1, 1.0, 1.0)
+DOCS = Path(__file__).parents[3] / "docs" / "roofline.md"
+
+
+def frame(reads: int, size=FULL_HD, overdraw=1.0, share=0.25) -> Frame:
+    return Frame(size, reads, overdraw, share)
+
+
+def test_times_are_bytes_over_bandwidth_and_instructions_over_the_rate():
+    """By hand: 2 073 600 pixels, 1.5 writes and 4 reads of 2 bytes at 512 GB/s; 1.5 x 16 + 4 x 18 instructions on 4608
+    lanes at 2.25 GHz."""
+    rates = Rates("", "navi21", 4608, 2.25, 512)
+    memory, alu = Work(2, 16, 18).times(frame(4, overdraw=1.5), rates)
+    assert memory == pytest.approx(2073600 * 2 * 5.5 / 512e9)
+    assert alu == pytest.approx(2073600 * 96 / 10.368e12)
+    assert rates.ridge == pytest.approx(20.25)
+
+
+def test_normals_that_fit_into_their_share_of_the_cache_have_its_bandwidth():
+    rates, work = Rates("", "navi21", 1, 1.0, 100, 20, 400), Work(2, 0, 0)
+    # 4.15 MB of a share of 5 MB, and of 4.
+    (cached, _), (not_cached, _) = (work.times(frame(1, share=share), rates) for share in (0.25, 0.2))
+    assert (work.is_cached(frame(1, share=0.25), rates), work.is_cached(frame(1, share=0.2), rates)) == (True, False)
+    assert not_cached == pytest.approx(4 * cached)
+    assert not work.is_cached(frame(1), ONE), "no cache is known"
+
+
+@pytest.mark.parametrize(
+    "one, other, said",
+    # Rates of one byte and one instruction at a time. Of `1 + R` bytes and `e + R d` instructions the larger counts.
+    [
+        (Work(2, 0, 0), Work(6, 0, 0), "always"),
+        (Work(6, 0, 0), Work(2, 0, 0), "never"),
+        (Work(2, 0, 0), Work(2, 1, 1), "equal"),
+        # 20 + R against 4 + 4 R: less from R = 6 on; equal at 16 / 3.
+        (Work(1, 20, 1), Work(4, 0, 0), "from 6"),
+        # 4 + 4 R against 20 + R.
+        (Work(4, 0, 0), Work(1, 20, 1), "up to 5"),
+    ],
+)
+def test_from_how_many_reads_on_a_code_is_faster(one, other, said):
+    assert from_reads(one, other, ONE, frame(1)) == said
+
+
+@given(st.lists(st.integers(0, 200), min_size=4, max_size=4), st.integers(1, 8), st.integers(1, 8))
+def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_bytes):
+    """And a code that is no better in anything is never faster."""
+    a, b = Work(one_bytes, *counts[:2]), Work(other_bytes, *counts[2:])
+    answers = {from_reads(a, b, ONE, frame(1)), from_reads(b, a, ONE, frame(1))}
+    assert answers not in ({"always"}, {"equal", "always"})
+    worse = Work(a.bytes + 1, a.encode + 1, a.decode + 1)
+    assert from_reads(worse, a, ONE, frame(1)) == "never"
+
+
+def test_equal_codes_share_a_rank():
+    rows = [
+        {"gpu": "g", "size": "s", "reads": 1, "frame_us": us, "code": name}
+        for name, us in (("slow", 3.0), ("one", 1.0), ("lost", None), ("other", 1.0 + 1e-12))
+    ]
+    assert [(row["code"], row.get("rank")) for row in measure.ranked(rows)] == [
+        *(("one", 1), ("other", 1), ("slow", 3)),
+        ("lost", None),
+    ]
+
+
+def test_every_gpu_is_of_a_family_and_stands_in_the_manual():
+    lines = re.findall(
+        r"^\| `(\w+)` \((.+)\) \| `(\w+)` \| (\S+) \| (\S+) \| (\S+) \| (\S*) \| (\S*) \|$", DOCS.read_text(), re.M
+    )
+    said = {
+        name: Rates(title, family, *(float(figure or 0) for figure in figures))
+        for name, title, family, *figures in lines
+    }
+    assert said == dict(GPUS) and {gpu.family for gpu in GPUS.values()} <= set(FAMILIES)
+
+
+def test_a_users_own_rates():
+    found = gpus_named("rx6800xt:clock=2, navi31:lanes=100:clock=1:memory=50:cache=8:cached=200")
+    (one, other) = found.values()
+    assert (one.clock, one.memory, one.cache) == (2, 512, 128)
+    assert other == Rates("Navi 3x", "navi31", 100, 1, 50, 8, 200)
+    assert list(gpus_named("all")) == list(GPUS)
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ("rx9999", "unknown GPU; known: all, rx480"),
+        ("navi21:clock=2", "a GPU of a family needs lanes, memory, such as navi21:lanes=2"),
+        ("rx480:speed=3", "unknown setting 'speed=3'; known: lanes, clock, memory"),
+        ("rx480:title=mine", "unknown setting"),
+        ("rx480:clock", "unknown setting 'clock'"),
+        ("rx480:clock=fast", "clock is 'fast'; from 0.01 to 100"),
+        ("rx480:clock=nan", "clock is 'nan'"),
+        ("rx480:memory=0", "memory is '0'"),
+        ("rx480:cache=32", "cache, in MB, and cached, in GB/s, go together"),
+        (" , ", "no GPU named"),
+    ],
+)
+def test_what_is_no_gpu_is_refused_in_a_line(words, said):
+    with pytest.raises(UsageError, match=re.escape(said)):
+        gpus_named(words)
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["--overdraw", "0"], "--overdraw 0.0: from 0.01 to 1000"),
+        (["--overdraw", "nan"], "--overdraw nan"),
+        (["--cache-share", "2"], "a share is 0 to 1"),
+        (["--reads", "-1"], "--reads"),
+        (["--reads", "two"], "--reads"),
+        (["--size", "0x1"], "--size 0x1"),
+        (["--plot", "chart.txt"], "chart.txt"),
+        (["--encoding", "xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
+    ],
+)
+def test_options_out_of_range_are_one_line(run, words, said):
+    status, out, err = run("roofline", *words)
+    assert (status, out) == (2, "") and said in err
+
+
+@pytest.mark.usefixtures("radv")
+def test_rows_are_the_counts_of_cost_and_the_answer_stands_below(run, tmp_path):
+    words = [
+        "--encoding",
+        "octahedral,xyz",
+        "--storage",
+        "rg8,rgba16f",
+        "--gpu",
+        "rx6800xt",
+        "--size",
+        "1920x1080,3840x2160",
+    ]
+    status, out, _ = run("roofline", *words, "--reads", "1", "--format", "json", "--plot", str(tmp_path / "a.png"))
+    rows = {(row["encoding"], row["storage"], row["size"]): row for row in json.loads(out)}
+    assert status == 0 and (tmp_path / "a.png").stat().st_size > 10_000
+    costs = json.loads(
+        run(
+            "cost",
+            "--isa",
+            "--family",
+            "navi21",
+            "--stage",
+            "fragment",
+            "--encoding",
+            "octahedral",
+            "--storage",
+            "rg8",
+            "--format",
+            "json",
+        )[1]
+    )
+    by_operation = {row["operation"]: row["issue_slots"] for row in costs}
+    small = rows["octahedral", "rg8", "3840x2160"]
+    assert small["encode"] == by_operation["encode"] + by_operation["pack"]
+    assert small["decode"] == by_operation["decode"] + by_operation["unpack"]
+    assert (small["bytes_per_pixel"], small["in_cache"], rows["octahedral", "rgba16f", "3840x2160"]["in_cache"]) == (
+        2,
+        True,
+        False,
+    )
+    assert rows["xyz", "rgba16f", "1920x1080"]["alu_us"] == 0
+    _, shown, _ = run("roofline", *words)
+    assert "rx6800xt: octahedral rg8 is faster than xyz rgba16f: always" in shown
+
+
+def test_without_a_compiler_the_command_says_what_to_install(run, monkeypatch):
+    monkeypatch.setattr(spirv, "COMPILER", "no-such-compiler")
+    status, _, err = run("roofline", "--encoding", "octahedral", "--storage", "rg8", "--gpu", "rx480")
+    assert status == 3 and "apt-get install glslang-tools" in err
