@@ -375,8 +375,9 @@ def _codec(row: Row) -> Codec | None:
 
 
 def _last_family(folder: Path, rows: Sequence[Row]) -> tuple[str, Mapping[str, Path]]:
-    """The last GPU family of the rows, and the files that hold its kernels, by name."""
-    families = [str(row["family"]) for row in rows if row.get("family")]
+    """The last GPU family of the rows that compiles for the page's stage, and the files that hold its kernels, by
+    name."""
+    families = [str(row["family"]) for row in rows if row.get("family") and row.get("stage") == STAGE]
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
     return (families[-1], files_of(known[families[-1]])) if families and families[-1] in known else ("", {})
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
+from ...translator.builtins import BITS, LIKE_GIVEN, OF_VECTORS
 from ...translator.tree import (
     Assign,
+    Binary,
     Choice,
     Declare,
     Elements,
@@ -14,7 +14,6 @@ from ...translator.tree import (
     Statement,
     Swizzle,
     Table,
-    TranslationError,
 )
 from ...translator.writer import PRIMARY, Writer, words
 
@@ -27,12 +26,14 @@ class CudaWriter(Writer):
     float_suffix = "f"
     splats = True
     has_rich_parameters = True
-    reserved = words(
-        "alignas alignof and asm auto bool catch char class compl concept constexpr const_cast decltype default delete "
-        "double dynamic_cast enum explicit export extern final friend goto inline long mutable namespace new noexcept "
-        "not operator or override private protected public register reinterpret_cast requires short signed sizeof "
-        "static static_assert static_cast template this thread_local throw try typedef typeid typename union unsigned "
-        "using virtual volatile wchar_t xor"
+    # In C++ a variable hides the function of its name, in GLSL not before its own value is known.
+    reserved = (LIKE_GIVEN | OF_VECTORS | set(BITS)) | words(
+        "alignas alignof all and any Array asm assign auto bool catch char chosen class compl concept constexpr cross "
+        "const_cast decltype default delete double dynamic_cast enum explicit export extern final friend goto inline "
+        "kernel lane long mutable namespace new noexcept not Of operator or override part_of planes private protected "
+        "public put register reinterpret_cast requires Same short signed Size sizeof static static_assert static_cast "
+        "swizzled template this thread_local throw try typedef typeid typename union unsigned using Vec virtual "
+        "volatile wchar_t xor"
     )
 
     def _table(self, table: Table) -> str:
@@ -58,20 +59,21 @@ class CudaWriter(Writer):
 
     def _plain(self, statement: Statement) -> str:
         match statement:
-            case Assign(Swizzle(_, _, names)) if len(names) > 1:
-                raise TranslationError(f"an assignment to .{names} cannot be written in CUDA")
+            case Assign(Swizzle(kind, inner, names) as target, mark, value) if len(names) > 1:
+                made = value if mark == "=" else Binary(kind, mark[:-1], target, value)
+                return f"assign<{_places(names)}>({self._text(inner)}, {self._text(made)})"
         return super()._plain(statement)
 
     def _written(self, value: Expression) -> tuple[str, int]:
         match value:
             case Swizzle(_, inner, names):
-                return self._swizzled(inner, [FIELDS.index(name) for name in names]), PRIMARY
+                return self._swizzled(inner, names), PRIMARY
         return super()._written(value)
 
-    def _swizzled(self, inner: Expression, places: list[int]) -> str:
-        if len(places) == 1:
-            return f"{self._text(inner, PRIMARY)}[{places[0]}]"
-        return f"swizzled<{_listed(places)}>({self._text(inner)})"
+    def _swizzled(self, inner: Expression, names: str) -> str:
+        if len(names) == 1:
+            return f"{self._text(inner, PRIMARY)}[{_places(names)}]"
+        return f"swizzled<{_places(names)}>({self._text(inner)})"
 
     def _block(self, head: str, body: list[Statement], indent: str) -> str:
         # Compilers of shaders unroll every loop that they know the length of; CUDA's stops sooner unless asked.
@@ -83,5 +85,5 @@ class CudaWriter(Writer):
         return f"chosen({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
 
 
-def _listed(numbers: Iterable[int]) -> str:
-    return ", ".join(map(str, numbers))
+def _places(names: str) -> str:
+    return ", ".join(str(FIELDS.index(name)) for name in names)

@@ -69,6 +69,13 @@ template <int... PLACES, typename T, int N> __forceinline__ Vec<T, sizeof...(PLA
     return Vec<T, sizeof...(PLACES)>(v[PLACES]...);
 }
 
+// v.yx = value
+template <int... PLACES, typename T, int N>
+__forceinline__ void assign(Vec<T, N> &v, const Vec<T, sizeof...(PLACES)> &value) {
+    int at = 0;
+    ((v[PLACES] = value[at++]), ...);
+}
+
 #define BINARY(MARK, RESULT)                                                                                           \
     template <typename T, int N> __forceinline__ Vec<RESULT, N> operator MARK(const Vec<T, N> &a, const Vec<T, N> &b) { \
         Vec<RESULT, N> made;                                                                                           \

@@ -18,6 +18,7 @@ from normalbench.bench.isa.nvidia.cubin import Kernel
 from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results.machine import require_nvidia
+from normalbench.bench.suite import report
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.encodings.catalogue import ENCODINGS
@@ -160,6 +161,16 @@ def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatc
     assert set(chosen_families("all,sm_86")) >= {"navi31", "sm_86"}
     monkeypatch.setattr(tools, "missing", lambda: "")
     assert chosen_families("all") == list(FAMILIES)
+
+
+def test_what_asks_for_fragment_shaders_leaves_nvidia_out(run, tmp_path):
+    """`pick` refuses it in a line; a page shows the kernels of the last family that has such shaders."""
+    status, out, err = run("pick", "--family", "sm_86")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "sm_86" in err and "known: polaris10" in err
+    for name in ("navi31", "sm_120"):
+        (tmp_path / name).mkdir()
+    rows = [{"family": name, "stage": stage} for name, stage in (("navi31", "fragment"), ("sm_120", "compute"))]
+    assert report._last_family(tmp_path, rows)[0] == "navi31"
 
 
 def taken(folder: Path) -> list[str]:

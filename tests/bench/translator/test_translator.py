@@ -221,9 +221,10 @@ def test_other_languages_refuse_functions_of_arrays(writer):
         written(writer, changed)
 
 
-def test_an_assignment_to_several_components_is_refused_in_cuda():
-    with pytest.raises(TranslationError, match=r"an assignment to \.xy cannot be written in CUDA"):
-        written(CudaWriter, SOURCE.replace("float sum", "vec2 q = n.xy; q.xy = q.yx; float sum"))
+def test_cuda_assigns_to_several_components_and_hides_no_function():
+    text = written(CudaWriter, SOURCE.replace("float sum", "vec2 max = n.xy; max.yx = max; max.xy += n.yz; float sum"))
+    assert "assign<1, 0>(max_, max_);" in text
+    assert "assign<0, 1>(max_, swizzled<0, 1>(max_) + swizzled<1, 2>(n));" in text
 
 
 @pytest.mark.parametrize("length", ["n", "int(n.x)"])
