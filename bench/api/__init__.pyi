@@ -295,7 +295,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell, data centre), sm_120 (Blackwell), or nvidia for these; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         storage: Storages and packings whose own cost is shown, comma-separated, or all.

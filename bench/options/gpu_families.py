@@ -66,7 +66,7 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "sm_86": _nvidia("Ampere", "sm_86"),
         "sm_89": _nvidia("Ada", "sm_89"),
         "sm_90": _nvidia("Hopper", "sm_90"),
-        "sm_100": _nvidia("Blackwell, data centre", "sm_100"),
+        "sm_100": _nvidia("Blackwell B200", "sm_100"),
         "sm_120": _nvidia("Blackwell", "sm_120"),
     }
 )

@@ -151,6 +151,7 @@ def test_figures_are_of_the_code_without_padding():
 
 def test_vendors_stand_for_their_families():
     assert chosen_families("nvidia") == ["sm_75", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"]
+    assert chosen_families("Turing,SM 86,Blackwell") == ["sm_75", "sm_86", "sm_120"]
     assert CHOICES["nvidia"] == tuple(name for name in FAMILIES if name.startswith("sm_"))
 
 
