@@ -18,6 +18,7 @@ import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
+from normalbench.bench.isa.nvidia import tools
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
@@ -64,6 +65,13 @@ def radv():
 def intel(radv):  # noqa: ARG001 (asks for the other compilers)
     """Intel's compilers, and what builds the device that they are given."""
     _need([ANV, HASVK], {null_device.COMPILER: null_device.NO_COMPILER})
+
+
+@pytest.fixture(scope="session")
+def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
+    """NVIDIA's compiler of CUDA, which people install themselves: no machine must have it."""
+    if said := tools.missing():
+        pytest.skip(said)
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:

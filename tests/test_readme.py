@@ -55,7 +55,7 @@ HELD = {
     *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
     "normalbench cost half",
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
-    *("normalbench maps", "normalbench vectors", "normalbench code"),
+    *("normalbench maps", "normalbench vectors", "normalbench code", "normalbench cost nvidia"),
 }
 
 
@@ -160,6 +160,8 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, r
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     words = shlex.split(command)
+    if "nvidia" in words:
+        request.getfixturevalue("nvidia")
     for name in {"before", "after"} & set(words) if words[1] != "run" else ():
         shutil.copytree(request.getfixturevalue("results")[0], tmp_path / name)
     if re.search(r"\.(glb|exr|png|npy)\b", command):
@@ -560,6 +562,33 @@ def test_the_cost_table_of_half_arithmetic_is_what_is_measured(run):
         assert [int(figure) for figure in figures] == [rows[n + half, o, f]["instructions"] for n, o, f, half in keys]
     loop = rows["best_fit_searched", "encode", "navi21"]
     assert (loop["instructions"], loop["looped"], loop["loops"]) == (57, 38, 1)
+
+
+@pytest.mark.usefixtures("intel", "nvidia")
+def test_the_cost_table_with_nvidia_is_what_is_measured(run):
+    """And the orders below it, by the first GPU of each column."""
+    shown = table("normalbench cost nvidia")
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d+)" * 10 + r" \|$", shown, re.M)
+    assert len(lines) == 8
+    families = ("navi31", "dg2", "sm_75", "sm_86", "sm_120")
+    words = ["--isa", "--family", ",".join(families), "--stage", "compute", "--storage", "rgba8", "--format", "json"]
+    status, out, _ = run("cost", "--encoding", ",".join(line[0] for line in lines), *words)
+    rows = json.loads(out)
+    assert status == 0
+    (said,) = re.findall(r"^These are of (NVRTC [\d.]+) and (Mesa [\d.]+)\.", PAGES[ROOT / "docs" / "cost.md"], re.M)
+    if {row["driver"].partition(" (")[0] for row in rows} != {*said}:
+        pytest.skip(f"this machine's compilers are not {' and '.join(said)}")
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    for name, *figures in lines:
+        keys = [(name, operation, family) for operation in ("encode", "decode") for family in families]
+        assert [int(figure) for figure in figures] == [found[key] for key in keys], name
+    orders = re.findall(r"^\| to (encode|decode) \| (.+) \| (.+) \| (.+) \|$", PAGES[ROOT / "docs" / "cost.md"], re.M)
+    assert len(orders) == 4
+    for operation, *columns in orders:
+        for family, names in zip(families, columns, strict=False):
+            counts = [[found[name, operation, family] for name in some.split(" and ")] for some in names.split(", ")]
+            assert counts == sorted(counts), (operation, family, names)
+            assert all(len(set(same)) == 1 for same in counts), (operation, family, names)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

@@ -286,9 +286,9 @@ def cost(
     normals: Names = ...,
     error: Names = ...,
 ) -> Rows:
-    """What encoding and decoding cost: instructions on GPUs of two vendors, and time; all of it by default.
+    """What encoding and decoding cost: instructions on GPUs of three vendors, and time; all of it by default.
 
-    Counts are by Mesa's compilers for GPUs that need not be there, less an empty kernel that moves the same numbers.
+    Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel that moves the same numbers.
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
@@ -296,7 +296,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.

@@ -19,7 +19,7 @@ from typing import Any
 from .compiler import Compiler, DriverError, MissingDriverError, loaded
 
 
-def _own_output() -> Any:
+def own_output() -> Any:
     """Standard output for the results alone: what the driver prints goes to standard error."""
     own = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
@@ -39,7 +39,7 @@ def compiled(driver: Compiler, job: dict[str, Any], planes: int) -> dict[str, An
 def main() -> int:
     """Compile every job that standard input holds."""
     given = json.load(sys.stdin)
-    out = _own_output()
+    out = own_output()
 
     def say(**line: Any) -> None:
         print(json.dumps(line), file=out, flush=True)

@@ -1,4 +1,4 @@
-"""What Mesa's compiler makes of shaders for GPUs that are not there, family by family.
+"""What compilers make of shaders for GPUs that are not there, family by family: Mesa's, and NVIDIA's of CUDA.
 
 Each family compiles in a child process, because drivers crash and hang: a job that does not come back costs itself,
 with the reason, and the others go on in a fresh child. What was compiled is kept in the user's cache, by the shader,
@@ -17,13 +17,16 @@ from pathlib import Path
 from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
+from ..machine.children import python
 from ..machine.cores import cores
-from ..options.gpu_families import FAMILIES, RADV, TITLES
+from ..options.gpu_families import FAMILIES, NVRTC, RADV, TITLES
 from ..output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
 from .driver_files import driver_file, no_driver
 from .null_device import NullDeviceError
+from .nvidia import tools
+from .nvidia.child import ARCHITECTURE
 from .process import Driver, child
 
 # What RADV says before it gives up.
@@ -36,7 +39,7 @@ OWN_FILES = ("compiler.py", "child.py", "null_i915.c")
 
 @dataclass(frozen=True)
 class Job:
-    """A shader to compile: "compute" or "fragment", as SPIR-V, and the vertex shader before it."""
+    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it."""
 
     stage: str
     code: bytes
@@ -64,8 +67,8 @@ class Compiled:
 
     Attributes:
         family: the name that the driver took.
-        device, version: what the driver calls the device, and Mesa's version.
-        kernels: one for each number of lanes; RADV compiles for one, Intel's drivers for up to three.
+        device, version: what the driver calls the device, and Mesa's version; of NVIDIA's compiler its name, too.
+        kernels: one for each number of lanes; Intel's drivers compile for up to three, the others for one.
     """
 
     family: str
@@ -103,6 +106,8 @@ def _loaded(path: Path) -> str | Failure:
 
 def missing(library: str = RADV) -> str:
     """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
+    if library == NVRTC:
+        return tools.missing()
     path = driver_file(library)
     if path is None:
         return no_driver(library)
@@ -145,17 +150,17 @@ def driver_versions() -> dict[str, str]:
 
 def _driver_version(library: str) -> str:
     """A driver as it names itself for its first family, with Mesa's version; or what is missing, in one line."""
-    path = driver_file(library)
     if reason := missing(library):
         return reason
-    assert path
     first = next(name for name, family in FAMILIES.items() if family.library == library)
     try:
         variables = _variables(first, first)
     except NullDeviceError as error:
         return str(error)
-    with child(variables, Driver(path, threading.Event()), _given({})) as (lines, why):
+    with child(variables, _driver(library, threading.Event()), _given({})) as (lines, why):
         line = lines() or {}
+        if "device" in line and library == NVRTC:
+            return line["version"]
         if "device" in line:
             # RADV's null device says itself that it is none.
             return f"Mesa {line['version']}, {line['device']}" + (", a null device" if library != RADV else "")
@@ -167,10 +172,7 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
     if reason := missing(library):
         return [Failure(reason, True)] * len(jobs)
-    path = driver_file(library)
-    assert path
-    driver, identity = Driver(path, stop), _loaded(path)
-    identity = "" if isinstance(identity, Failure) else identity
+    driver, identity = _driver(library, stop), _identity(library)
     keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
@@ -184,6 +186,24 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
                 kept.write(key, vars(outcome) | {"kernels": [vars(kernel) for kernel in outcome.kernels]})
         outcomes |= compiled
     return [outcomes[key] for key in keys]
+
+
+def _driver(library: str, stop: threading.Event) -> Driver:
+    """A driver that `missing` finds nothing missing of."""
+    if library == NVRTC:
+        return Driver(tools.found()[0], stop, python("normalbench.bench.isa.nvidia.child"))
+    path = driver_file(library)
+    assert path
+    return Driver(path, stop)
+
+
+def _identity(library: str) -> str:
+    """What differs once a driver does; empty where it cannot be told."""
+    if library == NVRTC:
+        return tools.identity()
+    path = driver_file(library)
+    found = _loaded(path) if path else ""
+    return "" if isinstance(found, Failure) else found
 
 
 def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
@@ -224,6 +244,8 @@ def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str,
 
 def _variables(family: str, name: str) -> dict[str, str]:
     """What has a driver compile for a family, under one of its names. Raises NullDeviceError."""
+    if FAMILIES[family].library == NVRTC:
+        return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
 

@@ -14,20 +14,28 @@ class Occupancy:
     Attributes:
         waves: the most that it holds, however few registers they take.
         registers: how many it has of as many lanes as a wave has; 0 where each wave has its own share.
+        step: the number of registers that it allots at once.
     """
 
     waves: int
     registers: int = 0
+    step: int = 1
 
     def of(self, registers: float) -> int:
         """How many waves that take so many registers it holds.
 
         Args:
-            registers: as a driver allots them, in its own steps.
+            registers: as a driver counts them.
         """
-        return min(self.waves, int(self.registers // max(registers, 1))) if self.registers else self.waves
+        if not self.registers:
+            return self.waves
+        allotted = -(-max(int(registers), 1) // self.step) * self.step
+        return min(self.waves, self.registers // allotted)
 
 
+# NVIDIA: 16384 registers of 32 bits a quarter of a multiprocessor, which are 512 of a warp of 32 lanes, allotted by 8;
+# a quarter of a multiprocessor's warps (CUDA C++ Programming Guide 12.9, technical specifications by compute
+# capability).
 _GCN, _RDNA2 = Occupancy(10, 256), Occupancy(16, 512)
 # Waves of 64 lanes. GCN: 256 registers of 64 lanes and 10 waves a SIMD (AMD, Graphics Core Next Architecture Generation
 # 3 ISA, 2016); Polaris 8 waves (Mesa's ac_gpu_info.c). RDNA: 1024 registers of 32 lanes, which are 512 of 64, and 20
@@ -38,7 +46,9 @@ OCCUPANCY: Mapping[str, Occupancy] = MappingProxyType(
     {"polaris10": Occupancy(8, 256), "vega10": _GCN, "navi10": Occupancy(20, 512), "navi21": _RDNA2}
     | {"navi31": Occupancy(16, 768)}
     | dict.fromkeys(("hsw", "bdw", "skl", "tgl", "adl"), Occupancy(7))
-    | {"dg2": Occupancy(8)}
+    | {"dg2": Occupancy(8), "sm_75": Occupancy(8, 512, 8)}
+    | dict.fromkeys(("sm_86", "sm_89", "sm_120"), Occupancy(12, 512, 8))
+    | dict.fromkeys(("sm_90", "sm_100"), Occupancy(16, 512, 8))
 )
 
 

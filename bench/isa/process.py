@@ -27,10 +27,14 @@ Lines = Callable[[], dict[str, Any] | None]
 
 @dataclass(frozen=True)
 class Driver:
-    """The driver's description for the loader, and what tells its children that nobody waits for them any more."""
+    """The driver's description for the loader, and what tells its children that nobody waits for them any more.
+
+    `command` starts a child where it is not one of CHILD.
+    """
 
     path: Path
     stop: threading.Event
+    command: Sequence[str] = ()
 
 
 @contextmanager
@@ -46,7 +50,7 @@ def child(
         json.dump(given, work)
         work.seek(0)
         with subprocess.Popen(
-            CHILD,
+            driver.command or CHILD,
             stdin=work,
             stdout=subprocess.PIPE,
             stderr=errors,

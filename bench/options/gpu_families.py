@@ -1,4 +1,4 @@
-"""The GPU families that shaders are compiled for, and the driver that compiles for each. Imports nothing heavy."""
+"""The GPU families that shaders are compiled for, and the compiler for each. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
+# NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
+NVRTC = "libnvrtc"
 
 
 @dataclass(frozen=True)
@@ -15,8 +17,8 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon" or "intel", which is also the name of the group of its families.
-        library: the Vulkan driver that compiles for it.
+        vendor: "radeon", "intel" or "nvidia", which is also the name of the group of its families.
+        library: the Vulkan driver that compiles for it, or NVRTC.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
         null_device: what an Intel driver is told of a GPU that is not there, in the words of null_i915.c.
     """
@@ -27,6 +29,11 @@ class Family:
     names: tuple[str, ...]
     null_device: str = ""
 
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """The kinds of shader that it is compiled for."""
+        return ("compute",) if self.library == NVRTC else ("fragment", "compute")
+
 
 def _radeon(title: str, *names: str) -> Family:
     return Family(title, "radeon", RADV, names)
@@ -34,6 +41,10 @@ def _radeon(title: str, *names: str) -> Family:
 
 def _intel(title: str, library: str, name: str, null_device: str) -> Family:
     return Family(title, "intel", library, (name,), null_device)
+
+
+def _nvidia(title: str, name: str) -> Family:
+    return Family(title, "nvidia", NVRTC, (name,))
 
 
 # One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
@@ -51,6 +62,12 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "tgl": _intel("Tiger Lake", ANV, "tgl", "0x9a49 1 1 6 16 0"),
         "adl": _intel("Alder Lake", ANV, "adl", "0x46a6 12 1 6 16 0"),
         "dg2": _intel("Arc A770", ANV, "dg2", "0x56a0 8 8 4 16 1"),
+        "sm_75": _nvidia("Turing", "sm_75"),
+        "sm_86": _nvidia("Ampere", "sm_86"),
+        "sm_89": _nvidia("Ada", "sm_89"),
+        "sm_90": _nvidia("Hopper", "sm_90"),
+        "sm_100": _nvidia("Blackwell B200", "sm_100"),
+        "sm_120": _nvidia("Blackwell", "sm_120"),
     }
 )
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
@@ -60,7 +77,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
 )
 # What people call each driver.
-TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk"})
+TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk", NVRTC: "NVIDIA NVRTC"})
 
 
 def titled(vendor: str) -> str:

@@ -34,6 +34,11 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "alderlake": "adl",
             "arc": "dg2",
             "arca770": "dg2",
+            "turing": "sm_75",
+            "ampere": "sm_86",
+            "ada": "sm_89",
+            "hopper": "sm_90",
+            "blackwell": "sm_120",
             "amd": "radeon",
         },
     }

@@ -341,14 +341,19 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
 
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
-    """The rows of fragment shaders that have instructions."""
-    rows = tables.get("cost", ())
-    return [r for r in rows if r.get("stage") == STAGE and r.get("family") and is_number(r.get("instructions"))]
+    """The rows that have instructions: of fragment shaders, or of what else a family has where it has none."""
+    rows = [r for r in tables.get("cost", ()) if r.get("family") and is_number(r.get("instructions"))]
+    return [row for row in rows if row.get("stage") == _stage_of(str(row["family"]))]
+
+
+def _stage_of(family: str) -> str:
+    stages = FAMILIES[family].stages if family in FAMILIES else (STAGE,)
+    return STAGE if STAGE in stages else stages[0]
 
 
 def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
     """The GPU family that the page speaks of: the last of the first vendor; empty where nothing was counted."""
-    families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables)))
+    families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables) if row["stage"] == STAGE))
     vendor_of = {name: FAMILIES[name].vendor if name in FAMILIES else "" for name in families}
     return [name for name in families if vendor_of[name] == vendor_of[families[0]]][-1] if families else ""
 
@@ -363,7 +368,7 @@ def _panels(
         for operation in OPERATIONS:
             points = list(_points(rows, operation, errors, lost))
             if points:
-                title = f"{operation}: instructions for {machine}, fragment shaders"
+                title = f"{operation}: instructions for {machine}, {_stage_of(family)} shaders"
                 unit = f"instructions to {operation}, with its storage's"
                 about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
                 yield Panel(title, unit, points, **about)
@@ -373,7 +378,7 @@ def _points(
     costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
 ) -> Iterator[Point]:
     """Each codec whose cost is known; the others by the reason why not."""
-    known, where = Costs(costs), Where("isa", costs[-1].get("family"), STAGE)
+    known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
     for codec, error in errors.items():
         try:
             total = known.of(codec, where, operation, "instructions")

@@ -102,7 +102,7 @@ class GlslParser(Parser):
         return token.text
 
     def _function(self, first: Token) -> None:
-        kind, name = self._kind(), self._word().text
+        kind, name = self._sized(self._kind()), self._word().text
         self._take("(")
         parameters = self._parameters()
         if self._skip(";"):
@@ -121,14 +121,33 @@ class GlslParser(Parser):
     def _parameters(self) -> list[Parameter]:
         found: list[Parameter] = []
         while not self._skip(")"):
-            while self._next.text in ("const", "in"):
-                self._take()
+            is_changed = False
+            while self._next.text in ("const", "in", "inout"):
+                is_changed |= self._take().text == "inout"
             kind = self._kind()
             name = "" if self._next.text in (",", ")") else self._word().text
-            found.append(Parameter(kind, name or f"unused{len(found)}"))
+            found.append(Parameter(self._sized(kind), name or f"unused{len(found)}", is_changed))
             if self._next.text != ")":
                 self._take(",")
         return found
+
+    def _sized(self, kind: str) -> str:
+        """A type, or an array of it where a length follows in brackets."""
+        length = self._length()
+        return kind if length is None else self._array_of(kind, length)
+
+    def _length(self) -> Expression | None:
+        if not self._skip("["):
+            return None
+        length = self._expression()
+        self._take("]")
+        return length
+
+    def _array_of(self, kind: str, length: Expression) -> str:
+        constant = next((c.value for c in self._made.constants if c.name == getattr(length, "name", "")), length)
+        if not isinstance(constant, Literal) or constant.kind != "int":
+            raise self._error("an array's length is not a number")
+        return f"{kind}[{constant.text}]"
 
     # Statements.
 
@@ -207,13 +226,14 @@ class GlslParser(Parser):
         return found
 
     def _declarator(self, kind: str, is_constant: bool) -> Statement | None:
-        name, is_array = self._word().text, False
-        if self._skip("["):
-            is_array = True
-            if self._next.text != "]":
-                self._expression()
-            self._take("]")
+        name, is_array, length = self._word().text, self._next.text == "[", None
+        if is_array and self._ahead(1) == "]":
+            self._at += 2
+        elif is_array:
+            length = self._length()
         value = self._expression() if self._skip("=") else None
+        if value is None and length is not None:
+            kind = self._array_of(kind, length)
         names = {each.name for each in self._made.constants}
         if is_constant and value is not None and getattr(value, "name", None) in names:
             self._declared(name, value.kind, value)
@@ -257,8 +277,9 @@ class GlslParser(Parser):
         return Elements(f"{kind}[{len(values)}]", [self._converted(value, kind) for value in values])
 
     def _member(self, value: Expression, word: Token) -> Expression:
-        if word.text == "length" and value.kind.endswith("]"):
+        is_vector = size_of(value.kind) > 1
+        if word.text == "length" and (is_vector or value.kind.endswith("]")):
             self._take("(")
             self._take(")")
-            return Literal("int", value.kind.partition("[")[2].rstrip("]"))
+            return Literal("int", str(size_of(value.kind)) if is_vector else value.kind.partition("[")[2].rstrip("]"))
         return super()._member(value, word)

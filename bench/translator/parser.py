@@ -19,6 +19,7 @@ from .tree import (
     Index,
     Literal,
     Name,
+    Perform,
     Place,
     Statement,
     Swizzle,
@@ -338,7 +339,7 @@ class Parser:
         return statement
 
     def _assignment(self) -> Statement:
-        """An assignment, or a count up or down, without what ends it."""
+        """An assignment, a count up or down, or a call, without what ends it."""
         for mark in ("++", "--"):
             if self._skip(mark):
                 target = self._behind(self._primary())
@@ -346,6 +347,8 @@ class Parser:
         target = self._behind(self._primary())
         if self._next.text in ("++", "--"):
             return self._counted(target, self._take().text)
+        if isinstance(target, Call) and target.is_own:
+            return Perform(target)
         mark = self._take(*ASSIGNS).text
         value = self._expression()
         if mark not in ("<<=", ">>="):

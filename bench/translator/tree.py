@@ -141,6 +141,13 @@ class Assign(Statement):
 
 
 @dataclass
+class Perform(Statement):
+    """A call for what it changes."""
+
+    call: Call
+
+
+@dataclass
 class If(Statement):
     condition: Expression
     chosen: list[Statement]
@@ -175,8 +182,11 @@ class Return(Statement):
 
 @dataclass
 class Parameter:
+    """`is_changed` where the caller sees what is assigned to it: GLSL's inout."""
+
     kind: str
     name: str
+    is_changed: bool = False
 
 
 @dataclass

@@ -24,6 +24,7 @@ from .tree import (
     Leave,
     Literal,
     Name,
+    Perform,
     Program,
     Return,
     Statement,
@@ -58,6 +59,7 @@ class Writer:
         head: what stands before all else.
         has_tables: whether tables are variables of the program.
         splats: whether a function of vectors takes no scalar in place of one.
+        has_rich_parameters: whether functions take and give arrays, and may assign to what they are given.
         kinds: types' names where they are not GLSL's.
         functions: built-in functions' names where they are not GLSL's.
         reserved: words that no variable may be called.
@@ -70,6 +72,7 @@ class Writer:
     head = ""
     has_tables = True
     splats = False
+    has_rich_parameters = False
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
         self._prefix, self._sizes = prefix, sizes
@@ -102,12 +105,21 @@ class Writer:
 
     def _function(self, function: Function) -> str:
         self._assigned = {name for node in inside(function.body) if isinstance(node, Assign) for name in _base(node)}
-        if self._assigned & {p.name for p in function.parameters}:
-            raise TranslationError(f"{function.name} assigns to a parameter; assign to a variable of its own")
+        if not self.has_rich_parameters:
+            self._check_parameters(function)
         local = [node.name for node in inside(function.body) if isinstance(node, Declare)]
         self._renamed = {n: f"{n}_" for n in (*local, *(p.name for p in function.parameters)) if n in self.reserved}
         body = self._statements(function.body, INDENT)
         return f"{self._comments(function, '')}{self._signature(function)} {{\n{body}}}"
+
+    def _check_parameters(self, function: Function) -> None:
+        """Raises TranslationError for what not every language has."""
+        if any(kind.endswith("]") for kind in (function.kind, *(p.kind for p in function.parameters))):
+            raise TranslationError(f"{function.name} takes or gives an array; write its numbers one by one")
+        if any(p.is_changed for p in function.parameters):
+            raise TranslationError(f"{function.name} changes what it is given; give back what it makes")
+        if self._assigned & {p.name for p in function.parameters}:
+            raise TranslationError(f"{function.name} assigns to a parameter; assign to a variable of its own")
 
     def _signature(self, function: Function) -> str:
         parameters = ", ".join(f"{self._kind(p.kind)} {self._name(p.name)}" for p in function.parameters)
@@ -150,6 +162,8 @@ class Writer:
                 return self._counted(target, mark)
             case Assign(target, mark, value):
                 return f"{self._text(target)} {mark} {self._text(value)}"
+            case Perform(call):
+                return self._text(call)
             case Leave(word):
                 return word
             case Return(None):

@@ -15,29 +15,32 @@ from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
 from ...codecs.half.kernels import half_operation
 from ...isa import disassembly, intel_disassembly, isa, occupancy, spirv
-from ...isa.isa import Failure, Job, Kernel, Outcome
+from ...isa.isa import Compiled, Failure, Job, Kernel, Outcome
+from ...isa.nvidia import sass
+from ...isa.nvidia.source import cuda_of
 from ...machine.cores import on_all_cores
-from ...options.gpu_families import FAMILIES
+from ...options.gpu_families import FAMILIES, NVRTC
 from ...output.errors import MissingError
 from .table import TABLE
 
 Row = dict[str, Any]
 
-# The drivers' statistics by their own names: RADV's, then Intel's. Later Mesas may have more; one that is missing is
-# left empty.
+# The drivers' statistics by their own names: RADV's, then Intel's; NVIDIA's by those of isa/nvidia/child.py. Later
+# Mesas may have more; one that is missing is left empty.
 INSTRUCTIONS = (("Instructions",), ("Instruction Count",))
 SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"))
 STATISTICS = {
     "instructions": INSTRUCTIONS,
-    "vgprs": (("VGPRs",),),
+    "vgprs": (("VGPRs",), ("Registers",)),
     "sgprs": (("SGPRs",),),
     "spills": SPILLS,
     "code_bytes": (("Code size",),),
+    "stall_cycles": (("Stall cycles",),),
 }
 # Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
 # for what: one kernel's less another's is nobody's cost.
 WHOLE = {
-    "kernel_vgprs": (("VGPRs",),),
+    "kernel_vgprs": (("VGPRs",), ("Registers",)),
     "kernel_sgprs": (("SGPRs",),),
     "kernel_latency": (("Latency",), ("Cycle Count",)),
     "kernel_inverse_throughput": (("Inverse Throughput",),),
@@ -47,6 +50,7 @@ KINDS = tuple(dict.fromkeys((*disassembly.KINDS, *intel_disassembly.KINDS)))
 LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
+NOT_ASKED = Failure("CUDA was not asked for")
 GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
 
 
@@ -93,15 +97,23 @@ def _operation(encoding: Encoding, operation: str) -> Operation:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case as its compilers are given it, and the empty kernel beside it."""
+    """A case as its compilers are given it, and the empty kernel beside it: as SPIR-V, and as CUDA where that is asked.
+
+    `cuda` is a Failure where there is none.
+    """
 
     job: Job
     empty: Job
     spirv_instructions: int | None
+    cuda: tuple[Job, Job] | Failure = NOT_ASKED
+
+    def jobs(self, family: str) -> tuple[Job, Job] | Failure:
+        """The kernel and the empty one as a family's compiler takes them."""
+        return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
-def prepare(case: Case, stage: str) -> Prepared | Failure:
-    """A case's kernels as SPIR-V, or why there are none. Raises MissingError where there is no compiler."""
+def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure:
+    """A case's kernels, or why there are none. Raises MissingError where there is no compiler of SPIR-V."""
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
@@ -111,7 +123,20 @@ def prepare(case: Case, stage: str) -> Prepared | Failure:
         return Failure(str(error))
     except ShaderError as error:
         return Failure(f"{case.name}: {error}")
-    return Prepared(job, empty, count - empty_count if count is not None and empty_count is not None else None)
+    more = count - empty_count if count is not None and empty_count is not None else None
+    return Prepared(job, empty, more, _as_cuda(case, operation, stage) if as_cuda else NOT_ASKED)
+
+
+def _as_cuda(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
+    try:
+        job, empty = (Job(stage, cuda_of(each).encode(), b"") for each in (operation, operation.empty))
+    except ShaderError as error:
+        return Failure(f"{case.name}: {error}")
+    return job, empty
+
+
+def _takes_cuda(family: str) -> bool:
+    return family in FAMILIES and FAMILIES[family].library == NVRTC
 
 
 def _job(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | None]:
@@ -144,15 +169,19 @@ def isa_rows(
     compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
-    prepared = list(on_all_cores(lambda pair: prepare(*pair), pairs))
-    jobs = list(dict.fromkeys(job for p in prepared if isinstance(p, Prepared) for job in (p.job, p.empty)))
-    outcomes = isa.compile_all(jobs, families, tick)
+    takes_cuda = any(map(_takes_cuda, families))
+    prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair), pairs))
+    outcomes: dict[tuple[str, Job], Outcome] = {}
+    for some in ([f for f in families if _takes_cuda(f) == is_cuda] for is_cuda in (False, True)):
+        outcomes |= isa.compile_all(_jobs(prepared, some[0]), some, tick) if some else {}
     lacks += dict.fromkeys(o.reason for o in outcomes.values() if isinstance(o, Failure) and o.is_missing)
-    dead = {family: reason for family in families if (reason := _all_failed(outcomes, family, jobs))}
+    dead = {f: reason for f in families if (reason := _no_stage(f, stages) or _all_failed(outcomes, f))}
     for family, reason in dead.items():
         yield TABLE.empty() | {"measure": "isa", "family": family, "skipped": reason}, ""
     for family in [f for f in families if f not in dead] or [None]:
         for (case, stage), made in zip(pairs, prepared, strict=True):
+            if family and _no_stage(family, [stage]):
+                continue
             row = case.row("isa", stage=stage, family=family, compiler=compiler)
             if isinstance(made, Failure):
                 yield row | {"skipped": made.reason}, ""
@@ -160,12 +189,28 @@ def isa_rows(
                 yield row | {"spirv_instructions": made.spirv_instructions}, ""
             else:
                 row["spirv_instructions"] = made.spirv_instructions
-                yield _figures(row, outcomes[family, made.job], outcomes[family, made.empty])
+                jobs = made.jobs(family)
+                compared = [outcomes[family, job] for job in jobs] if isinstance(jobs, tuple) else [jobs, jobs]
+                yield _figures(row, *compared)
 
 
-def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str, jobs: Sequence[Job]) -> str:
+def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
+    """What there is to compile for a family."""
+    pairs = (made.jobs(family) for made in prepared if isinstance(made, Prepared))
+    return list(dict.fromkeys(job for pair in pairs if isinstance(pair, tuple) for job in pair))
+
+
+def _no_stage(family: str, stages: Sequence[str]) -> str:
+    """Why a family has no kernel of these stages; empty where it has one."""
+    known = FAMILIES[family].stages if family in FAMILIES else stages
+    if set(known) & set(stages):
+        return ""
+    return f"its compiler makes no {' or '.join(stages)} shaders: it is CUDA's; ask for --stage {', '.join(known)}"
+
+
+def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
     """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
-    found = [outcomes[family, job] for job in jobs]
+    found = [outcome for (name, _), outcome in outcomes.items() if name == family]
     failures = [outcome for outcome in found if isinstance(outcome, Failure)]
     return failures[0].reason if found and len(failures) == len(found) else ""
 
@@ -188,8 +233,13 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     if ours and theirs:
         row |= {column: _difference(ours[column], theirs[column]) for column in ours}
     row["kernel_waves"] = occupancy.waves(row["family"], row["kernel_vgprs"])
-    about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": f"Mesa {outcome.version}"}
+    about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": _driver(outcome, row["family"])}
     return row | about, kernel.assembly
+
+
+def _driver(outcome: Compiled, family: str) -> str:
+    """The compiler of a count and its version; Mesa says the number alone."""
+    return outcome.version if _takes_cuda(family) else f"Mesa {outcome.version}"
 
 
 def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel, Kernel] | None:
@@ -228,10 +278,10 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
 
 
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `packed`, `jumps`, `looped`,
-    `issue_slots` and GUARDS."""
-    known = FAMILIES.get(family)
-    return intel_disassembly if known and known.vendor == "intel" else disassembly
+    """What reads the listings of a family's vendor: `names`, `kinds`, `packed`, `jumps`, `looped`, `issue_slots` and
+    GUARDS."""
+    readers = {"intel": intel_disassembly, "nvidia": sass}
+    return readers.get(FAMILIES[family].vendor, disassembly) if family in FAMILIES else disassembly
 
 
 def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:

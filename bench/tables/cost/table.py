@@ -29,7 +29,7 @@ class CostOptions:
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            "for these; all.",
+            f"for these; {titled('nvidia')}, or nvidia for these; all.",
             in_run=True,
         ),
     ] = "radeon"
@@ -82,13 +82,13 @@ COLUMNS = (
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside. Empty for Intel.",
+        "transcendental one issues once and runs beside. Empty for Intel and NVIDIA.",
     ),
     _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
         "conversion",
         "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two sizes of "
-        "floats.",
+        "floats. NVIDIA: also rounding to whole numbers, in the same unit.",
         13,
     ),
     _count(
@@ -99,13 +99,21 @@ COLUMNS = (
     _count(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
-        "which also divides integers.",
+        "which also divides integers. NVIDIA: `MUFU`.",
     ),
     _count("scalar", "Instructions once for all lanes.", 14),
-    _count("memory", "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`).", 15),
-    _count("waiting", "Waits and hints about order.", 10),
-    _count("control_flow", "Intel: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
-    _count("other_alu", "Intel: all other arithmetic, moves, compares and selections; interpolation, too.", 19),
+    _count(
+        "memory",
+        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too.",
+        15,
+    ),
+    _count("waiting", "Waits and hints about order; NVIDIA: without the padding behind a kernel's end.", 10),
+    _count("control_flow", "Intel and NVIDIA: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
+    _count(
+        "other_alu",
+        "Intel and NVIDIA: all other arithmetic, moves, compares and selections; Intel: interpolation, too.",
+        19,
+    ),
     _count("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
@@ -115,10 +123,20 @@ COLUMNS = (
         "SPIR-V instructions after spirv-opt, loops unrolled: portable, and of vectors; they depend on the spelling. "
         "Empty where a loop is left.",
     ),
-    _count("vgprs", "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once.", 16),
+    _count(
+        "vgprs",
+        "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once. NVIDIA: all registers.",
+        16,
+    ),
     _count("sgprs", "Scalar registers, more than the empty kernel's.", 8),
     _count("spills", "Registers spilled to memory, or Intel's messages that do so, more than the empty kernel's.", 9),
     _count("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
+    _count(
+        "stall_cycles",
+        "NVIDIA: cycles that the compiler has a warp wait after its instructions, added up along the code, more than "
+        "the empty kernel's. Results that a warp waits for at barriers, such as memory's, are not in it.",
+        6,
+    ),
     Column(
         "simd_width",
         "Lanes that an instruction works on. Of Intel's kernels for 8, 16 and 32 lanes: the widest that does not spill "
@@ -130,8 +148,9 @@ COLUMNS = (
     Column("kernel_sgprs", "All scalar registers of the kernel.", HOW, drops=5),
     Column(
         "kernel_waves",
-        "How many waves of 64 lanes a Radeon's SIMD holds of the whole kernel, by its vector registers; of Intel's, "
-        "threads of an execution unit, each of which has its own registers. More hide more latency.",
+        "How many waves of 64 lanes a Radeon's SIMD holds of the whole kernel, by its vector registers. Intel: threads "
+        "of an execution unit, each of which has its own registers. NVIDIA: warps of 32 lanes in a quarter of a "
+        "multiprocessor. More hide more latency.",
         HOW,
         drops=6,
     ),
@@ -181,6 +200,14 @@ ALSO = (
         for driver, names in (("hasvk", ("hsw", "bdw")), ("anv", ("skl", "tgl", "adl", "dg2")))
         for name in names
     ),
+    *(
+        Column(
+            name,
+            "Instructions that NVIDIA's NVRTC makes of it for that GPU family, in a compute shader.",
+            better="less",
+        )
+        for name in CHOICES["nvidia"]
+    ),
     Column("slots", "The article's instruction slots: ps_3_0, up to four numbers each."),
     Column("GeForce*", "The article's cycles on that GPU.", drops=18),
     Column("Radeon*", "The article's cycles on that GPU.", drops=18),
@@ -190,8 +217,9 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 TABLE = Table(
     name="cost",
     package=__package__ or "",
-    help="What encoding and decoding cost: instructions on GPUs of two vendors, and time; all of it by default.\n\n"
-    "Counts are by Mesa's compilers for GPUs that need not be there, less an empty kernel that moves the same numbers.",
+    help="What encoding and decoding cost: instructions on GPUs of three vendors, and time; all of it by default.\n\n"
+    "Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel "
+    "that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     options=CostOptions,
     outputs=CostOutputs,

@@ -51,8 +51,12 @@ def packings(names: str) -> list[Packing]:
 
 
 def chosen_families(names: str) -> list[str]:
-    """What `--family` names: families, and vendors for all of theirs. Raises UsageError."""
-    return list(dict.fromkeys(name for several in pick("family", names, families.CHOICES) for name in several))
+    """What `--family` names: families, and vendors for all of theirs. NVIDIA's are among all of them where their
+    compiler is installed, which people have to do themselves. Raises UsageError."""
+    found = dict.fromkeys(name for several in pick("family", names, families.CHOICES) for name in several)
+    if names.strip().lower() == "all" and isa.missing(families.NVRTC):
+        return [name for name in found if families.FAMILIES[name].library != families.NVRTC]
+    return list(found)
 
 
 @dataclass

@@ -30,6 +30,8 @@ from .sentences import sentences
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
+# The GPUs that `pick` counts for: those that compile its stage.
+COUNTED = {name: family for name, family in FAMILIES.items() if measure.STAGE in family.stages}
 # What people see of the front.
 SHOWN = ("encoding", "place", "bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "instructions")
 
@@ -101,7 +103,7 @@ def _question(options: PickOptions) -> Row:
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
-    aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, FAMILIES)
+    aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, COUNTED)
     uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
     said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
     return said | {"mixing": ",".join(uses) if uses else None}

@@ -13,6 +13,7 @@ from typing import Any
 
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.defines.packings import SIGN, packing_of
+from ...options.gpu_families import FAMILIES
 from ..cost import measure as cost
 from ..cost.codec_costs import Costs, LeftOutError, Where
 from .rates import Rates
@@ -101,7 +102,7 @@ class Case:
         packings = dict.fromkeys(packing_of(codec) for codec in self.codecs)
         encodings = dict.fromkeys(codec.encoding for codec in self.codecs)
         chosen = cost.cases(encodings, [*packings, *SIGN], cost.OPERATIONS)
-        rows = [row for row, _ in cost.isa_rows(chosen, [STAGE], [self.rates.family], self._lacks, cost.nobody)]
+        rows = [row for row, _ in cost.isa_rows(chosen, [self._stage], [self.rates.family], self._lacks, cost.nobody)]
         self._about["driver"] = next((row["driver"] for row in rows if row["driver"]), None)
         costs, found = Costs(rows), {}
         for codec in self.codecs:
@@ -115,7 +116,13 @@ class Case:
 
     def _counted(self, costs: Costs, rows: Sequence[Row], codec: Codec, operation: str) -> float:
         column = COLUMNS[all(row[COLUMNS[0]] is None for row in rows)]
-        return costs.of(codec, Where("isa", self.rates.family, STAGE), operation, column).cost
+        return costs.of(codec, Where("isa", self.rates.family, self._stage), operation, column).cost
+
+    @property
+    def _stage(self) -> str:
+        """Fragment shaders, or what the family's compiler makes."""
+        stages = FAMILIES[self.rates.family].stages
+        return STAGE if STAGE in stages else stages[0]
 
     @cached_property
     def _lacks(self) -> list[str]:

@@ -44,7 +44,7 @@ class Rates:
         return self.instructions / (self.memory * 1e9)
 
 
-# Shading units, boost clock, memory bandwidth as their makers' product pages give them (AMD, Intel, Microsoft, Valve).
+# Shading units, boost clock, memory bandwidth by product pages of AMD, Intel, NVIDIA, Microsoft and Valve.
 # RDNA 3 issues two instructions a lane and clock where its compiler pairs them; this counts one. Cached: AMD's
 # "effective memory bandwidth" with Infinity Cache. Intel's execution units compute 8 lanes.
 GPUS: Mapping[str, Rates] = MappingProxyType(
@@ -59,6 +59,10 @@ GPUS: Mapping[str, Rates] = MappingProxyType(
         "hd530": Rates("HD Graphics 530, two channels of DDR4-2133", "skl", 24 * 8, 1.150, 34.1),
         "iris_xe": Rates("Iris Xe of a Core i7-1185G7, LPDDR4x-4266", "tgl", 96 * 8, 1.350, 68.3),
         "a770": Rates("Arc A770", "dg2", 4096, 2.100, 560),
+        "rtx2080": Rates("GeForce RTX 2080", "sm_75", 2944, 1.710, 448),
+        "rtx3080": Rates("GeForce RTX 3080", "sm_86", 8704, 1.710, 760),
+        "rtx4090": Rates("GeForce RTX 4090", "sm_89", 16384, 2.520, 1008),
+        "rtx5090": Rates("GeForce RTX 5090", "sm_120", 21760, 2.407, 1792),
     }
 )
 USUAL = "rx480,rx6800xt,steam_deck,iris_xe"

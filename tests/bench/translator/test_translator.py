@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from normalbench.bench.isa.nvidia.cuda_writer import CudaWriter
 from normalbench.bench.translator.c_writer import CWriter
 from normalbench.bench.translator.glsl_parser import read_glsl
 from normalbench.bench.translator.glsl_writer import GlslWriter
@@ -179,3 +180,54 @@ def test_what_wgsl_has_beyond_functions_is_refused_in_a_line(source, said):
     """Bindings, structures and pointers are no part of an encoder."""
     with pytest.raises(TranslationError, match=re.escape(said)):
         read_wgsl(source)
+
+
+ARRAYS = """
+#define COUNT 2
+void turn(int at, inout float numbers[COUNT]) { numbers[at] = -numbers[at]; }
+vec4[COUNT] both(float numbers[COUNT]) {
+    vec4 found[COUNT];
+    for (int i = 0; i < COUNT; ++i) found[i] = vec4(numbers[i]);
+    return found;
+}
+vec2 mine_encode(vec3 n, vec3 view) {
+    float numbers[COUNT];
+    for (int i = 0; i < numbers.length(); ++i) numbers[i] = n[i] * float(n.length());
+    turn(1, numbers);
+    return n.z < 0.0 ? both(numbers)[0].xy : n.yx;
+}
+vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, 1.0); }
+"""
+
+
+def test_cuda_takes_arrays_and_changes_what_it_is_given():
+    """Arrays are values there, as in GLSL; both sides of a choice are computed, and loops are asked to be unrolled."""
+    text = written(CudaWriter, ARRAYS)
+    assert "__forceinline__ void p_turn(int at, Array<float, 2> &numbers) {" in text
+    assert "__forceinline__ Array<vec4, 2> p_both(Array<float, 2> numbers) {" in text
+    assert "p_turn(1, numbers);" in text and "numbers[i] = n[i] * 3.0f;" in text
+    assert "chosen(n[2] < 0.0f, swizzled<0, 1>(p_both(numbers)[0]), swizzled<1, 0>(n))" in text
+    assert text.count("#pragma unroll\n    for (") == 2
+
+
+@pytest.mark.parametrize("writer", [CWriter, GlslWriter, HlslWriter, MslWriter, WgslWriter])
+def test_other_languages_refuse_functions_of_arrays(writer):
+    with pytest.raises(TranslationError, match="turn takes or gives an array; write its numbers one by one"):
+        written(writer, ARRAYS)
+    changed = "void turn(inout float x) { x = -x; }\n" + SOURCE.replace(
+        "float sum = 0.0;", "float sum = 0.0; turn(sum);"
+    )
+    with pytest.raises(TranslationError, match="turn changes what it is given; give back what it makes"):
+        written(writer, changed)
+
+
+def test_cuda_assigns_to_several_components_and_hides_no_function():
+    text = written(CudaWriter, SOURCE.replace("float sum", "vec2 max = n.xy; max.yx = max; max.xy += n.yz; float sum"))
+    assert "assign<1, 0>(max_, max_);" in text
+    assert "assign<0, 1>(max_, swizzled<0, 1>(max_) + swizzled<1, 2>(n));" in text
+
+
+@pytest.mark.parametrize("length", ["n", "int(n.x)"])
+def test_an_array_without_a_length_is_said_with_line_and_column(length):
+    with pytest.raises(TranslationError, match=r"^2:\d+: an array's length is not a number"):
+        read_glsl(f"vec2 f(vec3 n) {{\n    float x[{length}];\n    return n.xy;\n}}")

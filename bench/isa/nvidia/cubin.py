@@ -1,0 +1,63 @@
+"""What NVIDIA's compiler writes, an ELF file of 64 bits: a kernel's code, registers and stack."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..compiler import DriverError
+
+TEXT, ABOUT = b".text.", b".nv.info"
+# A section's header (ELF-64): name, type, flags, address, place, size, link, info, alignment, size of an entry.
+SECTION = struct.Struct("<IIQQQQIIQQ")
+# `.nv.info` is a list of attributes: format, number, and a size, or a value where the format is not SIZED. Of these two
+# the words are the function's symbol and the figure. Numbers are those that cuobjdump names EIATTR_REGCOUNT and
+# EIATTR_FRAME_SIZE.
+SIZED, REGISTERS, STACK = 4, 0x2F, 0x11
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A kernel's machine code; the registers of a lane, and the bytes that it keeps on a stack, None where the file
+    does not say."""
+
+    code: bytes
+    registers: int | None
+    stack: int | None
+
+
+def kernel_of(cubin: bytes) -> Kernel:
+    """The kernel of a file that holds one. Raises DriverError."""
+    try:
+        sections = list(_sections(cubin))
+        code = [data for name, data in sections if name.startswith(TEXT)]
+        about = dict(pair for name, data in sections if name == ABOUT for pair in _attributes(data))
+    except (struct.error, IndexError, ValueError, OverflowError) as error:
+        raise DriverError(f"what NVRTC made is not an ELF file that is known: {error}") from error
+    if len(code) != 1:
+        raise DriverError(f"what NVRTC made holds {len(code)} functions: calls are not counted")
+    return Kernel(code[0], about.get(REGISTERS), about.get(STACK))
+
+
+def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """(name, contents) of each section."""
+    if data[:5] != b"\x7fELF\x02":
+        raise ValueError("no ELF file of 64 bits")
+    (start,) = struct.unpack_from("<Q", data, 0x28)
+    size, count, names = struct.unpack_from("<HHH", data, 0x3A)
+    headers = [SECTION.unpack_from(data, start + i * size) for i in range(count)]
+    strings = headers[names][4]
+    for name, _, _, _, place, length, *_ in headers:
+        at = strings + name
+        yield data[at : data.index(b"\0", at)], data[place : place + length]
+
+
+def _attributes(data: bytes) -> Iterator[tuple[int, int]]:
+    """(number, figure) of each attribute of two words."""
+    at = 0
+    while at < len(data):
+        kind, number, size = struct.unpack_from("<BBH", data, at)
+        if kind == SIZED and size == 8:
+            yield number, struct.unpack_from("<II", data, at + 4)[1]
+        at += 4 + (size if kind == SIZED else 0)

@@ -1,0 +1,64 @@
+"""nvdisasm: machine code of several kernels as a listing of each. It takes a fifth of a second to start."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..compiler import DriverError
+from .sass import SIZE
+
+SECONDS = 8
+_PLACE = re.compile(r"^\s*/\*([0-9a-f]+)\*/")
+# What has a place in the code among its operands.
+_JUMP = re.compile(r"\b(?:BRA|BSSY|JMP|CALL|WARPSYNC|BREAK)\b[^;]*?(0x[0-9a-f]+)(?=[ ;)])")
+
+
+def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[str]:
+    """The listing of each kernel, its places counted from its own start. Raises DriverError."""
+    with tempfile.NamedTemporaryFile(suffix=".bin") as file:
+        file.write(b"".join(codes))
+        file.flush()
+        # Machine code alone: of a whole file it also analyses what it lists, for twice the time.
+        command = [program, "-hex", "-b", architecture.upper().replace("_", ""), file.name]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise DriverError(f"nvdisasm: {error}") from error
+    if done.returncode:
+        said = [line for line in done.stderr.splitlines() if line.strip()]
+        raise DriverError(f"nvdisasm ended with status {done.returncode}: {said[0][:200] if said else 'no word'}")
+    return _parted(done.stdout.splitlines(), [len(code) for code in codes])
+
+
+def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
+    """The lines of each kernel; sizes in bytes."""
+    starts = [sum(sizes[:at]) for at in range(len(sizes) + 1)]
+    found: list[list[str]] = [[] for _ in sizes]
+    at, is_inside = 0, False
+    for line in lines:
+        if match := _PLACE.match(line):
+            place, is_inside = int(match[1], 16), True
+            while place >= starts[at + 1]:
+                at += 1
+            line = _moved(line, place, starts[at])
+        if is_inside:
+            found[at].append(line)
+    if any(
+        sum(bool(_PLACE.match(line)) for line in some) * SIZE != size for some, size in zip(found, sizes, strict=True)
+    ):
+        raise DriverError("nvdisasm did not list all that it was given")
+    return ["\n".join(some) + "\n" for some in found]
+
+
+def _moved(line: str, place: int, start: int) -> str:
+    """A line with its own place, and the one that it jumps to, from the kernel's start."""
+    line = line.replace(f"/*{place:04x}*/", f"/*{place - start:04x}*/", 1)
+    code, mark, words = line.partition(";")
+    if jump := _JUMP.search(code + ";"):
+        first, last = jump.span(1)
+        code = f"{code[:first]}{hex(int(jump[1], 16) - start)}{code[last:]}"
+    return code + mark + words

@@ -1,0 +1,70 @@
+"""NVRTC, which compiles CUDA C++ for a GPU that need not be there. Runs in a child process (`child`)."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+
+from ..compiler import DriverError
+
+# The graphics driver's own arithmetic: denormals are zero, quotients and roots are approximations, products are fused.
+OPTIONS = ("--use_fast_math", "--device-as-default-execution-space", "--std=c++17")
+
+
+class Nvrtc:
+    """The library.
+
+    Attributes:
+        version: its own, as "12.9".
+
+    Raises:
+        DriverError: it cannot be loaded.
+    """
+
+    def __init__(self, path: Path):
+        try:
+            self._library = ctypes.CDLL(str(path))
+            major, minor = ctypes.c_int(), ctypes.c_int()
+            self._asked("nvrtcVersion", ctypes.byref(major), ctypes.byref(minor))
+        except (OSError, AttributeError) as error:
+            raise DriverError(f"{path.name} cannot be loaded: {error}") from error
+        self.version = f"{major.value}.{minor.value}"
+
+    def check(self, architecture: str) -> None:
+        """Raises DriverError for an architecture that it does not compile for."""
+        count = ctypes.c_int()
+        self._asked("nvrtcGetNumSupportedArchs", ctypes.byref(count))
+        numbers = (ctypes.c_int * count.value)()
+        self._asked("nvrtcGetSupportedArchs", numbers)
+        known = [f"sm_{number}" for number in numbers]
+        if architecture not in known:
+            raise DriverError(f"NVRTC {self.version} does not compile for {architecture}; it knows {', '.join(known)}")
+
+    def cubin(self, text: str, architecture: str) -> bytes:
+        """What it makes of a program for an architecture, as an ELF file. Raises DriverError."""
+        program = ctypes.c_void_p()
+        self._asked("nvrtcCreateProgram", ctypes.byref(program), text.encode(), b"kernel.cu", 0, None, None)
+        try:
+            options = [option.encode() for option in (f"--gpu-architecture={architecture}", *OPTIONS)]
+            given = (ctypes.c_char_p * len(options))(*options)
+            if self._library.nvrtcCompileProgram(program, len(options), given):
+                raise DriverError(f"NVRTC does not compile it: {self._log(program)}")
+            return self._bytes("CUBIN", program)
+        finally:
+            self._library.nvrtcDestroyProgram(ctypes.byref(program))
+
+    def _log(self, program: ctypes.c_void_p) -> str:
+        """The first error."""
+        lines = self._bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
+        return next((line for line in lines if "error" in line), lines[0] if lines else "it does not say why")[:200]
+
+    def _bytes(self, what: str, program: ctypes.c_void_p) -> bytes:
+        size = ctypes.c_size_t()
+        self._asked(f"nvrtcGet{what}Size", program, ctypes.byref(size))
+        held = ctypes.create_string_buffer(size.value)
+        self._asked(f"nvrtcGet{what}", program, held)
+        return held.raw
+
+    def _asked(self, name: str, *given: object) -> None:
+        if status := getattr(self._library, name)(*given):
+            raise DriverError(f"{name} of NVRTC failed with status {status}")

@@ -1,0 +1,138 @@
+"""What a listing of NVIDIA's machine code (SASS) is made of, from Turing to Blackwell: which kind each instruction is,
+where it jumps, and for how long the compiler holds a warp back after it.
+
+Names are those of the CUDA Binary Utilities' instruction set reference. An instruction has 128 bits, which nvdisasm
+prints as two words. The second word's upper part controls the scheduler: 4 bits of cycles to wait, a bit to yield,
+3 + 3 bits of barriers, 6 bits of barriers to wait for (Z. Jia et al., Dissecting the NVIDIA Volta GPU Architecture via
+Microbenchmarking, 2018).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+# The columns that add up to the count.
+KINDS = ("other_alu", "conversion", "transcendental", "scalar", "memory", "control_flow", "waiting")
+# What compares or chooses between two numbers; a minimum and a maximum are one instruction.
+GUARDS = ("FSETP", "FSET", "FSEL", "FMNMX", "SEL", "ISETP", "IMNMX", "VIMNMX")
+# Bytes of an instruction.
+SIZE = 16
+
+_NAMES = {
+    "other_alu": "FADD FADD2 FADD32I FFMA FFMA2 FFMA32I FMUL FMUL2 FMUL32I FMNMX FMNMX3 FSEL FSET FSETP FSWZADD FCHK "
+    "HADD2 HADD2_32 HFMA2 HFMA2_32I HMUL2 HMUL2_32I HMNMX2 HSET2 HSETP2 VHMNMX "
+    "IABS IADD IADD3 IADD32I IMAD IMNMX IMUL IMUL32I ISCADD ISCADD32I ISETP LEA LOP LOP3 LOP32I SHF SHL SHR SGXT BMSK "
+    "BREV FLO POPC IDP IDP4A PRMT MOV MOV32I SEL PLOP3 PSETP P2R R2P VABSDIFF VABSDIFF4 VIADD VIADDMNMX VIMNMX VIMNMX3 "
+    "S2R CS2R SHFL VOTE MATCH",
+    # Rounding to a whole number runs in the unit of conversions.
+    "conversion": "F2F F2FP F2I F2IP I2F I2FP I2I I2IP FRND",
+    "transcendental": "MUFU",
+    "scalar": "R2UR REDUX S2UR CS2UR UBMSK UBREV UCLEA UF2FP UF2I UF2IP UFADD UFFMA UFLO UFMNMX UFMUL UFRND UFSEL "
+    "UFSET UFSETP UI2F UI2FP UI2I UI2IP UIABS UIADD3 UIMAD UIMNMX UISETP ULEA ULOP ULOP3 ULOP32I UMOV UP2UR UPLOP3 "
+    "UPOPC UPRMT UPSETP UR2UP USEL USGXT USHF USHL USHR UVIADD UVIMNMX UVIRTCOUNT VOTEU",
+    # Constants, too, for one lane or for all.
+    "memory": "LD LDC LDCU LDG LDL LDS ULDC ST STG STL STS TEX TLD TLD4 TMML TXD TXQ SULD SUST SURED SUATOM ATOM ATOMG "
+    "ATOMS RED CCTL CCTLL CCTLT MEMBAR",
+    "control_flow": "BMOV BRA BREAK BRX BRXU BSSY BSYNC CALL EXIT JMP JMX JMXU KILL RET WARPSYNC YIELD",
+    "waiting": "NOP BAR DEPBAR NANOSLEEP ERRBAR",
+}
+_KIND: Mapping[str, str] = {name: kind for kind, names in _NAMES.items() for name in names.split()}
+# "/*0160*/ @P0 BRA 0x230 ; /* 0x000000c000000947 */", and the second word in a line of its own.
+_INSTRUCTION = re.compile(
+    r"^\s*/\*([0-9a-f]+)\*/\s+(@!?U?P\w+\s+)?([A-Z][A-Z0-9_]*)[\w.]*\s*([^;]*?)\s*;\s*/\* 0x([0-9a-f]{16}) \*/"
+)
+_SECOND_WORD = re.compile(r"^\s*/\* 0x([0-9a-f]{16}) \*/\s*$")
+_TARGET = re.compile(r"\b0x([0-9a-f]+)\b")
+_CONDITION = re.compile(r"^!?U?P\d")
+# Of the second word, the lowest of the bits that say how many cycles to wait.
+_STALL = 41
+
+
+class Instruction(NamedTuple):
+    """One instruction: its place in bytes, whether a predicate decides on it, its name without modifiers, its operands,
+    and its second word, 0 where the listing has none."""
+
+    place: int
+    is_predicated: bool
+    name: str
+    operands: str
+    control: int
+
+
+def every(assembly: str) -> list[Instruction]:
+    """All instructions of a listing, in order, padding included."""
+    found: list[Instruction] = []
+    for line in assembly.splitlines():
+        if match := _INSTRUCTION.match(line):
+            found.append(Instruction(int(match[1], 16), bool(match[2]), match[3], match[4], 0))
+        elif (match := _SECOND_WORD.match(line)) and found:
+            found[-1] = found[-1]._replace(control=int(match[1], 16))
+    return found
+
+
+def instructions(assembly: str) -> list[Instruction]:
+    """All but the padding: the NOPs behind the jump to itself that every kernel ends with."""
+    found = every(assembly)
+    while found and found[-1].name == "NOP":
+        found.pop()
+    return found
+
+
+def names(assembly: str) -> list[str]:
+    """The name of each instruction, in order."""
+    return [one.name for one in instructions(assembly)]
+
+
+def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
+    """How many instructions of each kind; None where the text does not list `total` instructions that are known."""
+    listed = names(assembly)
+    if len(listed) != total or not _KIND.keys() >= set(listed):
+        return None
+    counts = Counter(_KIND[name] for name in listed)
+    return {kind: counts[kind] for kind in KINDS}
+
+
+def issue_slots(_: Mapping[str, int], __: str) -> None:
+    """Nothing: how long an instruction issues depends on the unit's width, which NVIDIA does not say of all of them."""
+    return
+
+
+def packed(_: str) -> None:
+    """Nothing: the same instructions compute one number of 16 bits and two."""
+    return
+
+
+def looped(assembly: str) -> int:
+    """How many instructions lie in loops: from the place that a jump goes back to, to that jump."""
+    inside: set[int] = set()
+    for one, _, distance in _jumps(assembly):
+        if distance < 0:
+            inside.update(range(one.place + distance, one.place + SIZE, SIZE))
+    return len(inside)
+
+
+def jumps(assembly: str) -> tuple[int, int]:
+    """(branches, loops): conditional jumps ahead, and jumps back; a kernel's last jump, to itself, is none."""
+    ahead = back = 0
+    for _, is_conditional, distance in _jumps(assembly):
+        back += distance < 0
+        ahead += is_conditional and distance > 0
+    return ahead, back
+
+
+def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
+    """Each jump, whether there is a condition, and how many bytes it goes ahead."""
+    for one in instructions(assembly):
+        if one.name in ("BRA", "JMP") and (target := _TARGET.search(one.operands)):
+            is_conditional = one.is_predicated or bool(_CONDITION.match(one.operands))
+            yield one, is_conditional, int(target[1], 16) - one.place
+
+
+def stall_cycles(assembly: str) -> int | None:
+    """The cycles that the compiler has a warp wait after each instruction, added up along the code; None where the
+    listing has no second words."""
+    found = instructions(assembly)
+    return sum(one.control >> _STALL & 15 for one in found) if all(one.control for one in found) else None
