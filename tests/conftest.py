@@ -19,7 +19,7 @@ import pytest
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.metrics import published
-from normalbench.bench.options.gpu_families import ANV, HASVK, RADV
+from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
@@ -64,6 +64,12 @@ def radv():
 def intel(radv):  # noqa: ARG001 (asks for the other compilers)
     """Intel's compilers, and what builds the device that they are given."""
     _need([ANV, HASVK], {null_device.COMPILER: null_device.NO_COMPILER})
+
+
+@pytest.fixture(scope="session")
+def terascale(radv):  # noqa: ARG001 (asks for the GLSL compiler)
+    """Mesa's r600, and what builds the device that it is given."""
+    _need([R600], {null_device.COMPILER: null_device.NO_COMPILER})
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:

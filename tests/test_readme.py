@@ -21,6 +21,7 @@ from normalbench.bench.code.verify import agreement
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics import published
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.lights.sums import Adder, equal_lights
 from normalbench.bench.tables.mix.table import USES, VERDICTS
@@ -52,6 +53,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
+    "normalbench cost terascale",
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
     *("normalbench maps", "normalbench vectors", "normalbench code"),
 }
@@ -538,6 +540,28 @@ def test_the_cost_table_of_two_vendors_is_what_is_measured(run):
         for family, names in zip(families, columns, strict=True):
             counts = [found[name, operation, family] for name in names.split(", ")]
             assert counts == sorted(counts), (operation, family, names)
+
+
+@pytest.mark.usefixtures("terascale")
+def test_the_cost_table_of_the_articles_radeons_is_what_is_measured(run):
+    """And the article's cycles next to it."""
+    shown = table("normalbench cost terascale")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +([\d.]*)" * 8 + r" \|$", shown, re.M)
+    assert len(lines) == 8
+    words = ["--isa", "--family", "terascale", "--stage", "fragment", "--storage", "rgba8", "--article"]
+    status, out, _ = run("cost", "--encoding", ",".join(line[0] for line in lines), *words, "--format", "json")
+    rows = json.loads(out)
+    assert status == 0
+    cycles = {(row["encoding"], row["operation"], row["device"]): row["cycles"] for row in rows}
+    counts = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    is_that_mesa = {row["driver"] for row in rows if row["family"]} == {mesa}
+    chips = [(family, FAMILIES[family].title) for family in CHOICES["terascale"]]
+    columns = [(operation, *chip) for operation in ("encode", "decode") for chip in chips]
+    for name, *figures in lines:
+        for (operation, family, title), count, cycle in zip(columns, figures[::2], figures[1::2], strict=True):
+            assert not is_that_mesa or int(count) == counts[name, operation, family], (name, operation, family)
+            assert (float(cycle) if cycle else None) == cycles.get((name, operation, title)), (name, operation, title)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

@@ -295,7 +295,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         storage: Storages and packings whose own cost is shown, comma-separated, or all.

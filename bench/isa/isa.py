@@ -18,29 +18,40 @@ from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
 from ..machine.cores import cores
-from ..options.gpu_families import FAMILIES, RADV, TITLES
+from ..options.gpu_families import FAMILIES, R600, RADV, TITLES
 from ..output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
-from .driver_files import driver_file, no_driver
+from .driver_files import driver_file, is_gl, no_driver
 from .null_device import NullDeviceError
 from .process import Driver, child
+from .terascale import driver as terascale
 
 # What RADV says before it gives up.
 REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
-OWN_FILES = ("compiler.py", "child.py", "null_i915.c")
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
+OWN_FILES += tuple(f"terascale/{name}" for name in ("compiler.py", "child.py", "disassembly.py", "null_radeon.c"))
 
 
 @dataclass(frozen=True)
 class Job:
-    """A shader to compile: "compute" or "fragment", as SPIR-V, and the vertex shader before it."""
+    """A shader to compile: "compute" or "fragment", as SPIR-V, and the vertex shader before it.
+
+    `glsl` and `glsl_vertex` are for drivers of GL: the same operation in the bare kernel; empty for compute shaders.
+    """
 
     stage: str
     code: bytes
     vertex: bytes
+    glsl: str = ""
+    glsl_vertex: str = ""
+
+    def texts(self, of_gl: bool) -> tuple[bytes, bytes]:
+        """The shader and the one before it as a driver takes them, of GL or of Vulkan."""
+        return (self.glsl.encode(), self.glsl_vertex.encode()) if of_gl else (self.code, self.vertex)
 
 
 @dataclass(frozen=True)
@@ -96,8 +107,8 @@ def _loaded(path: Path) -> str | Failure:
         if "missing" in line or "failed" in line:
             return Failure(line.get("missing") or line["failed"], "missing" in line)
         files = line.get("loaded", {})
-    ours = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in OWN_FILES]
-    is_there = any(Path(name).name.startswith(DRIVERS[0]) for name in files)
+    ours = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in OWN_FILES]
+    is_there = any(Path(name).name.startswith((DRIVERS[0], R600)) for name in files)
     return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
 
 
@@ -110,10 +121,18 @@ def missing(library: str = RADV) -> str:
     if isinstance(found, Failure) and found.is_missing:
         return found.reason
     try:
-        _ = library == RADV or null_device.library()
+        _null_device(library)
     except NullDeviceError as error:
         return str(error) if error.is_missing else ""
     return ""
+
+
+def _null_device(library: str) -> None:
+    """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
+    if library == R600:
+        null_device.library(terascale.SOURCE)
+    elif library != RADV:
+        null_device.library()
 
 
 def compile_all(
@@ -163,6 +182,14 @@ def _driver_version(library: str) -> str:
 
 
 def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
+    """A family's outcomes, in the order of the jobs; of a stage that is not counted, a Failure."""
+    known = FAMILIES[family]
+    counted = [job for job in jobs if job.stage in known.stages]
+    outcomes = dict(zip(counted, _counted(family, stop, counted), strict=True))
+    return [outcomes.get(job, Failure(f"{known.title}: {job.stage} shaders are not counted")) for job in jobs]
+
+
+def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
     """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
     if reason := missing(library):
@@ -171,7 +198,7 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
     assert path
     driver, identity = Driver(path, stop), _loaded(path)
     identity = "" if isinstance(identity, Failure) else identity
-    keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
+    keys = [kept.key_of("isa", identity, family, gpu, job.stage, *job.texts(is_gl(path))) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
         if found := _as_compiled(kept.read(key)):
@@ -225,6 +252,8 @@ def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str,
 def _variables(family: str, name: str) -> dict[str, str]:
     """What has a driver compile for a family, under one of its names. Raises NullDeviceError."""
     words = FAMILIES[family].null_device
+    if FAMILIES[family].library == R600:
+        return terascale.variables(words)
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
 
 
@@ -259,7 +288,7 @@ def _answers(
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with child(variables, driver, _given(jobs)) as (lines, why):
+    with child(variables, driver, _given(jobs, is_gl(driver.path))) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -275,11 +304,11 @@ def _answers(
         yield Failure(why())
 
 
-def _given(jobs: Mapping[str, Job]) -> dict[str, Any]:
+def _given(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
     """Jobs as a child takes them."""
-    return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
+    return {"planes": PLANES, "jobs": [_as_json(key, job, of_gl) for key, job in jobs.items()]}
 
 
-def _as_json(key: str, job: Job) -> dict[str, str]:
-    code, vertex = (base64.b64encode(part).decode() for part in (job.code, job.vertex))
+def _as_json(key: str, job: Job, of_gl: bool) -> dict[str, str]:
+    code, vertex = (base64.b64encode(part).decode() for part in job.texts(of_gl))
     return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}

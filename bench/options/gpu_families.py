@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
+R600 = "r600_dri"
 
 
 @dataclass(frozen=True)
@@ -15,10 +16,11 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon" or "intel", which is also the name of the group of its families.
-        library: the Vulkan driver that compiles for it.
+        vendor: "radeon", "terascale" (Radeons of before GCN) or "intel": also the name of the group of its families.
+        library: the driver that compiles for it: of Vulkan, or r600 of GL.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what an Intel driver is told of a GPU that is not there, in the words of null_i915.c.
+        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c or null_radeon.c.
+        stages: the kinds of shaders that are counted.
     """
 
     title: str
@@ -26,6 +28,7 @@ class Family:
     library: str
     names: tuple[str, ...]
     null_device: str = ""
+    stages: tuple[str, ...] = ("fragment", "compute")
 
 
 def _radeon(title: str, *names: str) -> Family:
@@ -34,6 +37,10 @@ def _radeon(title: str, *names: str) -> Family:
 
 def _intel(title: str, library: str, name: str, null_device: str) -> Family:
     return Family(title, "intel", library, (name,), null_device)
+
+
+def _terascale(title: str, name: str, pci: str) -> Family:
+    return Family(title, "terascale", R600, (name,), pci, ("fragment",))
 
 
 # One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
@@ -51,6 +58,8 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "tgl": _intel("Tiger Lake", ANV, "tgl", "0x9a49 1 1 6 16 0"),
         "adl": _intel("Alder Lake", ANV, "adl", "0x46a6 12 1 6 16 0"),
         "dg2": _intel("Arc A770", ANV, "dg2", "0x56a0 8 8 4 16 1"),
+        "rv670": _terascale("Radeon HD 3870", "rv670", "0x9501"),
+        "cypress": _terascale("Radeon HD 5870", "cypress", "0x6898"),
     }
 )
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
@@ -60,7 +69,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
 )
 # What people call each driver.
-TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk"})
+TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk", R600: "r600"})
 
 
 def titled(vendor: str) -> str:

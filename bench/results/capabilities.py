@@ -13,7 +13,7 @@ from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
 from ..output.errors import MissingError
-from .machine import require_intel, require_radeons
+from .machine import require_intel, require_radeons, require_terascale
 
 
 def _require_parquet() -> None:
@@ -28,6 +28,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality and mix by GLSL, render, effects, lights, sweep": require_device,
         "instructions on Radeons (cost --isa, pick)": require_radeons,
         "instructions on Intel (cost --isa --family intel)": require_intel,
+        "instructions on the article's Radeons (cost --isa --family terascale)": require_terascale,
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,

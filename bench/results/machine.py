@@ -14,7 +14,7 @@ from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 from ..languages import tools
-from ..options.gpu_families import ANV, HASVK, RADV
+from ..options.gpu_families import ANV, HASVK, R600, RADV
 from ..output.errors import MissingError
 
 ROUNDS = {
@@ -89,6 +89,11 @@ def require_radeons() -> None:
 def require_intel() -> None:
     """Raises MissingError where one of Intel's drivers cannot compile, or the device that they are given."""
     _require(ANV, HASVK)
+
+
+def require_terascale() -> None:
+    """Raises MissingError where r600 cannot compile, or the device that it is given."""
+    _require(R600)
 
 
 def _require(*libraries: str) -> None:

@@ -15,6 +15,7 @@ from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
 from ...isa import disassembly, intel_disassembly, isa, spirv
 from ...isa.isa import Failure, Job, Kernel, Outcome
+from ...isa.terascale import disassembly as terascale_disassembly
 from ...machine.cores import on_all_cores
 from ...options.gpu_families import FAMILIES
 from ...output.errors import MissingError
@@ -42,7 +43,8 @@ WHOLE = {
     "kernel_inverse_throughput": (("Inverse Throughput",),),
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
-KINDS = tuple(dict.fromkeys((*disassembly.KINDS, *intel_disassembly.KINDS)))
+READERS = {"radeon": disassembly, "intel": intel_disassembly, "terascale": terascale_disassembly}
+KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in reader.KINDS))
 LISTED = ("issue_slots", *KINDS, "branches", "loops")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
@@ -112,7 +114,8 @@ def _job(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | No
     module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
     # A vertex shader feeds each fragment shader; a compute shader has none.
     vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
-    return Job(stage, module.binary, vertex), module.instructions
+    bare = [operation.source(f"kernel_bare.{kind}").text for kind in ("frag", "vert")] if stage == "fragment" else []
+    return Job(stage, module.binary, vertex, *bare), module.instructions
 
 
 def isa_rows(
@@ -142,11 +145,16 @@ def isa_rows(
     jobs = list(dict.fromkeys(job for p in prepared if isinstance(p, Prepared) for job in (p.job, p.empty)))
     outcomes = isa.compile_all(jobs, families, tick)
     lacks += dict.fromkeys(o.reason for o in outcomes.values() if isinstance(o, Failure) and o.is_missing)
+    for family, stage in ((f, s) for f in families for s in stages if s not in _stages(f)):
+        reason = f"{FAMILIES[family].title}: {stage} shaders are not counted"
+        yield TABLE.empty() | {"measure": "isa", "stage": stage, "family": family, "skipped": reason}, ""
     dead = {family: reason for family in families if (reason := _all_failed(outcomes, family, jobs))}
     for family, reason in dead.items():
         yield TABLE.empty() | {"measure": "isa", "family": family, "skipped": reason}, ""
     for family in [f for f in families if f not in dead] or [None]:
         for (case, stage), made in zip(pairs, prepared, strict=True):
+            if family is not None and stage not in _stages(family):
+                continue
             row = case.row("isa", stage=stage, family=family, compiler=compiler)
             if isinstance(made, Failure):
                 yield row | {"skipped": made.reason}, ""
@@ -157,9 +165,14 @@ def isa_rows(
                 yield _figures(row, outcomes[family, made.job], outcomes[family, made.empty])
 
 
+def _stages(family: str) -> tuple[str, ...]:
+    """The kinds of shaders that are counted of a family."""
+    return FAMILIES[family].stages if family in FAMILIES else tuple(kernels.STAGES)
+
+
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str, jobs: Sequence[Job]) -> str:
     """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
-    found = [outcomes[family, job] for job in jobs]
+    found = [outcomes[family, job] for job in jobs if job.stage in _stages(family)]
     failures = [outcome for outcome in found if isinstance(outcome, Failure)]
     return failures[0].reason if found and len(failures) == len(found) else ""
 
@@ -216,13 +229,14 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     if counts is None:
         return None
     branches, loops = read.jumps(assembly)
-    return {"issue_slots": read.issue_slots(counts, family), **counts, "branches": branches, "loops": loops}
+    slots = read.slots(assembly) if read is terascale_disassembly else {}
+    return {"issue_slots": read.issue_slots(counts, family), **counts, **slots, "branches": branches, "loops": loops}
 
 
 def listings_of(family: str) -> Any:
     """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots` and GUARDS."""
     known = FAMILIES.get(family)
-    return intel_disassembly if known and known.vendor == "intel" else disassembly
+    return READERS[known.vendor] if known else disassembly
 
 
 def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:

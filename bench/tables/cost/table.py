@@ -29,7 +29,7 @@ class CostOptions:
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            "for these; all.",
+            f"for these; {titled('terascale')}, or terascale for these; all.",
             in_run=True,
         ),
     ] = "radeon"
@@ -76,12 +76,12 @@ COLUMNS = (
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly.",
+        "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction.",
     ),
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside. Empty for Intel.",
+        "transcendental one issues once and runs beside. TeraScale: bundles. Empty for Intel.",
     ),
     _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
@@ -98,13 +98,17 @@ COLUMNS = (
     _count(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
-        "which also divides integers.",
+        "which also divides integers. TeraScale: bundles that hold one.",
     ),
     _count("scalar", "Instructions once for all lanes.", 14),
     _count("memory", "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`).", 15),
     _count("waiting", "Waits and hints about order.", 10),
-    _count("control_flow", "Intel: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
-    _count("other_alu", "Intel: all other arithmetic, moves, compares and selections; interpolation, too.", 19),
+    _count("control_flow", "Intel, TeraScale: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
+    _count(
+        "other_alu", "Intel, TeraScale: all other arithmetic, moves, compares and selections; interpolation, too.", 19
+    ),
+    _count("vliw_slots", "TeraScale: operations in all bundles; a bundle has five slots.", 20),
+    _count("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
     _count(
@@ -168,7 +172,11 @@ ALSO = (
     Column("navi*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
     *(
         Column(name, f"Instructions that Mesa's {driver} makes of it for that GPU family.", better="less")
-        for driver, names in (("hasvk", ("hsw", "bdw")), ("anv", ("skl", "tgl", "adl", "dg2")))
+        for driver, names in (
+            ("hasvk", ("hsw", "bdw")),
+            ("anv", ("skl", "tgl", "adl", "dg2")),
+            ("r600", ("rv670", "cypress")),
+        )
         for name in names
     ),
     Column("slots", "The article's instruction slots: ps_3_0, up to four numbers each."),

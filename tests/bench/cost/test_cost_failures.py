@@ -157,11 +157,11 @@ def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
 def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):
     file, head = tmp_path / "libvulkan_radeon.so", bytes(range(256)) * 16
     file.write_bytes(head + b"code")
-    first = compiler._fingerprint(file)
+    first = compiler.fingerprint(file)
     file.write_bytes(b"\x00\x01" + head[:1] + head[3:] + b"code")
-    other_id = compiler._fingerprint(file)
+    other_id = compiler.fingerprint(file)
     file.write_bytes(head + b"code and more")
-    assert len({first, other_id, compiler._fingerprint(file)}) == 3
+    assert len({first, other_id, compiler.fingerprint(file)}) == 3
 
 
 @pytest.mark.slow
