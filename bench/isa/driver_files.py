@@ -11,14 +11,15 @@ from functools import cache
 from pathlib import Path
 
 from ..machine import children
-from ..options.gpu_families import R600, RADV, TITLES
+from ..options.gpu_families import MOBILE, R600, RADV, TITLES
+from .mobile import driver as mobile
 from .terascale import driver as terascale
 
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.
 UNWANTED = (
     *("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),
-    *("R600_", "RADEON_", "LIBGL_", "EGL_", "GALLIUM_"),
+    *("R600_", "RADEON_", "LIBGL_", "EGL_", "GALLIUM_", "TU_", "IR3_", "FD_", "V3D_", "V3DV_"),
 )
 
 
@@ -26,6 +27,8 @@ def no_driver(library: str) -> str:
     """What to install where there is no description of a driver."""
     if library == R600:
         return terascale.NO_DRIVER
+    if library in MOBILE:
+        return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
     said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
     return f"{said}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
 
@@ -47,6 +50,7 @@ def _descriptions() -> Iterator[Path]:
     data = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
     for root in ("~/.local/share", "/etc", *data.split(os.pathsep)):
         yield from sorted(Path(root).expanduser().glob("vulkan/icd.d/*.json"))
+    yield from mobile.descriptions()
 
 
 def _library(path: Path) -> str:

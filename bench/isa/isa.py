@@ -18,11 +18,12 @@ from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
 from ..machine.cores import cores
-from ..options.gpu_families import FAMILIES, R600, RADV, TITLES
+from ..options.gpu_families import FAMILIES, MOBILE, R600, RADV, TITLES, TURNIP, V3DV
 from ..output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
 from .driver_files import driver_file, is_gl, no_driver
+from .mobile import driver as mobile
 from .null_device import NullDeviceError
 from .process import Driver, child
 from .terascale import driver as terascale
@@ -34,6 +35,7 @@ MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
 OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
 OWN_FILES += tuple(f"terascale/{name}" for name in ("compiler.py", "child.py", "disassembly.py", "null_radeon.c"))
+OWN_FILES += ("mobile/null_mobile.c",)
 
 
 @dataclass(frozen=True)
@@ -129,10 +131,9 @@ def missing(library: str = RADV) -> str:
 
 def _null_device(library: str) -> None:
     """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
-    if library == R600:
-        null_device.library(terascale.SOURCE)
-    elif library != RADV:
-        null_device.library()
+    source = {R600: terascale.SOURCE, TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
+    if library != RADV:
+        null_device.library(source)
 
 
 def compile_all(
@@ -254,6 +255,8 @@ def _variables(family: str, name: str) -> dict[str, str]:
     words = FAMILIES[family].null_device
     if FAMILIES[family].library == R600:
         return terascale.variables(words)
+    if FAMILIES[family].library in MOBILE:
+        return mobile.variables(words)
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
 
 

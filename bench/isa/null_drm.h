@@ -1,7 +1,7 @@
 /* What the null devices share: a GPU that is not there, as libdrm lists it, in the process that loads it and in no other.
 
-   A device states VENDOR, the PCI vendor, and defines has_gpu, place_gpu and answer. It works on its own file alone: DRM
-   requests on any other file, and the opening of any other DRM device, fail with ENODEV and never reach the kernel.
+   A device defines has_gpu, list_gpu and answer. It works on its own file alone: DRM requests on any other file, and the
+   opening of any other DRM device, fail with ENODEV and never reach the kernel.
 
    Structures and numbers are those of the kernel's include/uapi/drm/drm.h and of libdrm's xf86drm.h, written out so that
    no header of theirs is needed. */
@@ -22,20 +22,24 @@
 /* libdrm's devices. */
 struct pci_place { uint16_t domain; uint8_t bus, device, function; };
 struct pci_names { uint16_t vendor, device, subvendor, subdevice; uint8_t revision; };
-struct drm_device { char **nodes; int available_nodes, bus; struct pci_place *place; struct pci_names *names; };
-enum { NODES = 3, RENDER_NODE = 2 };
+struct platform_names { char **compatible; };
+struct drm_device { char **nodes; int available_nodes, bus; void *place, *names; };
+enum { NODES = 3, PRIMARY_NODE = 0, RENDER_NODE = 2, PCI = 0, PLATFORM = 2, MOST = 2 };
 
 /* DRM's own requests; a driver's begin at COMMANDS. */
 enum { GET_VERSION = 0x00, GET_CAPABILITY = 0x0c, SYNC_CREATE = 0xbf, COMMANDS = 0x40 };
 struct capability { uint64_t name, value; };
+struct version { int32_t major, minor, patch; struct text { size_t length; char *text; } name, date, about; };
+_Static_assert(sizeof(struct version) == 64, "drm.h");
 
 /* Reading and mapping it gives zeros, as memory that was just allocated does. */
 static char NODE[] = "/dev/zero";
+static char *DRM_NODES[NODES] = {NODE, NODE, NODE};
 
 /* Whether the environment names a GPU. */
 static int has_gpu(void);
-/* Its PCI device and revision. */
-static void place_gpu(struct pci_names *names);
+/* What libdrm lists of it, the one that renders first: how many. */
+static int list_gpu(struct drm_device *all[MOST]);
 /* A request in the kernel's place: 0, or -1 and errno. */
 static int answer(unsigned request, void *given);
 
@@ -47,25 +51,38 @@ static int is_own(int file) {
 
 static int refused(int why) { errno = why; return -1; }
 
-static struct drm_device *the_device(void) {
-  static char *nodes[NODES] = {NODE, NODE, NODE};
+/* A GPU on the PCI bus. */
+static inline struct drm_device *pci_gpu(unsigned vendor, unsigned device, unsigned revision) {
   static struct pci_place place = {0, 0, 2, 0};
-  static struct pci_names names = {VENDOR};
-  static struct drm_device device = {nodes, 1 << RENDER_NODE, 0, &place, &names};
-  place_gpu(&names);
-  return &device;
+  static struct pci_names names;
+  static struct drm_device found = {DRM_NODES, 1 << RENDER_NODE, PCI, &place, &names};
+  names.vendor = vendor, names.device = device, names.revision = revision;
+  return &found;
+}
+
+/* libdrm asks twice for a version: for the lengths of its texts, and then for the texts. */
+static inline void fill(struct text *asked, const char *text) {
+  size_t length = strlen(text);
+  if (asked->text) memcpy(asked->text, text, asked->length < length ? asked->length : length);
+  asked->length = length;
+}
+
+static inline int tell_version(struct version *asked, int major, int minor, const char *name) {
+  asked->major = major, asked->minor = minor, asked->patch = 0;
+  fill(&asked->name, name), fill(&asked->date, "20080528"), fill(&asked->about, "a null device");
+  return 0;
 }
 
 int drmGetDevices2(uint32_t flags, struct drm_device **devices, int most) {
-  if (!has_gpu()) return 0;
-  if (devices && most > 0) devices[0] = the_device();
-  return 1;
+  struct drm_device *all[MOST];
+  int count = has_gpu() ? list_gpu(all) : 0;
+  for (int i = 0; devices && i < count && i < most; i++) devices[i] = all[i];
+  return count;
 }
 
 int drmGetDevice2(int file, uint32_t flags, struct drm_device **device) {
   if (!has_gpu() || !is_own(file)) return -ENODEV;
-  *device = the_device();
-  return 0;
+  return drmGetDevices2(flags, device, 1) ? 0 : -ENODEV;
 }
 
 int drmGetDevices(struct drm_device **devices, int most) { return drmGetDevices2(0, devices, most); }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
-R600 = "r600_dri"
+R600, TURNIP, V3DV = "r600_dri", "libvulkan_freedreno", "libvulkan_broadcom"
 
 
 @dataclass(frozen=True)
@@ -16,10 +16,12 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon", "terascale" (Radeons of before GCN) or "intel": also the name of the group of its families.
+        vendor: "radeon", "terascale" (Radeons of before GCN), "intel", "qualcomm" or "broadcom": also the name of the
+            group of its families.
         library: the driver that compiles for it: of Vulkan, or r600 of GL.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c or null_radeon.c.
+        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c, null_radeon.c or
+            null_mobile.c.
         stages: the kinds of shaders that are counted.
     """
 
@@ -43,6 +45,12 @@ def _terascale(title: str, name: str, pci: str) -> Family:
     return Family(title, "terascale", R600, (name,), pci, ("fragment",))
 
 
+def _adreno(number: int) -> Family:
+    # The chip's number has a byte for each digit, and any patch level.
+    chip = int.from_bytes([*map(int, str(number)), 255], "big")
+    return Family(f"Adreno {number}", "qualcomm", TURNIP, (f"a{number}",), f"msm {number} {chip:#010x}")
+
+
 # One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
 # each, execution units of each, and whether it has memory of its own (Mesa's pci_ids, and its tables of devices).
 FAMILIES: Mapping[str, Family] = MappingProxyType(
@@ -60,16 +68,30 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "dg2": _intel("Arc A770", ANV, "dg2", "0x56a0 8 8 4 16 1"),
         "rv670": _terascale("Radeon HD 3870", "rv670", "0x9501"),
         "cypress": _terascale("Radeon HD 5870", "cypress", "0x6898"),
+        **{f"a{number}": _adreno(number) for number in (630, 650, 660)},
+        "v3d42": Family("V3D 4.2, Raspberry Pi 4", "broadcom", V3DV, ("v3d42",), "v3d"),
     }
 )
+# The drivers that few machines have: of these a user builds his own.
+MOBILE = (TURNIP, V3DV)
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
 # What a user may name: a family, or a vendor for all of its families.
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {name: (name,) for name in FAMILIES}
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
+    | {"mobile": tuple(name for name, family in FAMILIES.items() if family.library in MOBILE)}
 )
 # What people call each driver.
-TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk", R600: "r600"})
+TITLES = MappingProxyType(
+    {
+        RADV: "RADV",
+        ANV: "Intel anv",
+        HASVK: "Intel hasvk",
+        R600: "r600",
+        TURNIP: "Qualcomm turnip",
+        V3DV: "Broadcom v3dv",
+    }
+)
 
 
 def titled(vendor: str) -> str:

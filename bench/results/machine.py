@@ -14,7 +14,7 @@ from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 from ..languages import tools
-from ..options.gpu_families import ANV, HASVK, R600, RADV
+from ..options.gpu_families import ANV, HASVK, MOBILE, R600, RADV
 from ..output.errors import MissingError
 
 ROUNDS = {
@@ -94,6 +94,11 @@ def require_intel() -> None:
 def require_terascale() -> None:
     """Raises MissingError where r600 cannot compile, or the device that it is given."""
     _require(R600)
+
+
+def require_mobile() -> None:
+    """Raises MissingError where the drivers of phones and small boards are not built, or the device they are given."""
+    _require(*MOBILE)
 
 
 def _require(*libraries: str) -> None:

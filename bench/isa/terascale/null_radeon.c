@@ -7,17 +7,14 @@
    NORMALBENCH_NULL_RADEON is the PCI device. Without it there is no device.
 
    Structures and numbers are those of the kernel's include/uapi/drm/drm.h and radeon_drm.h. */
-enum { VENDOR = 0x1002 };
 #include "../null_drm.h"
 
 /* radeon's requests; what is not answered here succeeds and does nothing: submitting, waiting, tiling. */
 enum { MEMORY = 0x1c, CREATE = 0x1d, MAP = 0x1e, INFO = 0x27, USER_POINTER = 0x2d };
-struct version { int32_t major, minor, patch; struct text { size_t length; char *text; } name, date, about; };
 struct memory { uint64_t shared, own, visible; };
 struct object { uint64_t size, alignment; uint32_t handle, domain, flags; };
 struct mapping { uint32_t handle, pad; uint64_t offset, size, address; };
 struct info { uint32_t name, pad; uint64_t value; };
-_Static_assert(sizeof(struct version) == 64, "drm.h");
 _Static_assert(sizeof(struct object) == 32 && sizeof(struct mapping) == 32 && sizeof(struct info) == 16, "radeon_drm.h");
 
 static const uint64_t GIB = 1ull << 30;
@@ -28,20 +25,10 @@ static int has_gpu(void) {
   return said && sscanf(said, "%i", (int *)&pci) == 1;
 }
 
-static void place_gpu(struct pci_names *names) { names->device = pci; }
-
-/* libdrm asks twice: for the lengths, and then for the texts. */
-static void fill(struct text *asked, const char *text) {
-  size_t length = strlen(text);
-  if (asked->text) memcpy(asked->text, text, asked->length < length ? asked->length : length);
-  asked->length = length;
-}
-
-/* Version 2.50 is the oldest that Mesa takes. */
-static int tell_version(struct version *asked) {
-  asked->major = 2, asked->minor = 50, asked->patch = 0;
-  fill(&asked->name, "radeon"), fill(&asked->date, "20080528"), fill(&asked->about, "a null device");
-  return 0;
+static int list_gpu(struct drm_device *all[MOST]) {
+  enum { VENDOR_AMD = 0x1002 };
+  all[0] = pci_gpu(VENDOR_AMD, pci, 0);
+  return 1;
 }
 
 /* What is not told of here is a count of units or whether something works: 1. */
@@ -57,7 +44,8 @@ static int tell(struct info *asked) {
 
 static int answer(unsigned request, void *given) {
   static uint32_t handle = 1;
-  if (request == GET_VERSION) return tell_version(given);
+  /* The oldest that Mesa takes. */
+  if (request == GET_VERSION) return tell_version(given, 2, 50, "radeon");
   if (request == GET_CAPABILITY) ((struct capability *)given)->value = 1;
   if (request < COMMANDS) return 0;
   switch (request - COMMANDS) {

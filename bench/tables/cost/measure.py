@@ -15,6 +15,7 @@ from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
 from ...isa import disassembly, intel_disassembly, isa, spirv
 from ...isa.isa import Failure, Job, Kernel, Outcome
+from ...isa.mobile import ir3_disassembly, qpu_disassembly
 from ...isa.terascale import disassembly as terascale_disassembly
 from ...machine.cores import on_all_cores
 from ...options.gpu_families import FAMILIES
@@ -26,7 +27,7 @@ Row = dict[str, Any]
 # The drivers' statistics by their own names: RADV's, then Intel's. Later Mesas may have more; one that is missing is
 # left empty.
 INSTRUCTIONS = (("Instructions",), ("Instruction Count",))
-SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"))
+SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"), ("STP Count", "LDP Count"))
 STATISTICS = {
     "instructions": INSTRUCTIONS,
     "vgprs": (("VGPRs",),),
@@ -34,6 +35,8 @@ STATISTICS = {
     "spills": SPILLS,
     "code_bytes": (("Code size",),),
 }
+# Bytes in which a vendor's driver counts code, where it is not one.
+CODE_UNITS = {"qualcomm": 4}
 # Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
 # for what: one kernel's less another's is nobody's cost.
 WHOLE = {
@@ -43,7 +46,13 @@ WHOLE = {
     "kernel_inverse_throughput": (("Inverse Throughput",),),
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
-READERS = {"radeon": disassembly, "intel": intel_disassembly, "terascale": terascale_disassembly}
+READERS: Mapping[str, Any] = {
+    "radeon": disassembly,
+    "intel": intel_disassembly,
+    "terascale": terascale_disassembly,
+    "qualcomm": ir3_disassembly,
+    "broadcom": qpu_disassembly,
+}
 KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in reader.KINDS))
 LISTED = ("issue_slots", *KINDS, "branches", "loops")
 OPERATIONS = ("encode", "decode")
@@ -189,6 +198,8 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     kernel, nothing = compared
     for column, names in STATISTICS.items():
         row[column] = _difference(_total(kernel, names), _total(nothing, names))
+    if row["code_bytes"] is not None and row["family"] in FAMILIES:
+        row["code_bytes"] *= CODE_UNITS.get(FAMILIES[row["family"]].vendor, 1)
     for column, names in WHOLE.items():
         row[column] = _total(kernel, names)
     ours, theirs = (_listed(k.assembly, int(_total(k, INSTRUCTIONS) or -1), row["family"]) for k in compared)
@@ -229,7 +240,8 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     if counts is None:
         return None
     branches, loops = read.jumps(assembly)
-    slots = read.slots(assembly) if read is terascale_disassembly else {}
+    # Of those whose instructions hold several operations.
+    slots = read.slots(assembly) if hasattr(read, "slots") else {}
     return {"issue_slots": read.issue_slots(counts, family), **counts, **slots, "branches": branches, "loops": loops}
 
 
