@@ -53,7 +53,7 @@ HELD = {
     *("headline", "normalbench run", "normalbench quality", "normalbench tune", "normalbench render"),
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
-    "normalbench cost terascale",
+    *("normalbench cost terascale", "normalbench cost mobile"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
     *("normalbench maps", "normalbench vectors", "normalbench code"),
 }
@@ -562,6 +562,24 @@ def test_the_cost_table_of_the_articles_radeons_is_what_is_measured(run):
         for (operation, family, title), count, cycle in zip(columns, figures[::2], figures[1::2], strict=True):
             assert not is_that_mesa or int(count) == counts[name, operation, family], (name, operation, family)
             assert (float(cycle) if cycle else None) == cycles.get((name, operation, title)), (name, operation, title)
+
+
+def test_the_cost_table_of_phones_is_what_is_measured(run):
+    shown = table("normalbench cost mobile")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d+)" * 6 + r" \|$", shown, re.M)
+    assert len(lines) == 6
+    words = ["--isa", "--family", "a630,v3d42", "--stage", "fragment", "--storage", "rgba8", "--format", "json"]
+    status, out, err = run("cost", "--encoding", ",".join(line[0] for line in lines), *words)
+    rows = json.loads(out)
+    if status == 3 or {row["driver"] for row in rows} != {mesa}:
+        pytest.skip(err or f"this machine's compiler is not {mesa}")
+    found = {(row["encoding"], row["operation"], row["family"]): row for row in rows}
+    for name, *figures in lines:
+        for operation, shown_figures in (("encode", figures[:3]), ("decode", figures[3:])):
+            adreno, v3d = (found[name, operation, family] for family in ("a630", "v3d42"))
+            measured = [adreno["instructions"], adreno["waiting"], v3d["instructions"]]
+            assert [int(figure) for figure in shown_figures] == measured, (name, operation)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

@@ -285,7 +285,7 @@ def cost(
     normals: Names = ...,
     error: Names = ...,
 ) -> Rows:
-    """What encoding and decoding cost: instructions on GPUs of two vendors, and time; all of it by default.
+    """What encoding and decoding cost: instructions on GPUs of four vendors, and time; all of it by default.
 
     Counts are by Mesa's compilers for GPUs that need not be there, less an empty kernel that moves the same numbers.
 
@@ -295,7 +295,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, which doctor --build-mesa builds; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         storage: Storages and packings whose own cost is shown, comma-separated, or all.

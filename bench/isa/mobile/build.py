@@ -20,7 +20,7 @@ from ...output.errors import MissingError, UsageError
 from . import driver
 
 # What it takes, as measured on two cores with Mesa 22.3.
-COST = "about 30 MB to download, 300 MB on disk and 5 minutes on two cores"
+COST = "about 40 MB to download, 330 MB on disk and 5 to 10 minutes on two cores"
 # Programs, and what pkg-config knows of libraries, by Debian's packages.
 PROGRAMS: Mapping[str, str] = MappingProxyType(
     {"meson": "meson", "ninja": "ninja-build", "flex": "flex", "bison": "bison", "pkg-config": "pkg-config"}

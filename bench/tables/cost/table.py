@@ -29,7 +29,8 @@ class CostOptions:
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            f"for these; {titled('terascale')}, or terascale for these; all.",
+            f"for these; {titled('terascale')}, or terascale for these; {titled('mobile')}, or mobile for these, which "
+            "doctor --build-mesa builds; all.",
             in_run=True,
         ),
     ] = "radeon"
@@ -76,18 +77,20 @@ COLUMNS = (
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction.",
+        "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction. "
+        "Qualcomm: cycles that a program waits in words count.",
     ),
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside. TeraScale: bundles. Empty for Intel.",
+        "transcendental one issues once and runs beside. TeraScale: bundles. Broadcom: instructions. Empty for "
+        "Intel and Qualcomm.",
     ),
     _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
         "conversion",
-        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two sizes of "
-        "floats.",
+        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel, Qualcomm: also between two "
+        "sizes of floats.",
         13,
     ),
     _count(
@@ -98,16 +101,21 @@ COLUMNS = (
     _count(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
-        "which also divides integers. TeraScale: bundles that hold one.",
+        "which also divides integers. TeraScale, Broadcom: instructions that hold one.",
     ),
-    _count("scalar", "Instructions once for all lanes.", 14),
-    _count("memory", "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`).", 15),
-    _count("waiting", "Waits and hints about order.", 10),
-    _count("control_flow", "Intel, TeraScale: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
+    _count("scalar", "Radeon, Intel: instructions once for all lanes.", 14),
     _count(
-        "other_alu", "Intel, TeraScale: all other arithmetic, moves, compares and selections; interpolation, too.", 19
+        "memory",
+        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); Broadcom: instructions that only "
+        "read inputs, or write results.",
+        15,
     ),
-    _count("vliw_slots", "TeraScale: operations in all bundles; a bundle has five slots.", 20),
+    _count("waiting", "Waits and hints about order; Qualcomm: `nop`.", 10),
+    _count("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
+    _count("other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19),
+    _count(
+        "vliw_slots", "Operations in all instructions, where one holds several: TeraScale up to five, Broadcom two.", 20
+    ),
     _count("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
@@ -176,6 +184,8 @@ ALSO = (
             ("hasvk", ("hsw", "bdw")),
             ("anv", ("skl", "tgl", "adl", "dg2")),
             ("r600", ("rv670", "cypress")),
+            ("turnip", ("a630", "a650", "a660")),
+            ("v3dv", ("v3d42",)),
         )
         for name in names
     ),
@@ -188,7 +198,7 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 TABLE = Table(
     name="cost",
     package=__package__ or "",
-    help="What encoding and decoding cost: instructions on GPUs of two vendors, and time; all of it by default.\n\n"
+    help="What encoding and decoding cost: instructions on GPUs of four vendors, and time; all of it by default.\n\n"
     "Counts are by Mesa's compilers for GPUs that need not be there, less an empty kernel that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     options=CostOptions,
