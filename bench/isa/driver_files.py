@@ -15,6 +15,8 @@ from ..options.gpu_families import MOBILE, R600, RADV, TITLES
 from .mobile import driver as mobile
 from .terascale import driver as terascale
 
+# Where another vendor's EGL may be the first of the machine, this names Mesa's.
+MESA_EGL = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.
 UNWANTED = (
@@ -71,6 +73,7 @@ def environment(path: Path, variables: Mapping[str, str]) -> dict[str, str]:
     usual = {key: value for key, value in children.environment().items() if not key.startswith(UNWANTED)}
     if is_gl(path):
         driver = {"LIBGL_DRIVERS_PATH": str(path.parent), "EGL_PLATFORM": "surfaceless"}
+        driver |= {"__EGL_VENDOR_LIBRARY_FILENAMES": str(MESA_EGL)} if MESA_EGL.exists() else {}
     else:
         driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
     # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.
