@@ -87,7 +87,11 @@ def _remember(where: Path) -> None:
     missing = [TITLES[library] for library in MOBILE if library.split("_")[-1] not in built]
     if missing:
         raise UsageError(f"{where} holds no {' and no '.join(missing)} after the build; see {where / LOG}")
-    driver.record(where)
+    try:
+        driver.record(where)
+    except OSError as error:
+        said = f"built, but the cache folder cannot remember it: {error.strerror or error}"
+        raise UsageError(f"{said}; set {driver.VARIABLE}={where}") from error
 
 
 def check(source: str | None) -> Path:

@@ -206,6 +206,15 @@ def test_a_build_goes_on_where_it_was_ended(run, tmp_path, tarball, tools):
     assert status == 0 and "fetching" not in err and "configuring" not in err, err
 
 
+@pytest.mark.usefixtures("tools")
+def test_a_build_that_cannot_be_remembered_says_how_to_name_it(run, tmp_path, tarball, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    where = tmp_path / "mesa"
+    status, _, err = run("doctor", "--build-mesa", str(where), "--mesa-source", tarball, "--yes")
+    assert status == 2 and f"set {driver.VARIABLE}={where}" in err, err
+
+
 @pytest.mark.usefixtures("own_cache", "tools")
 def test_nothing_is_built_unless_somebody_agrees(run, tmp_path, tarball, monkeypatch):
     monkeypatch.setattr(build, "_agrees", lambda: False)
