@@ -20,7 +20,7 @@ from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.isa.nvidia import tools
 from normalbench.bench.metrics import published
-from normalbench.bench.options.gpu_families import ANV, HASVK, RADV
+from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 pytest_plugins = ["pytester"]
@@ -72,6 +72,12 @@ def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
     """NVIDIA's compiler of CUDA, which people install themselves: no machine must have it."""
     if said := tools.missing():
         pytest.skip(said)
+
+
+@pytest.fixture(scope="session")
+def terascale(radv):  # noqa: ARG001 (asks for the GLSL compiler)
+    """Mesa's r600, and what builds the device that it is given."""
+    _need([R600], {null_device.COMPILER: null_device.NO_COMPILER})
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:

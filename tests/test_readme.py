@@ -22,6 +22,7 @@ from normalbench.bench.code.verify import agreement
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics import published
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.lights.sums import Adder, equal_lights
 from normalbench.bench.tables.mix.table import USES, VERDICTS
@@ -54,6 +55,7 @@ HELD = {
     *("normalbench list pipelines", "normalbench lights", "normalbench lights image", "normalbench depth"),
     *("normalbench frames", "normalbench cost", "normalbench cost vendors", "normalbench published"),
     "normalbench cost half",
+    *("normalbench cost terascale", "normalbench cost mobile"),
     *("normalbench effects", "normalbench half", "normalbench mix", "normalbench motion"),
     *("normalbench maps", "normalbench vectors", "normalbench code", "normalbench cost nvidia"),
 }
@@ -589,6 +591,46 @@ def test_the_cost_table_with_nvidia_is_what_is_measured(run):
             counts = [[found[name, operation, family] for name in some.split(" and ")] for some in names.split(", ")]
             assert counts == sorted(counts), (operation, family, names)
             assert all(len(set(same)) == 1 for same in counts), (operation, family, names)
+
+
+@pytest.mark.usefixtures("terascale")
+def test_the_cost_table_of_the_articles_radeons_is_what_is_measured(run):
+    """And the article's cycles next to it."""
+    shown = table("normalbench cost terascale")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +([\d.]*)" * 8 + r" \|$", shown, re.M)
+    assert len(lines) == 8
+    words = ["--isa", "--family", "terascale", "--stage", "fragment", "--storage", "rgba8", "--article"]
+    status, out, _ = run("cost", "--encoding", ",".join(line[0] for line in lines), *words, "--format", "json")
+    rows = json.loads(out)
+    assert status == 0
+    cycles = {(row["encoding"], row["operation"], row["device"]): row["cycles"] for row in rows}
+    counts = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    is_that_mesa = {row["driver"] for row in rows if row["family"]} == {mesa}
+    chips = [(family, FAMILIES[family].title) for family in CHOICES["terascale"]]
+    columns = [(operation, *chip) for operation in ("encode", "decode") for chip in chips]
+    for name, *figures in lines:
+        for (operation, family, title), count, cycle in zip(columns, figures[::2], figures[1::2], strict=True):
+            assert not is_that_mesa or int(count) == counts[name, operation, family], (name, operation, family)
+            assert (float(cycle) if cycle else None) == cycles.get((name, operation, title)), (name, operation, title)
+
+
+def test_the_cost_table_of_phones_is_what_is_measured(run):
+    shown = table("normalbench cost mobile")
+    (mesa,) = re.findall(r"\| (Mesa [\d.]+), fragment", shown)
+    lines = re.findall(r"^\| `(\w+)`" + r" +\| +(\d+)" * 6 + r" \|$", shown, re.M)
+    assert len(lines) == 6
+    words = ["--isa", "--family", "a630,v3d42", "--stage", "fragment", "--storage", "rgba8", "--format", "json"]
+    status, out, err = run("cost", "--encoding", ",".join(line[0] for line in lines), *words)
+    rows = json.loads(out)
+    if status == 3 or {row["driver"] for row in rows} != {mesa}:
+        pytest.skip(err or f"this machine's compiler is not {mesa}")
+    found = {(row["encoding"], row["operation"], row["family"]): row for row in rows}
+    for name, *figures in lines:
+        for operation, shown_figures in (("encode", figures[:3]), ("decode", figures[3:])):
+            adreno, v3d = (found[name, operation, family] for family in ("a630", "v3d42"))
+            measured = [adreno["instructions"], adreno["waiting"], v3d["instructions"]]
+            assert [int(figure) for figure in shown_figures] == measured, (name, operation)
 
 
 def test_the_pipelines_it_shows_are_those_there_are():

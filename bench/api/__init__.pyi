@@ -286,7 +286,7 @@ def cost(
     normals: Names = ...,
     error: Names = ...,
 ) -> Rows:
-    """What encoding and decoding cost: instructions on GPUs of three vendors, and time; all of it by default.
+    """What encoding and decoding cost: instructions on GPUs of five vendors, and time; all of it by default.
 
     Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel that moves the same numbers.
 
@@ -296,7 +296,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, which doctor --build-mesa builds; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
@@ -326,7 +326,7 @@ def roofline(
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
-        gpu: GPUs, comma-separated, or all: rx480 (Radeon RX 480), vega64 (Radeon RX Vega 64), rx5700xt (Radeon RX 5700 XT), rx6800xt (Radeon RX 6800 XT), rx7900xtx (Radeon RX 7900 XTX), series_x (Xbox Series X), steam_deck (Steam Deck), hd530 (HD Graphics 530, two channels of DDR4-2133), iris_xe (Iris Xe of a Core i7-1185G7, LPDDR4x-4266), a770 (Arc A770). NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). A family with these is a GPU of that family.
+        gpu: GPUs, comma-separated, or all: rx480 (Radeon RX 480), vega64 (Radeon RX Vega 64), rx5700xt (Radeon RX 5700 XT), rx6800xt (Radeon RX 6800 XT), rx7900xtx (Radeon RX 7900 XTX), series_x (Xbox Series X), steam_deck (Steam Deck), hd530 (HD Graphics 530, two channels of DDR4-2133), iris_xe (Iris Xe of a Core i7-1185G7, LPDDR4x-4266), a770 (Arc A770), rtx2080 (GeForce RTX 2080), rtx3080 (GeForce RTX 3080), rtx4090 (GeForce RTX 4090), rtx5090 (GeForce RTX 5090). NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). A family with these is a GPU of that family.
         size: WIDTHxHEIGHT of the G-buffer, comma-separated.
         reads: Passes that read and decode each pixel's normal, comma-separated.
         overdraw: How often each pixel's normal is encoded and written.

@@ -88,6 +88,17 @@ def doctor(
     plot: Annotated[
         Path | None, typer.Option("--plot", help="Draw the encoding's error over the sphere, in rgba8, into this file.")
     ] = None,
+    build_mesa: Annotated[
+        Path | None,
+        typer.Option(
+            "--build-mesa", help="Build Mesa's drivers for phones and small boards in this folder, for cost --isa."
+        ),
+    ] = None,
+    mesa_source: Annotated[
+        str | None,
+        typer.Option("--mesa-source", help="--build-mesa: a tarball of Mesa, as a file or URL. Default: Debian's."),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="--build-mesa: do not ask.")] = False,
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
@@ -96,6 +107,14 @@ def doctor(
     Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
     directions before any storage.
     """
+    if build_mesa is not None:
+        if file is not None or plot is not None:
+            raise UsageError("--build-mesa builds and does nothing else; leave out the file and --plot")
+        from ..isa.mobile.build import build_command
+
+        return build_command(build_mesa, mesa_source, yes)
+    if mesa_source is not None or yes:
+        raise UsageError("--mesa-source and --yes go with --build-mesa DIR")
     if file is None and plot is None:
         from ..results.machine import examine
 

@@ -26,7 +26,7 @@ def own_output() -> Any:
     return own
 
 
-def compiled(driver: Compiler, job: dict[str, Any], planes: int) -> dict[str, Any]:
+def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
     """What the driver makes of a job: its kernels, or the reason why not."""
     code, vertex = (base64.b64decode(job[part]) for part in ("code", "vertex"))
     try:
@@ -36,8 +36,13 @@ def compiled(driver: Compiler, job: dict[str, Any], planes: int) -> dict[str, An
     return {"kernels": kernels}
 
 
-def main() -> int:
-    """Compile every job that standard input holds."""
+def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded) -> int:
+    """Compile every job that standard input holds.
+
+    Args:
+        compiler: makes a driver, with what `Compiler` has.
+        fingerprints: which files the driver consists of, as `loaded`.
+    """
     given = json.load(sys.stdin)
     out = own_output()
 
@@ -46,9 +51,9 @@ def main() -> int:
 
     try:
         if given:
-            _compile_all(given, say)
+            _compile_all(compiler(), given, say)
         else:
-            say(loaded=loaded())
+            say(loaded=fingerprints())
     except MissingDriverError as error:
         say(missing=str(error))
     except DriverError as error:
@@ -56,8 +61,7 @@ def main() -> int:
     return 0
 
 
-def _compile_all(given: dict[str, Any], say: Callable[..., None]) -> None:
-    driver = Compiler()
+def _compile_all(driver: Any, given: dict[str, Any], say: Callable[..., None]) -> None:
     say(device=driver.device, version=driver.version)
     for job in given["jobs"]:
         say(begun=job["key"])

@@ -16,6 +16,8 @@ from typing import Any
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 # Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.
 DRIVERS = ("libvulkan_", "libLLVM")
+# A word of what a disassembly is called: "Assembly", "GEN Assembly", "IR3 Assembly", "QPU (MESA_SHADER_FRAGMENT)".
+LISTINGS = {"Assembly", "QPU"}
 VULKAN_1_3 = 1 << 22 | 3 << 12
 # What kernel.frag writes.
 TARGETS = 3
@@ -109,6 +111,8 @@ class Compiler:
         if EXTENSION not in extensions:
             raise DriverError(f"{self.device} (Mesa {self.version}) lacks {EXTENSION}")
         self._has_halves = bool(self._halves(physical).shaderFloat16)
+        # Whether targets are stated by a render pass, for a driver that has nothing newer.
+        self._has_passes = False
         self._device = self._logical_device(physical)
         self._layout = None
 
@@ -132,9 +136,19 @@ class Compiler:
         tells = vk.VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR(pipelineExecutableInfo=1, pNext=halves)
         renders = vk.VkPhysicalDeviceDynamicRenderingFeatures(dynamicRendering=1, pNext=tells)
         queue = vk.VkDeviceQueueCreateInfo(queueFamilyIndex=0, pQueuePriorities=[1.0])
-        info = vk.VkDeviceCreateInfo(pNext=renders, pQueueCreateInfos=[queue], ppEnabledExtensionNames=[EXTENSION])
-        try:
+
+        def made(features: Any) -> Any:
+            info = vk.VkDeviceCreateInfo(pNext=features, pQueueCreateInfos=[queue], ppEnabledExtensionNames=[EXTENSION])
             return vk.vkCreateDevice(physical, info, None)
+
+        try:
+            return made(renders)
+        except vk.VkErrorFeatureNotPresent:
+            self._has_passes = True
+        except vk.VkError as error:
+            raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
+        try:
+            return made(tells)
         except vk.VkError as error:
             raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
 
@@ -215,6 +229,7 @@ class Compiler:
         stages += [self._stage(vk.VK_SHADER_STAGE_FRAGMENT_BIT, code)]
         formats = [vk.VK_FORMAT_R32G32B32A32_SFLOAT] * TARGETS
         targets = vk.VkPipelineRenderingCreateInfo(colorAttachmentCount=TARGETS, pColorAttachmentFormats=formats)
+        render_pass = self._render_pass(formats) if self._has_passes else None
         attributes = vk.VkPipelineVertexInputStateCreateInfo()
         assembly = vk.VkPipelineInputAssemblyStateCreateInfo(topology=vk.VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST)
         ports, areas = [vk.VkViewport(0, 0, 1, 1, 0, 1)], [vk.VkRect2D(vk.VkOffset2D(0, 0), vk.VkExtent2D(1, 1))]
@@ -228,7 +243,8 @@ class Compiler:
             attachmentCount=TARGETS, pAttachments=blends, blendConstants=[0, 0, 0, 0]
         )
         info = vk.VkGraphicsPipelineCreateInfo(
-            pNext=targets,
+            pNext=None if self._has_passes else targets,
+            renderPass=render_pass,
             flags=self._capture,
             pStages=stages,
             pVertexInputState=attributes,
@@ -240,6 +256,17 @@ class Compiler:
             layout=self._layout,
         )
         return vk.vkCreateGraphicsPipelines(self._device, None, 1, [info], None)[0]
+
+    def _render_pass(self, formats: list[int]) -> Any:
+        """A pass that draws into targets of these formats."""
+        vk = self._vk
+        layout = vk.VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
+        targets = [vk.VkAttachmentDescription(format=one, samples=1, finalLayout=layout) for one in formats]
+        drawn_to = [vk.VkAttachmentReference(attachment=i, layout=layout) for i in range(len(formats))]
+        parts = [vk.VkSubpassDescription(colorAttachmentCount=len(drawn_to), pColorAttachments=drawn_to)]
+        return vk.vkCreateRenderPass(
+            self._device, vk.VkRenderPassCreateInfo(pAttachments=targets, pSubpasses=parts), None
+        )
 
     def _executables(self, pipeline: Any) -> Iterator[tuple[int, int, int]]:
         """(index, stages, lanes) of each part of a pipeline."""
@@ -270,6 +297,6 @@ class Compiler:
         for one, text in zip(found, texts, strict=True):
             one.pData = text
         ask(self._device, which, count, found)
-        # RADV's name is "Assembly", Intel's "GEN Assembly".
-        named = {ffi.string(one.name).decode().split()[-1]: text for one, text in zip(found, texts, strict=True)}
-        return ffi.string(named["Assembly"]).decode(errors="replace") if "Assembly" in named else ""
+        names = [ffi.string(one.name).decode().split() for one in found]
+        listing = next((text for name, text in zip(names, texts, strict=True) if LISTINGS & {*name}), None)
+        return ffi.string(listing).decode(errors="replace") if listing is not None else ""

@@ -19,31 +19,44 @@ from typing import Any
 from ...gbuffer.defines.kernels import PLANES
 from ..machine.children import python
 from ..machine.cores import cores
-from ..options.gpu_families import FAMILIES, NVRTC, RADV, TITLES
+from ..options.gpu_families import FAMILIES, MOBILE, NVRTC, R600, RADV, TITLES, TURNIP, V3DV
 from ..output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
-from .driver_files import driver_file, no_driver
+from .driver_files import driver_file, is_gl, no_driver
+from .mobile import driver as mobile
 from .null_device import NullDeviceError
 from .nvidia import tools
 from .nvidia.child import ARCHITECTURE
 from .process import Driver, child
+from .terascale import driver as terascale
 
 # What RADV says before it gives up.
 REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
-OWN_FILES = ("compiler.py", "child.py", "null_i915.c")
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
+OWN_FILES += tuple(f"terascale/{name}" for name in ("compiler.py", "child.py", "disassembly.py", "null_radeon.c"))
+OWN_FILES += ("mobile/null_mobile.c",)
 
 
 @dataclass(frozen=True)
 class Job:
-    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it."""
+    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it.
+
+    `glsl` and `glsl_vertex` are for drivers of GL: the same operation in the bare kernel; empty for compute shaders.
+    """
 
     stage: str
     code: bytes
     vertex: bytes
+    glsl: str = ""
+    glsl_vertex: str = ""
+
+    def texts(self, of_gl: bool) -> tuple[bytes, bytes]:
+        """The shader and the one before it as a driver takes them, of GL or of Vulkan."""
+        return (self.glsl.encode(), self.glsl_vertex.encode()) if of_gl else (self.code, self.vertex)
 
 
 @dataclass(frozen=True)
@@ -99,8 +112,8 @@ def _loaded(path: Path) -> str | Failure:
         if "missing" in line or "failed" in line:
             return Failure(line.get("missing") or line["failed"], "missing" in line)
         files = line.get("loaded", {})
-    ours = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in OWN_FILES]
-    is_there = any(Path(name).name.startswith(DRIVERS[0]) for name in files)
+    ours = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in OWN_FILES]
+    is_there = any(Path(name).name.startswith((DRIVERS[0], R600)) for name in files)
     return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
 
 
@@ -115,10 +128,17 @@ def missing(library: str = RADV) -> str:
     if isinstance(found, Failure) and found.is_missing:
         return found.reason
     try:
-        _ = library == RADV or null_device.library()
+        _null_device(library)
     except NullDeviceError as error:
         return str(error) if error.is_missing else ""
     return ""
+
+
+def _null_device(library: str) -> None:
+    """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
+    source = {R600: terascale.SOURCE, TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
+    if library != RADV:
+        null_device.library(source)
 
 
 def compile_all(
@@ -168,12 +188,20 @@ def _driver_version(library: str) -> str:
 
 
 def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
+    """A family's outcomes, in the order of the jobs; of a stage that is not counted, a Failure."""
+    known = FAMILIES[family]
+    counted = [job for job in jobs if job.stage in known.stages]
+    outcomes = dict(zip(counted, _counted(family, stop, counted), strict=True))
+    return [outcomes.get(job, Failure(f"{known.title}: {job.stage} shaders are not counted")) for job in jobs]
+
+
+def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
     """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
     if reason := missing(library):
         return [Failure(reason, True)] * len(jobs)
     driver, identity = _driver(library, stop), _identity(library)
-    keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
+    keys = [kept.key_of("isa", identity, family, gpu, job.stage, *job.texts(is_gl(driver.path))) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
         if found := _as_compiled(kept.read(key)):
@@ -247,6 +275,10 @@ def _variables(family: str, name: str) -> dict[str, str]:
     if FAMILIES[family].library == NVRTC:
         return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
+    if FAMILIES[family].library == R600:
+        return terascale.variables(words)
+    if FAMILIES[family].library in MOBILE:
+        return mobile.variables(words)
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
 
 
@@ -281,7 +313,7 @@ def _answers(
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with child(variables, driver, _given(jobs)) as (lines, why):
+    with child(variables, driver, _given(jobs, is_gl(driver.path))) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -297,11 +329,11 @@ def _answers(
         yield Failure(why())
 
 
-def _given(jobs: Mapping[str, Job]) -> dict[str, Any]:
+def _given(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
     """Jobs as a child takes them."""
-    return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
+    return {"planes": PLANES, "jobs": [_as_json(key, job, of_gl) for key, job in jobs.items()]}
 
 
-def _as_json(key: str, job: Job) -> dict[str, str]:
-    code, vertex = (base64.b64encode(part).decode() for part in (job.code, job.vertex))
+def _as_json(key: str, job: Job, of_gl: bool) -> dict[str, str]:
+    code, vertex = (base64.b64encode(part).decode() for part in job.texts(of_gl))
     return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}

@@ -1,6 +1,6 @@
-"""The Intel GPU that is not there: null_i915.c, built once into the user's cache folder.
+"""GPUs that are not there: null_i915.c and terascale/null_radeon.c, each built once into the user's cache folder.
 
-Its name there says what it was built of and what it holds: another source, or a damaged file, is built again.
+A library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from pathlib import Path
 from ..output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")
+SHARED = SOURCE.with_name("null_drm.h")
 COMPILER = "cc"
-NO_COMPILER = f"no C compiler: Intel's counts need {COMPILER}; install it (Debian: apt-get install gcc libc6-dev)"
+NO_COMPILER = f"no C compiler: these counts need {COMPILER}; install it (Debian: apt-get install gcc libc6-dev)"
 # A build takes a tenth of a second.
 SECONDS = 60.0
 SAID = "NORMALBENCH_NULL_I915"
@@ -30,18 +31,23 @@ class NullDeviceError(Exception):
         self.is_missing = is_missing
 
 
-def library() -> Path:
-    """The shared library that stands for an Intel GPU. Raises NullDeviceError."""
-    folder = kept.folder()
-    stem = f"null_i915-{kept.key_of(SOURCE.read_bytes(), platform.machine())[:16]}"
+def library(source: Path | None = None) -> Path:
+    """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
+    folder, source = kept.folder(), source or SOURCE
+    stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
     sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _name(stem, path))
-    return next(sound, None) or _built(folder, stem)
+    return next(sound, None) or _built(folder, stem, source)
 
 
 def variables(words: str) -> dict[str, str]:
-    """What has a process find the GPU that the words describe. Raises NullDeviceError."""
+    """What has a process find the Intel GPU that the words describe. Raises NullDeviceError."""
+    return preloaded(library()) | {SAID: words}
+
+
+def preloaded(path: Path) -> dict[str, str]:
+    """What has a process load a library before all others."""
     others = filter(None, [os.environ.get("LD_PRELOAD", "")])
-    return {"LD_PRELOAD": os.pathsep.join([str(library()), *others]), SAID: words}
+    return {"LD_PRELOAD": os.pathsep.join([str(path), *others])}
 
 
 def _name(stem: str, path: Path) -> str:
@@ -52,29 +58,30 @@ def _name(stem: str, path: Path) -> str:
         return ""
 
 
-def _built(folder: Path, stem: str) -> Path:
+def _built(folder: Path, stem: str, source: Path) -> Path:
     if not shutil.which(COMPILER):
         raise NullDeviceError(NO_COMPILER, is_missing=True)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         # Others see a whole file or none: it is moved there once it is complete.
         with tempfile.TemporaryDirectory(dir=folder) as made:
-            _compile(Path(made) / "null_i915.so")
-            path = folder / _name(stem, Path(made) / "null_i915.so")
-            (Path(made) / "null_i915.so").replace(path)
+            whole = Path(made) / "library.so"
+            _compile(whole, source)
+            path = folder / _name(stem, whole)
+            whole.replace(path)
             return path
     except OSError as error:
-        said = f"the null Intel device cannot be written into the cache folder {folder}: {error.strerror or error}"
+        said = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
         raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
 
 
-def _compile(path: Path) -> None:
-    command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(SOURCE)]
+def _compile(path: Path, source: Path) -> None:
+    command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(source)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
     except subprocess.TimeoutExpired as error:
-        raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {SOURCE.name}") from error
+        raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {source.name}") from error
     if done.returncode or not path.exists():
         last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
-        said = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.returncode}'}"
+        said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.returncode}'}"
         raise NullDeviceError(f"{said}; the headers of libc may be missing (Debian: apt-get install gcc libc6-dev)")

@@ -1,41 +1,19 @@
 /* An Intel GPU that is not there: as much of Linux's i915 driver as Mesa's Vulkan drivers ask for before they compile.
 
    Loaded by LD_PRELOAD into the process that compiles, and into no other. It answers in the kernel's place, so nothing is
-   ever drawn. It works on its own file alone: DRM requests on any other file, and the opening of any other DRM device,
-   fail with ENODEV and never reach the kernel.
+   ever drawn.
 
    NORMALBENCH_NULL_I915 is "PCI REVISION SLICES SUBSLICES EUS LOCAL": numbers, where LOCAL is 1 for a GPU with memory of
    its own. Without it there is no device.
 
-   Structures and numbers are those of the kernel's include/uapi/drm/drm.h and i915_drm.h, and of libdrm's xf86drm.h,
-   written out so that no header of theirs is needed. */
-#define _GNU_SOURCE
-#include <dlfcn.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/ioctl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <sys/sysmacros.h>
+   Structures and numbers are those of the kernel's include/uapi/drm/i915_drm.h. */
+#include "null_drm.h"
 
-/* libdrm's devices. */
-struct pci_place { uint16_t domain; uint8_t bus, device, function; };
-struct pci_names { uint16_t vendor, device, subvendor, subdevice; uint8_t revision; };
-struct drm_device { char **nodes; int available_nodes, bus; struct pci_place *place; struct pci_names *names; };
-enum { NODES = 3, RENDER_NODE = 2, VENDOR_INTEL = 0x8086 };
-
-/* Requests: DRM's own, then i915's, which begin at COMMANDS. */
-enum { GET_CAPABILITY = 0x0c, SYNC_CREATE = 0xbf, COMMANDS = 0x40 };
+/* i915's requests. */
 enum {
   GET_PARAMETER = 0x06, CREATE = 0x1b, MAP = 0x1e, GET_TILING = 0x22, GET_APERTURE = 0x23, MAP_OFFSET = 0x24,
   CONTEXT_CREATE = 0x2d, USER_POINTER = 0x33, CONTEXT_GET = 0x34, QUERY = 0x39, VM_CREATE = 0x3a, CREATE_EXTENDED = 0x3c
 };
-struct capability { uint64_t name, value; };
 struct sync { uint32_t handle, flags; };
 struct parameter { int32_t name; int *value; };
 /* `create` and `create_ext` begin alike. */
@@ -63,9 +41,6 @@ _Static_assert(sizeof(struct topology) == 16 && sizeof(struct engine) == 56 && s
 _Static_assert(sizeof(struct mapping) == 40 && sizeof(struct query_item) == 24, "i915_drm.h");
 
 static const uint64_t GIB = 1ull << 30;
-/* Reading and mapping it gives zeros, as memory that was just allocated does. */
-static char NODE[] = "/dev/zero";
-
 static struct gpu { unsigned pci, revision, slices, subslices, eus, local; } gpu;
 
 static int has_gpu(void) {
@@ -74,39 +49,11 @@ static int has_gpu(void) {
                         &gpu.local) == 6;
 }
 
-/* Whether a file is the null device's. */
-static int is_own(int file) {
-  struct stat about;
-  return fstat(file, &about) == 0 && S_ISCHR(about.st_mode) && about.st_rdev == makedev(1, 5);
-}
-
-static int refused(void) { errno = ENODEV; return -1; }
-
-static struct drm_device *the_device(void) {
-  static char *nodes[NODES] = {NODE, NODE, NODE};
-  static struct pci_place place = {0, 0, 2, 0};
-  static struct pci_names names;
-  static struct drm_device device = {nodes, 1 << RENDER_NODE, 0, &place, &names};
-  names.vendor = VENDOR_INTEL, names.device = gpu.pci, names.revision = gpu.revision;
-  return &device;
-}
-
-int drmGetDevices2(uint32_t flags, struct drm_device **devices, int most) {
-  if (!has_gpu()) return 0;
-  if (devices && most > 0) devices[0] = the_device();
+static int list_gpu(struct drm_device *all[MOST]) {
+  enum { VENDOR_INTEL = 0x8086 };
+  all[0] = pci_gpu(VENDOR_INTEL, gpu.pci, gpu.revision);
   return 1;
 }
-
-int drmGetDevice2(int file, uint32_t flags, struct drm_device **device) {
-  if (!has_gpu() || !is_own(file)) return -ENODEV;
-  *device = the_device();
-  return 0;
-}
-
-int drmGetDevices(struct drm_device **devices, int most) { return drmGetDevices2(0, devices, most); }
-int drmGetDevice(int file, struct drm_device **device) { return drmGetDevice2(file, 0, device); }
-void drmFreeDevice(struct drm_device **device) { *device = NULL; }
-void drmFreeDevices(struct drm_device **devices, int count) { memset(devices, 0, count * sizeof *devices); }
 
 static void set(uint8_t *mask, unsigned bit) { mask[bit / 8] |= 1u << bit % 8; }
 
@@ -202,30 +149,3 @@ static int answer(unsigned request, void *given) {
   }
   return 0;
 }
-
-int ioctl(int file, unsigned long request, ...) {
-  static int (*real)(int, unsigned long, ...);
-  va_list words;
-  va_start(words, request);
-  void *given = va_arg(words, void *);
-  va_end(words);
-  if (_IOC_TYPE(request) == 'd') return has_gpu() && is_own(file) ? answer(_IOC_NR(request), given) : refused();
-  if (!real) real = (int (*)(int, unsigned long, ...))dlsym(RTLD_NEXT, "ioctl");
-  return real(file, request, given);
-}
-
-static int is_device(const char *path) { return path && strncmp(path, "/dev/dri", 8) == 0; }
-
-#define OPENING(name)                                                      \
-  int name(const char *path, int flags, ...) {                             \
-    static int (*real)(const char *, int, ...);                            \
-    va_list words;                                                         \
-    va_start(words, flags);                                                \
-    unsigned mode = flags & (O_CREAT | __O_TMPFILE) ? va_arg(words, unsigned) : 0; \
-    va_end(words);                                                         \
-    if (is_device(path)) return refused();                                 \
-    if (!real) real = (int (*)(const char *, int, ...))dlsym(RTLD_NEXT, #name); \
-    return real(path, flags, mode);                                        \
-  }
-OPENING(open)
-OPENING(open64)

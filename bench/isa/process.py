@@ -16,9 +16,11 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..machine.children import python
-from .driver_files import environment
+from .driver_files import environment, is_gl
 
 CHILD: Sequence[str] = python("normalbench.bench.isa.child")
+# For a driver of GL, which the loader of Vulkan does not know.
+GL_CHILD: Sequence[str] = python("normalbench.bench.isa.terascale.child")
 # Of one job, and of a driver that starts: a thousand times what they take.
 SECONDS = 10.0
 
@@ -27,7 +29,8 @@ Lines = Callable[[], dict[str, Any] | None]
 
 @dataclass(frozen=True)
 class Driver:
-    """The driver's description for the loader, and what tells its children that nobody waits for them any more.
+    """The driver's description for the loader, or its file where it is one of GL, and what tells its children that
+    nobody waits for them any more.
 
     `command` starts a child where it is not one of CHILD.
     """
@@ -50,7 +53,7 @@ def child(
         json.dump(given, work)
         work.seek(0)
         with subprocess.Popen(
-            driver.command or CHILD,
+            driver.command or (GL_CHILD if is_gl(driver.path) else CHILD),
             stdin=work,
             stdout=subprocess.PIPE,
             stderr=errors,

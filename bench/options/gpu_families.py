@@ -9,6 +9,7 @@ from types import MappingProxyType
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
 # NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
 NVRTC = "libnvrtc"
+R600, TURNIP, V3DV = "r600_dri", "libvulkan_freedreno", "libvulkan_broadcom"
 
 
 @dataclass(frozen=True)
@@ -17,10 +18,13 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon", "intel" or "nvidia", which is also the name of the group of its families.
-        library: the Vulkan driver that compiles for it, or NVRTC.
+        vendor: "radeon", "terascale" (Radeons of before GCN), "intel", "nvidia", "qualcomm" or "broadcom": also the
+            name of the group of its families.
+        library: the driver that compiles for it: of Vulkan, or r600 of GL, or NVRTC.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what an Intel driver is told of a GPU that is not there, in the words of null_i915.c.
+        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c, null_radeon.c or
+            null_mobile.c.
+        stages: the kinds of shaders that are counted.
     """
 
     title: str
@@ -28,11 +32,7 @@ class Family:
     library: str
     names: tuple[str, ...]
     null_device: str = ""
-
-    @property
-    def stages(self) -> tuple[str, ...]:
-        """The kinds of shader that it is compiled for."""
-        return ("compute",) if self.library == NVRTC else ("fragment", "compute")
+    stages: tuple[str, ...] = ("fragment", "compute")
 
 
 def _radeon(title: str, *names: str) -> Family:
@@ -44,7 +44,17 @@ def _intel(title: str, library: str, name: str, null_device: str) -> Family:
 
 
 def _nvidia(title: str, name: str) -> Family:
-    return Family(title, "nvidia", NVRTC, (name,))
+    return Family(title, "nvidia", NVRTC, (name,), stages=("compute",))
+
+
+def _terascale(title: str, name: str, pci: str) -> Family:
+    return Family(title, "terascale", R600, (name,), pci, ("fragment",))
+
+
+def _adreno(number: int) -> Family:
+    # The chip's number has a byte for each digit, and any patch level.
+    chip = int.from_bytes([*map(int, str(number)), 255], "big")
+    return Family(f"Adreno {number}", "qualcomm", TURNIP, (f"a{number}",), f"msm {number} {chip:#010x}")
 
 
 # One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
@@ -68,16 +78,33 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "sm_90": _nvidia("Hopper", "sm_90"),
         "sm_100": _nvidia("Blackwell B200", "sm_100"),
         "sm_120": _nvidia("Blackwell", "sm_120"),
+        "rv670": _terascale("Radeon HD 3870", "rv670", "0x9501"),
+        "cypress": _terascale("Radeon HD 5870", "cypress", "0x6898"),
+        **{f"a{number}": _adreno(number) for number in (630, 650, 660)},
+        "v3d42": Family("V3D 4.2, Raspberry Pi 4", "broadcom", V3DV, ("v3d42",), "v3d"),
     }
 )
+# The drivers that few machines have: of these a user builds his own.
+MOBILE = (TURNIP, V3DV)
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
 # What a user may name: a family, or a vendor for all of its families.
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {name: (name,) for name in FAMILIES}
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
+    | {"mobile": tuple(name for name, family in FAMILIES.items() if family.library in MOBILE)}
 )
 # What people call each driver.
-TITLES = MappingProxyType({RADV: "RADV", ANV: "Intel anv", HASVK: "Intel hasvk", NVRTC: "NVIDIA NVRTC"})
+TITLES = MappingProxyType(
+    {
+        RADV: "RADV",
+        ANV: "Intel anv",
+        HASVK: "Intel hasvk",
+        NVRTC: "NVIDIA NVRTC",
+        R600: "r600",
+        TURNIP: "Qualcomm turnip",
+        V3DV: "Broadcom v3dv",
+    }
+)
 
 
 def titled(vendor: str) -> str:

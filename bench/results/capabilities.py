@@ -13,7 +13,7 @@ from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
 from ..output.errors import MissingError
-from .machine import require_intel, require_nvidia, require_radeons
+from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
 
 
 def _require_parquet() -> None:
@@ -29,6 +29,8 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions on Radeons (cost --isa, pick)": require_radeons,
         "instructions on Intel (cost --isa --family intel)": require_intel,
         "instructions on NVIDIA (cost --isa --family nvidia)": require_nvidia,
+        "instructions on the article's Radeons (cost --isa --family terascale)": require_terascale,
+        "instructions on phones' GPUs (cost --isa --family mobile)": require_mobile,
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,

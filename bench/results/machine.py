@@ -14,7 +14,7 @@ from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 from ..languages import tools
-from ..options.gpu_families import ANV, HASVK, NVRTC, RADV
+from ..options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..output.errors import MissingError
 
 ROUNDS = {
@@ -94,6 +94,16 @@ def require_intel() -> None:
 def require_nvidia() -> None:
     """Raises MissingError where NVIDIA's compiler of CUDA or its disassembler is missing."""
     _require(NVRTC)
+
+
+def require_terascale() -> None:
+    """Raises MissingError where r600 cannot compile, or the device that it is given."""
+    _require(R600)
+
+
+def require_mobile() -> None:
+    """Raises MissingError where the drivers of phones and small boards are not built, or the device they are given."""
+    _require(*MOBILE)
 
 
 def _require(*libraries: str) -> None:

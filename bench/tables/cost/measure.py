@@ -16,8 +16,10 @@ from ....gbuffer.gl.shader import ShaderError
 from ...codecs.half.kernels import half_operation
 from ...isa import disassembly, intel_disassembly, isa, occupancy, spirv
 from ...isa.isa import Compiled, Failure, Job, Kernel, Outcome
+from ...isa.mobile import ir3_disassembly, qpu_disassembly
 from ...isa.nvidia import sass
 from ...isa.nvidia.source import cuda_of
+from ...isa.terascale import disassembly as terascale_disassembly
 from ...machine.cores import on_all_cores
 from ...options.gpu_families import FAMILIES, NVRTC
 from ...output.errors import MissingError
@@ -28,7 +30,7 @@ Row = dict[str, Any]
 # The drivers' statistics by their own names: RADV's, then Intel's; NVIDIA's by those of isa/nvidia/child.py. Later
 # Mesas may have more; one that is missing is left empty.
 INSTRUCTIONS = (("Instructions",), ("Instruction Count",))
-SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"))
+SPILLS = (("Spilled VGPRs", "Spilled SGPRs"), ("Spill Count", "Fill Count"), ("STP Count", "LDP Count"))
 STATISTICS = {
     "instructions": INSTRUCTIONS,
     "vgprs": (("VGPRs",), ("Registers",)),
@@ -37,6 +39,8 @@ STATISTICS = {
     "code_bytes": (("Code size",),),
     "stall_cycles": (("Stall cycles",),),
 }
+# Bytes in which a vendor's driver counts code, where it is not one.
+CODE_UNITS = {"qualcomm": 4}
 # Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
 # for what: one kernel's less another's is nobody's cost.
 WHOLE = {
@@ -46,7 +50,15 @@ WHOLE = {
     "kernel_inverse_throughput": (("Inverse Throughput",),),
 }
 # Of the listing: what adds up, and what makes the other counts static ones.
-KINDS = tuple(dict.fromkeys((*disassembly.KINDS, *intel_disassembly.KINDS)))
+READERS: Mapping[str, Any] = {
+    "radeon": disassembly,
+    "intel": intel_disassembly,
+    "nvidia": sass,
+    "terascale": terascale_disassembly,
+    "qualcomm": ir3_disassembly,
+    "broadcom": qpu_disassembly,
+}
+KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in reader.KINDS))
 LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
@@ -143,7 +155,8 @@ def _job(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | No
     module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
     # A vertex shader feeds each fragment shader; a compute shader has none.
     vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
-    return Job(stage, module.binary, vertex), module.instructions
+    bare = [operation.source(f"kernel_bare.{kind}").text for kind in ("frag", "vert")] if stage == "fragment" else []
+    return Job(stage, module.binary, vertex, *bare), module.instructions
 
 
 def isa_rows(
@@ -205,12 +218,14 @@ def _no_stage(family: str, stages: Sequence[str]) -> str:
     known = FAMILIES[family].stages if family in FAMILIES else stages
     if set(known) & set(stages):
         return ""
-    return f"its compiler makes no {' or '.join(stages)} shaders: it is CUDA's; ask for --stage {', '.join(known)}"
+    title = FAMILIES[family].title
+    return f"{title}: {' and '.join(stages)} shaders are not counted; ask for --stage {', '.join(known)}"
 
 
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
     """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
-    found = [outcome for (name, _), outcome in outcomes.items() if name == family]
+    stages = FAMILIES[family].stages if family in FAMILIES else tuple(kernels.STAGES)
+    found = [outcome for (name, job), outcome in outcomes.items() if name == family and job.stage in stages]
     failures = [outcome for outcome in found if isinstance(outcome, Failure)]
     return failures[0].reason if found and len(failures) == len(found) else ""
 
@@ -227,6 +242,8 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     kernel, nothing = compared
     for column, names in STATISTICS.items():
         row[column] = _difference(_total(kernel, names), _total(nothing, names))
+    if row["code_bytes"] is not None and row["family"] in FAMILIES:
+        row["code_bytes"] *= CODE_UNITS.get(FAMILIES[row["family"]].vendor, 1)
     for column, names in WHOLE.items():
         row[column] = _total(kernel, names)
     ours, theirs = (_listed(k.assembly, int(_total(k, INSTRUCTIONS) or -1), row["family"]) for k in compared)
@@ -273,15 +290,17 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     if counts is None:
         return None
     branches, loops = read.jumps(assembly)
-    static = {"packed": read.packed(assembly), "branches": branches, "loops": loops, "looped": read.looped(assembly)}
-    return {"issue_slots": read.issue_slots(counts, family), **counts, **static}
+    # What some vendors' listings say alone.
+    some = {name: count(assembly) for name in ("packed", "looped") if (count := getattr(read, name, None))}
+    some |= read.slots(assembly) if hasattr(read, "slots") else {}
+    return {"issue_slots": read.issue_slots(counts, family), **counts, **some, "branches": branches, "loops": loops}
 
 
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `packed`, `jumps`, `looped`, `issue_slots` and
-    GUARDS."""
-    readers = {"intel": intel_disassembly, "nvidia": sass}
-    return readers.get(FAMILIES[family].vendor, disassembly) if family in FAMILIES else disassembly
+    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots` and GUARDS, and of some
+    `packed`, `looped` and `slots`."""
+    known = FAMILIES.get(family)
+    return READERS[known.vendor] if known else disassembly
 
 
 def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:

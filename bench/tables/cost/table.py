@@ -29,7 +29,8 @@ class CostOptions:
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            f"for these; {titled('nvidia')}, or nvidia for these; all.",
+            f"for these; {titled('nvidia')}, or nvidia for these; {titled('terascale')}, or terascale for these; "
+            f"{titled('mobile')}, or mobile for these, which doctor --build-mesa builds; all.",
             in_run=True,
         ),
     ] = "radeon"
@@ -77,18 +78,20 @@ COLUMNS = (
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly.",
+        "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction. "
+        "Qualcomm: cycles that a program waits in words count.",
     ),
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside. Empty for Intel and NVIDIA.",
+        "transcendental one issues once and runs beside. TeraScale: bundles. Broadcom: instructions. Empty for "
+        "Intel, NVIDIA and Qualcomm.",
     ),
     _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
         "conversion",
-        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two sizes of "
-        "floats. NVIDIA: also rounding to whole numbers, in the same unit.",
+        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel, Qualcomm: also between two "
+        "sizes of floats. NVIDIA: also rounding to whole numbers, in the same unit.",
         13,
     ),
     _count(
@@ -99,22 +102,27 @@ COLUMNS = (
     _count(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
-        "which also divides integers. NVIDIA: `MUFU`.",
+        "which also divides integers. NVIDIA: `MUFU`. TeraScale, Broadcom: instructions that hold one.",
     ),
-    _count("scalar", "Instructions once for all lanes.", 14),
+    _count("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
     _count(
         "memory",
-        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too.",
+        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too; "
+        "Broadcom: instructions that only read inputs, or write results.",
         15,
     ),
-    _count("waiting", "Waits and hints about order; NVIDIA: without the padding behind a kernel's end.", 10),
-    _count("control_flow", "Intel and NVIDIA: jumps and what ends a branch; a Radeon's are in `scalar`.", 18),
     _count(
-        "other_alu",
-        "Intel and NVIDIA: all other arithmetic, moves, compares and selections; Intel: interpolation, too.",
-        19,
+        "waiting",
+        "Waits and hints about order; Qualcomm: `nop`; NVIDIA: without the padding behind a kernel's end.",
+        10,
     ),
+    _count("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
+    _count("other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19),
     _count("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
+    _count(
+        "vliw_slots", "Operations in all instructions, where one holds several: TeraScale up to five, Broadcom two.", 20
+    ),
+    _count("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
     _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
     _count("looped", "Of instructions those in loops, which run again at each turn.", 21),
@@ -197,7 +205,13 @@ ALSO = (
     Column("navi*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
     *(
         Column(name, f"Instructions that Mesa's {driver} makes of it for that GPU family.", better="less")
-        for driver, names in (("hasvk", ("hsw", "bdw")), ("anv", ("skl", "tgl", "adl", "dg2")))
+        for driver, names in (
+            ("hasvk", ("hsw", "bdw")),
+            ("anv", ("skl", "tgl", "adl", "dg2")),
+            ("r600", ("rv670", "cypress")),
+            ("turnip", ("a630", "a650", "a660")),
+            ("v3dv", ("v3d42",)),
+        )
         for name in names
     ),
     *(
@@ -217,7 +231,7 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 TABLE = Table(
     name="cost",
     package=__package__ or "",
-    help="What encoding and decoding cost: instructions on GPUs of three vendors, and time; all of it by default.\n\n"
+    help="What encoding and decoding cost: instructions on GPUs of five vendors, and time; all of it by default.\n\n"
     "Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel "
     "that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",

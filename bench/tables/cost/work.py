@@ -50,13 +50,18 @@ def packings(names: str) -> list[Packing]:
     return list(dict.fromkeys(packing for several in pick("storage", names, known) for packing in several))
 
 
+# Compilers that people have to install or build themselves.
+OWN = (families.NVRTC, *families.MOBILE)
+
+
 def chosen_families(names: str) -> list[str]:
-    """What `--family` names: families, and vendors for all of theirs. NVIDIA's are among all of them where their
-    compiler is installed, which people have to do themselves. Raises UsageError."""
+    """What `--family` names: families, and vendors for all of theirs. Those whose compiler people install or build
+    themselves are among all of them where it is there. Raises UsageError."""
     found = dict.fromkeys(name for several in pick("family", names, families.CHOICES) for name in several)
-    if names.strip().lower() == "all" and isa.missing(families.NVRTC):
-        return [name for name in found if families.FAMILIES[name].library != families.NVRTC]
-    return list(found)
+    if names.strip().lower() != "all":
+        return list(found)
+    lost = {library for library in OWN if isa.missing(library)}
+    return [name for name in found if families.FAMILIES[name].library not in lost]
 
 
 @dataclass

@@ -164,14 +164,14 @@ def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatc
     assert chosen_families("all") == list(FAMILIES)
 
 
-def test_what_asks_for_fragment_shaders_leaves_nvidia_out(run, tmp_path):
-    """`pick` refuses it in a line; a page shows the kernels of the last family that has such shaders."""
+def test_what_asks_for_fragment_shaders_leaves_nvidia_out(run):
+    """`pick` refuses it in a line; a page speaks of the family that has such shaders, and draws both."""
     status, out, err = run("pick", "--family", "sm_86")
     assert (status, out, err.count("\n")) == (2, "", 1) and "sm_86" in err and "known: polaris10" in err
-    for name in ("navi31", "sm_120"):
-        (tmp_path / name).mkdir()
-    rows = [{"family": name, "stage": stage} for name, stage in (("navi31", "fragment"), ("sm_120", "compute"))]
-    assert report._last_family(tmp_path, rows)[0] == "navi31"
+    stages = {"sm_120": "compute", "navi31": "fragment"}
+    rows = [{"family": name, "stage": stage, "instructions": 3} for name, stage in stages.items()]
+    assert report.usual_family({"cost": rows}) == "navi31"
+    assert [row["family"] for row in report._counted({"cost": rows})] == [*stages]
 
 
 def taken(folder: Path) -> list[str]:

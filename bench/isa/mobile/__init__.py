@@ -1,0 +1,1 @@
+"""GPUs of phones and small boards: Mesa's drivers for them, which a user builds, and what their listings hold."""

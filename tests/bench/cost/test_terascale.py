@@ -1,0 +1,199 @@
+"""Instructions by Mesa's r600 for the article's Radeons: what listings hold, and the device that is not there."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.isa import isa, null_device
+from normalbench.bench.isa import process as isa_process
+from normalbench.bench.isa.terascale import disassembly, driver
+from normalbench.bench.metrics import published
+from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.output.errors import MissingError
+from normalbench.bench.results.machine import require_terascale
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.gbuffer.defines.packings import PACKINGS
+
+LISTINGS = Path(__file__).with_name("terascale_listings")
+# By hand, line by line, of listings that Mesa 22.3.6 wrote: the kinds, then the slots and those of them that are t.
+COUNTED = {
+    "rv670-spheremap-encode": ({"other_alu": 4, "transcendental": 1, "memory": 1}, 8, 1),
+    "cypress-spheremap-encode": ({"other_alu": 6, "transcendental": 1, "memory": 1}, 14, 1),
+    "rv670-spherical_lut-decode": ({"other_alu": 6, "memory": 2}, 11, 2),
+    "cypress-spherical_lut-decode": ({"other_alu": 7, "memory": 2}, 17, 0),
+}
+EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8", "--stage", "fragment"]
+BRANCH = """0000 00000004 A4000000  ALU_PUSH_BEFORE 1 @8
+ 0008 801F0000 80000000     1 x:  MP  PRED_SETNE_INT         __.x,  R0.x, 0
+0002 00000006 82800001  JUMP @6
+0004 0000000A A0000000  ALU 1 @10
+ 0010 80000400 00200C90     2 x:     MOV                    R1.x,  R0.y
+0006 00000007 83800001  POP @7 POP:1
+0008 C0000000 95200FC8  EXPORT_DONE        PIXEL 0     R0.xy__      ES:3 EOP
+"""
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_the_kinds_of_a_recorded_listing_are_those_counted_by_hand(name):
+    expected, slots, in_t = COUNTED[name]
+    counts = dict.fromkeys(disassembly.KINDS, 0) | expected
+    assembly = (LISTINGS / f"{name}.asm").read_text()
+    assert disassembly.count(assembly) == sum(counts.values())
+    assert disassembly.kinds(assembly, sum(counts.values())) == counts
+    assert disassembly.slots(assembly) == {"vliw_slots": slots, "t_slots": in_t}
+
+
+def test_every_recorded_listing_is_counted():
+    assert {path.stem for path in LISTINGS.iterdir()} == set(COUNTED)
+
+
+def test_a_listing_that_is_not_understood_has_no_kinds():
+    """Of an unknown instruction, and of a bundle more than the driver numbers."""
+    assert disassembly.kinds(BRANCH, 5) and not disassembly.kinds(BRANCH, 4)
+    assert disassembly.kinds(BRANCH.replace("EXPORT_DONE", "FROBNICATE"), 5) is None
+
+
+def test_jumps_are_counted_and_starts_of_clauses_are_not():
+    assert disassembly.count(BRANCH) == 5
+    assert disassembly.kinds(BRANCH, 5) == {"other_alu": 2, "transcendental": 0, "memory": 1, "control_flow": 2}
+    assert disassembly.jumps(BRANCH) == (1, 0)
+    assert disassembly.jumps(BRANCH.replace("POP @7 POP:1", "LOOP_END @4")) == (1, 1)
+
+
+def test_a_bundle_ends_where_its_last_operation_says_so():
+    """The bit is the driver's own; without it two bundles are one."""
+    assert [len(bundle) for bundle in disassembly.bundles(BRANCH)] == [1, 1]
+    assert [len(bundle) for bundle in disassembly.bundles(BRANCH.replace("801F0000", "001F0000"))] == [2]
+
+
+def test_the_chips_are_the_articles():
+    titles = [FAMILIES[name].title for name in CHOICES["terascale"]]
+    assert titles == ["Radeon HD 3870", "Radeon HD 5870"] and set(titles) < set(published.GPUS)
+
+
+@pytest.fixture(scope="module")
+def table(terascale, tmp_path_factory):  # noqa: ARG001 (asks for the compiler)
+    """Fragment rows of every encoding and packing on both chips, from an empty cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        packings = list(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
+        chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
+        return [row for row, _ in cost.isa_rows(chosen, ["fragment"], CHOICES["terascale"], [], cost.nobody)]
+
+
+def test_doing_nothing_costs_nothing(table):
+    for row in (row for row in table if row["encoding"] == "xyz"):
+        figures = {column: row[column] for column in ("instructions", *disassembly.KINDS, "vliw_slots", "branches")}
+        assert set(figures.values()) == {0}, row
+
+
+def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_bundles_that_the_driver_numbers(table):
+    packings = {packing for several in PACKINGS.values() for packing in several}
+    assert len(table) == 2 * 2 * (len(ENCODINGS) + len(packings))
+    for row in table:
+        assert row["skipped"] is None and row["simd_width"] == 64, row
+        assert sum(row[kind] for kind in disassembly.KINDS) == row["instructions"] >= 0, row
+        assert row["t_slots"] <= row["vliw_slots"] <= 5 * row["issue_slots"] + 5, row
+
+
+def test_known_counts(table):
+    """Spheremap encodes in 5 bundles by hand on the HD 3870; the HD 5870 takes one more to interpolate n.z."""
+    if {row["driver"] for row in table} != {"Mesa 22.3.6"}:
+        pytest.skip("counts hold for one Mesa")
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in table}
+    chips = CHOICES["terascale"]
+    assert [found["spheremap", "encode", chip] for chip in chips] == [5, 6]
+    assert [found["per_pixel_view", "encode", chip] for chip in chips] == [14, 16]
+    assert [found["spherical", "decode", chip] for chip in chips] == [11, 12]
+
+
+def test_per_pixel_view_is_cheaper_than_spherical_as_in_the_article(table):
+    """Bundles compute vectors at once, as ps_3_0 does; the order is the article's, not that of today's GPUs."""
+    for chip in CHOICES["terascale"]:
+        found = {r["encoding"]: r["instructions"] for r in table if (r["family"], r["operation"]) == (chip, "encode")}
+        assert found["xy"] < found["spheremap"] < found["per_pixel_view"] < found["spherical"], chip
+
+
+@pytest.mark.usefixtures("terascale", "own_cache")
+def test_compute_shaders_are_left_out_and_alone_are_one_row_with_the_reason(run):
+    status, out, _ = run(*EVERY[:-2], "--family", "rv670", "--stage", "fragment,compute")
+    assert status == 0 and {(row["stage"], row["skipped"]) for row in json.loads(out)} == {("fragment", None)}
+    status, out, _ = run(*EVERY[:-2], "--family", "rv670", "--stage", "compute")
+    assert [row["skipped"] for row in json.loads(out) if row["family"]] == [
+        "Radeon HD 3870: compute shaders are not counted; ask for --stage fragment"
+    ]
+
+
+@pytest.mark.usefixtures("terascale", "own_cache")
+def test_rows_are_the_same_from_the_cache_and_stand_beside_the_articles(run, monkeypatch):
+    asked = [*EVERY, "--family", "terascale", "--article"]
+    first = run(*asked)
+    rows = json.loads(first[1])
+    assert first[0] == 0 and {row["measure"] for row in rows} == {"isa", "article"}
+    monkeypatch.setattr(isa_process, "GL_CHILD", ["false"])
+    assert run(*asked) == first
+
+
+@pytest.mark.usefixtures("terascale", "own_cache")
+@pytest.mark.parametrize("what, reason", [("os.abort()", "SIGABRT"), ("time.sleep(60)", "did not answer within")])
+def test_a_driver_that_fails_costs_its_own_rows(run, monkeypatch, what, reason):
+    monkeypatch.setattr(isa_process, "GL_CHILD", [sys.executable, "-c", f"import os, time; {what}"])
+    monkeypatch.setattr(isa_process, "SECONDS", 4.0 if "sleep" in what else isa_process.SECONDS)
+    isa._loaded.cache_clear()
+    status, out, err = run(*EVERY, "--family", "navi21,rv670")
+    isa._loaded.cache_clear()
+    (lost,) = [row for row in json.loads(out) if row["skipped"]]
+    assert status == 0 and lost["family"] == "rv670" and reason in lost["skipped"] and reason in err
+
+
+@pytest.mark.usefixtures("terascale", "own_cache")
+def test_a_machine_without_the_driver_says_what_to_install(run, monkeypatch):
+    monkeypatch.setattr(driver, "FOLDERS", ())
+    monkeypatch.delenv("LIBGL_DRIVERS_PATH", raising=False)
+    driver.driver_file.cache_clear()
+    isa.driver_file.cache_clear()
+    try:
+        with pytest.raises(MissingError, match="apt-get install libgl1-mesa-dri"):
+            require_terascale()
+        status, out, err = run(*EVERY, "--family", "cypress")
+    finally:
+        driver.driver_file.cache_clear()
+        isa.driver_file.cache_clear()
+    assert status == 3 and driver.NO_DRIVER in err and "instructions" in json.loads(out)[0]
+
+
+# What a process with the null device finds: errno of each try, 0 where it works, and the driver's version.
+TRIES = """
+import fcntl, json, os
+def tried(what):
+    try:
+        what()
+    except OSError as error:
+        return error.errno
+    return 0
+zero, null = os.open("/dev/zero", os.O_RDWR), os.open("/dev/null", os.O_RDWR)
+version = bytearray(64)
+print(json.dumps([
+    tried(lambda: fcntl.ioctl(zero, 0xC0406400, version)),
+    tried(lambda: fcntl.ioctl(null, 0xC0406400, bytearray(64))),
+    tried(lambda: os.open("/dev/dri/renderD128", os.O_RDWR)),
+    list(version[:12:4]),
+]))
+"""
+NO_DEVICE = 19  # ENODEV
+
+
+@pytest.mark.usefixtures("terascale", "own_cache")
+def test_the_null_device_answers_for_itself_alone():
+    """It is radeon 2.50.0; DRM requests on other files and the opening of real devices are refused."""
+    told = driver.variables(FAMILIES["cypress"].null_device)
+    asked = [sys.executable, "-c", TRIES]
+    done = subprocess.run(asked, capture_output=True, text=True, env=os.environ | told, check=True)
+    assert json.loads(done.stdout) == [0, NO_DEVICE, NO_DEVICE, [2, 50, 0]]
+    assert re.fullmatch(r"null_radeon-\w{16}-\w{16}\.so", null_device.library(driver.SOURCE).name)
