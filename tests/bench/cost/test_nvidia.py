@@ -161,6 +161,8 @@ def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatc
     assert not set(chosen_families("all")) & set(CHOICES["nvidia"])
     assert set(chosen_families("all,sm_86")) >= {"navi31", "sm_86"}
     monkeypatch.setattr(tools, "missing", lambda: "")
+    assert {*CHOICES["radeon"], *CHOICES["nvidia"]} <= set(chosen_families("all"))
+    monkeypatch.setattr(isa, "missing", lambda _: "")
     assert chosen_families("all") == list(FAMILIES)
 
 
