@@ -18,7 +18,7 @@ from ...reports.charts import drawings
 from ...reports.charts.pareto import Panel, Point, decibels
 from ...reports.page import embedded, library, markdown, page, several
 from ...reports.page.codec_key import CodecKey
-from ...reports.page.found import Found, Front, SphereMap, plain_text
+from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
 from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
@@ -33,6 +33,7 @@ from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
 from ..tables.cost.measure import OPERATIONS, listing
 from ..tables.cost.sheets import article_rows, order_notes
+from ..tables.cost.work import SOURCES
 from ..tables.quality import sphere_maps
 from ..tables.registry import TABLES, table_of_run
 from ..tables.table import Role, Table
@@ -413,15 +414,23 @@ def _order(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
         return []
 
 
-def _listings(folder: Path, family: str) -> dict[str, str]:
-    """A GPU family's kernels, as far as a page holds them."""
+def _listings(folder: Path, family: str) -> dict[str, Listing]:
+    """A GPU family's kernels with their encodings' GLSL, as far as a page holds them."""
+    sources = _kernels(folder, SOURCES)
     listed, size = {}, 0
     for name, path in sorted(_kernels(folder, family).items()):
         if not name.startswith(STAGE):
             continue
-        text = path.read_text(encoding="utf-8", errors="replace")
-        size += len(text)
+        # "fragment-octahedral-encode" is of "octahedral.glsl".
+        source = sources.get(f"{path.stem.removeprefix(f'{STAGE}-').rpartition('-')[0]}.glsl")
+        found = Listing(_read(path), _read(source) if source else "")
+        size += len(found.text) + len(found.source)
         if size > LISTED:
             break
-        listed[f"{family}, {plain_text(path.stem)}"] = "\n".join(map(plain_text, text.expandtabs().splitlines()))
+        listed[f"{family}, {plain_text(path.stem)}"] = found
     return listed
+
+
+def _read(path: Path) -> str:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return "\n".join(map(str, map(plain_text, text.expandtabs().splitlines())))

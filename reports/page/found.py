@@ -36,6 +36,14 @@ class Front:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """A kernel's disassembly, and the GLSL of its encoding; empty where there is none."""
+
+    text: str
+    source: str = ""
+
+
+@dataclass(frozen=True)
 class Found:
     """A run.
 
@@ -50,7 +58,7 @@ class Found:
         subjects: what codecs were tried on, and their pixels.
         maps: errors over the sphere.
         fronts: cost against error.
-        listings: disassemblies, text by name.
+        listings: disassemblies by name.
         order: where costs are in another order than the article's, and why, in lines.
         family: the GPU family whose instructions the page names where it names one.
         remarks: what does not fit, in sentences.
@@ -66,7 +74,7 @@ class Found:
     subjects: Sequence[Subject] = ()
     maps: Sequence[SphereMap] = ()
     fronts: Sequence[Front] = ()
-    listings: Mapping[str, str] = field(default_factory=dict)
+    listings: Mapping[str, Listing] = field(default_factory=dict)
     order: Sequence[str] = ()
     family: str = ""
     remarks: Sequence[str] = ()

@@ -255,8 +255,11 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
         path, text = cost.listing(rows[-1], "BB0:\n" + "        v_cmp_lt_f32_e32 vcc, 0, v1\n" * guards)
         (folder / "disassembly" / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / "disassembly" / path).write_text(text)
-    _, read = reported(run, a_run(folder, {"cost": rows}))
+    (folder / "disassembly" / "source").mkdir()
+    (folder / "disassembly" / "source" / "spherical.glsl").write_text("// <b>spherical</b>\n")
+    text, read = reported(run, a_run(folder, {"cost": rows}))
     assert "the other way round: per_pixel_view and spherical" in read.text
+    assert "// <b>spherical</b>" in read.text and "<b>spherical" not in text, "the GLSL stands beside its kernel"
     for name, said in (
         ("per_pixel_view", "30 instructions for 17 slots, of them 2"),
         ("spherical", "24 instructions for 26 slots, of them 1"),

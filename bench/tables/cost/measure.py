@@ -331,9 +331,14 @@ def static_notes(rows: Iterable[Row]) -> list[str]:
     return [f"static count: {', '.join(found[column])} {note}" for column, note in notes.items() if found[column]]
 
 
+def file_name(name: Any) -> str:
+    """An encoding's or a packing's name as files have it."""
+    return str(name).replace(" ", "-").replace(":", "-")
+
+
 def listing(row: Row, assembly: str) -> tuple[Path, str]:
     """A disassembly's file name, by what the row is about, and its text: what it costs, then the whole kernel."""
-    name = str(row["encoding"] or row["storage"]).replace(" ", "-").replace(":", "-")
+    name = file_name(row["encoding"] or row["storage"])
     costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *LISTED) if row[column] is not None)
     head = f"; {row['encoding'] or row['storage']} {row['operation']}, {row['stage']}, {row['family']}\n"
     head += f"; {row['device']}, {row['driver']}, {row['compiler']}\n; more than the empty kernel: {costs}\n"

@@ -28,9 +28,12 @@ from ...output.errors import MissingError, UsageError, pick
 from ...output.writing import check_folder, check_plot, whole_file
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
+from .measure import file_name
 from .table import TABLE, CostOptions, CostOutputs
 
 FLOAT = "float"
+# Of the folder of disassemblies, what holds the encodings' GLSL.
+SOURCES = "source"
 MEASURES = ("isa", "time", "jax")
 
 
@@ -263,6 +266,7 @@ def _vendor(row: Row) -> str:
 def _write(done: Measured, _: Tick) -> None:
     if done.outputs.disassembly:
         write_listings(done.outputs.disassembly, _texts(done))
+        write_sources(done.outputs.disassembly / SOURCES, done.steps[0].case.asked.encodings)
     if done.outputs.plot and not _plot(done) and not _lacking(done):
         raise UsageError("--plot: there is nothing to draw; see why above")
 
@@ -287,6 +291,14 @@ def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
     for path, text in (measure.listing(row, text) for row, text in listed if text):
         with whole_file(folder / path) as partial:
             partial.write_text(text, encoding="utf-8")
+
+
+def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
+    """Each encoding's own GLSL, to be read beside what was made of it."""
+    for encoding in encodings:
+        if encoding.glsl.is_file():
+            with whole_file(folder / f"{file_name(encoding.name)}.glsl") as partial:
+                partial.write_text(encoding.glsl.read_text(encoding="utf-8"), encoding="utf-8")
 
 
 def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:

@@ -267,6 +267,7 @@ def test_disassembly_and_plot_are_written(run, tmp_path):
     assert (status, err) == (0, "")
     listing = (out / "navi21" / "fragment-octahedral-encode.asm").read_text()
     assert listing.startswith("; octahedral encode, fragment, navi21\n") and "v_rcp_f32" in listing
+    assert (out / "source" / "octahedral.glsl").read_text() == ENCODINGS["octahedral"].glsl.read_text()
     assert len(list(out.rglob("*.asm"))) == 2 * 2 * 2 * 4
     drawn = plot.read_text()
     for name in ("octahedral", "navi10, fragment, Mesa", "navi21, compute, Mesa", "PSNR, dB", "instructions"):

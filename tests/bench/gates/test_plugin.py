@@ -390,7 +390,7 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
                 *rooms, ".pytest_plugin.plugin", ".pytest_plugin.own_options", ".options.option", ".options.counts",
                 ".options.gpu_families", ".output.errors", ".output.spelling"
             }
-            assert all(m.endswith((".table", ".registry")) or m.count(".") == 2 for m in named if ".tables." in m)
+            assert all(m.endswith((".table", ".registry", ".rates")) or m.count(".") == 2 for m in named if ".tables." in m)
         """
     )
     pytester.runpytest_subprocess("--strict-markers", *PLAIN).assert_outcomes(passed=1)
