@@ -8,7 +8,7 @@ from typing import Any
 from .charts import Row, codec_label
 from .pareto import LINEAR_TO, TICKS
 from .plots import COLOURS, MARKERS, drawn_off_screen
-from .specs import INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, tips, titled
+from .specs import CONFIG, INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, tips, titled
 
 STEPS = 40
 LINE = "where bytes take as long as instructions"
@@ -136,7 +136,10 @@ def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
     switch = {"switch": {"param": "machine", "label": "GPU", "options": gpus}}
     title = titled("") | {"text": {"expr": f"machine + '; line: {LINE}'"}}
     said = "Bytes over instructions of a pixel and frame. Above the line memory takes longer, below it arithmetic."
-    return [spec(data, said, params=params, usermeta=switch, layer=layers, height=380, title=title)]
+    # On a phone there is no room for two legends beside each other.
+    legends = CONFIG["legend"] | {"layout": {"top": {"anchor": "start", "direction": "vertical"}}}
+    parts = {"layer": layers, "height": 380, "title": title, "config": CONFIG | {"legend": legends}}
+    return [spec(data, said, params=params, usermeta=switch, **parts)]
 
 
 def _places(found: Sequence[Row]) -> Spec:
@@ -151,7 +154,14 @@ def _places(found: Sequence[Row]) -> Spec:
 def _looks(found: Sequence[Row]) -> Spec:
     encodings, storages = (_names(found, name) for name in ("encoding", "storage"))
     colours = [PALETTE[i % len(PALETTE)] for i in range(len(encodings))]
-    colour = {"field": "encoding", "type": "nominal", "scale": {"domain": encodings, "range": colours}, "title": None}
-    shape = {"field": "storage", "type": "nominal", "scale": {"domain": storages, "range": SHAPES}, "title": None}
+    colour: Spec = {
+        "field": "encoding",
+        "type": "nominal",
+        "scale": {"domain": encodings, "range": colours},
+        "title": None,
+    }
+    colour["legend"] = {"columns": 2}
+    shape: Spec = {"field": "storage", "type": "nominal", "scale": {"domain": storages, "range": SHAPES}, "title": None}
+    shape["legend"] = {"columns": 3, "symbolFillColor": INK, "symbolStrokeColor": INK}
     tooltip = tips(codec="codec", x="instructions", y="bytes", reads="reads", machine="GPU")
     return {"color": colour, "shape": shape, "tooltip": tooltip}
