@@ -81,6 +81,14 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
         partial.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
 
 
+class NoRowError(AssertionError):
+    """A baseline has no such row."""
+
+    def __init__(self, path: Path, said: str, writer: str):
+        super().__init__(f"{path} has no row {said}; {writer} writes it")
+        self.said = said
+
+
 @dataclass
 class Baseline:
     """A file of entries; what is recorded is written by `write_baseline`, once.
@@ -106,16 +114,14 @@ class Baseline:
         """What a row and its entry say differently, a line for each column.
 
         Raises:
-            AssertionError: the file has no such row.
+            NoRowError: the file has no such row.
             UsageError: it is not a baseline.
         """
         if self._read is None:
             self._read = read_baseline(self.path) if self.path.exists() else {}
         before = self._read.get(_text(one))
         if before is None:
-            raise AssertionError(
-                f"{self.path} has no row {_name(one)}{self._other_compilers(one)}; {self.writer} writes it"
-            )
+            raise NoRowError(self.path, f"{_name(one)}{self._other_compilers(one)}", self.writer)
         found = list(changes(before["row"], one["row"], tolerances))
         if found and before.get("listing") and one.get("listing"):
             changed = list(listing_differences(before["listing"], one["listing"]))

@@ -8,7 +8,7 @@ from pathlib import Path
 from ..output.errors import UsageError, tell, tell_together
 from ..output.progress import progress
 from ..output.writing import check_writable, without, write
-from .gates import BASELINE, Baselines, Gate, checked, read_gates
+from .gates import BASELINE, WRITER, Baselines, Gate, checked, read_gates
 
 
 def check_command(gates: Path, run: Path | None, writes: bool, format: str, output: Path | None) -> int:
@@ -31,9 +31,13 @@ def check_command(gates: Path, run: Path | None, writes: bool, format: str, outp
     for row in rows:
         if row["changed"]:
             tell_together(row["row"], row["changed"].splitlines())
+    for limit in dict.fromkeys(row["limit"] for row in rows if row["lacks"]):
+        lost = [row["lacks"] for row in rows if row["lacks"] and row["limit"] == limit]
+        more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+        tell(f"{limit.removeprefix('as in ')} has no row {lost[0]}{more}; {WRITER} writes what is missing")
     if format == "table":
         empty = [name for name in ("worst_normal", "column", "figure") if all(row[name] is None for row in rows)]
-        rows = without(rows, ("skipped", "changed", *empty))
+        rows = without(rows, ("skipped", "changed", "lacks", *empty))
     write(rows, format, output, ("table",))
     failed = sum(row["holds"] == "FAIL" for row in rows)
     if failed:

@@ -12,7 +12,7 @@ from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
-from .baseline import Baseline, entry, write_baseline
+from .baseline import Baseline, NoRowError, entry, write_baseline
 from .limits import Limit, split_limits
 from .measured import Found, measured, table_named, with_their_options
 
@@ -187,7 +187,7 @@ class Baselines:
 def _row(gate: Gate, found: Found, **more: Any) -> Row:
     row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(found.row)}
     row |= {"column": None, "figure": None, "limit": None, "holds": "pass", "worst_normal": None}
-    return row | {"changed": None, "skipped": found.row.get("skipped")} | more
+    return row | {"changed": None, "lacks": None, "skipped": found.row.get("skipped")} | more
 
 
 def _held(gate: Gate, found: Found, limit: Limit) -> Row:
@@ -208,7 +208,7 @@ def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
         return _row(gate, found, limit=f"written into {baseline.path.name}")
     try:
         said = baseline.differences(one, {})
-    except AssertionError as error:
-        said = [str(error)]
+    except NoRowError as error:
+        return _row(gate, found, limit=f"as in {baseline.path.name}", holds="FAIL", lacks=f"{error.said}")
     holds, changed = "FAIL" if said else "pass", "\n".join(said) or None
     return _row(gate, found, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)

@@ -8,16 +8,22 @@ from difflib import SequenceMatcher
 
 # A reader of a message has no use for more.
 MOST_LINES = 40
-# Which register holds a number is no difference: v3, s[2:5], g17.1, R8, %rd4.
-_REGISTER = re.compile(r"\b(v|s|g|r|R|UR|P|UP)(?:\d+(?:\.\d+)?|\[\d+(?::\d+)?\])")
+# Which register holds a number, and where a jump goes to, is no difference: v3, s[2:5], g17.1, R8, BRA 0x230.
+_PLACE = re.compile(r"\b(v|s|g|r|R|UR|P|UP)(?:\d+(?:\.\d+)?|\[\d+(?::\d+)?\])|(?<=BRA )0x[0-9a-f]+")
+# The address of an instruction, its words and its bundle before its text: NVIDIA's, TeraScale's.
+_ADDRESS = re.compile(
+    r"^\s*(?:/\*[0-9a-f]{4,}\*/|\d{4} [0-9A-F]{8}(?: [0-9A-F]{8})?(?: +\d+ (?=[xyzwt]:| +[xyzwt]:))?)\s*"
+)
 # The bytes of an instruction, behind its text.
-_BYTES = re.compile(r"\s*;[\s0-9a-f]*$|\s*/\*\s*0x[0-9a-f]+\s*\*/\s*$")
+_BYTES = re.compile(r"\s*;?\s*/\*\s*0x[0-9a-f]+\s*\*/\s*$|\s*;[\s0-9a-f]*$")
+# What fills the space behind a kernel's end.
+_PADDING = "NOP"
 
 
 def lines_of(listing: str) -> list[str]:
-    """The lines that a baseline keeps: instructions and labels, without comments, bytes and blank lines."""
-    lines = (" ".join(_BYTES.sub("", line).split()) for line in listing.splitlines())
-    return [line for line in lines if line and not line.startswith((";", "//", "#"))]
+    """The lines that a baseline keeps: instructions and labels, without comments, addresses, bytes and blank lines."""
+    lines = (" ".join(_ADDRESS.sub("", _BYTES.sub("", line)).split()) for line in listing.splitlines())
+    return [line for line in lines if line and line != _PADDING and not line.startswith((";", "//", "#"))]
 
 
 def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
@@ -29,7 +35,7 @@ def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
-    plain = [[_REGISTER.sub(r"\1", line) for line in lines] for lines in (before, after)]
+    plain = [[_PLACE.sub(r"\1", line) for line in lines] for lines in (before, after)]
     for what, a, b, c, d in SequenceMatcher(None, *plain, autojunk=False).get_opcodes():
         if what != "equal":
             yield from (f"- {line}" for line in before[a:b])

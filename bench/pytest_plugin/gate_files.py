@@ -34,13 +34,24 @@ class GateItem(pytest.Item):
 
     def runtest(self) -> None:
         bench = Normalbench(session_of(self.config), self.config.invocation_params.dir)
-        try:
-            if self.gate.limits:
-                bench.hold(self.gate.table, self.gate.options, self.gate.limits)
-            if self.gate.baseline:
-                bench.matches(self.gate.table, self.gate.options, self.gate.baseline)
-        except UsageError as error:
-            raise UsageError(f"{self.gate.place}: {error}") from None
+        said: list[str] = []
+        for holds in (self._limits, self._baseline):
+            try:
+                holds(bench)
+            except AssertionError as error:
+                said.append(str(error))
+            except UsageError as error:
+                raise UsageError(f"{self.gate.place}: {error}") from None
+        if said:
+            raise AssertionError("\n".join(said))
+
+    def _limits(self, bench: Normalbench) -> None:
+        if self.gate.limits:
+            bench.hold(self.gate.table, self.gate.options, self.gate.limits)
+
+    def _baseline(self, bench: Normalbench) -> None:
+        if self.gate.baseline:
+            bench.matches(self.gate.table, self.gate.options, self.gate.baseline)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         if isinstance(excinfo.value, AssertionError | UsageError):

@@ -11,29 +11,35 @@ from .plots import COLOURS, MARKERS, drawn_off_screen
 from .specs import CONFIG, INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, tips, titled
 
 STEPS = 40
+DASHES: Spec = {"field": "where", "type": "nominal", "legend": None}
+DASHES["scale"] = {"domain": ["memory", "cache"], "range": [[1, 0], [5, 4]]}
 LINE = "where bytes take as long as instructions"
 
 
 def points(rows: Sequence[Row]) -> list[Row]:
-    """What charts draw of rows: instructions, and bytes written and read, of a pixel and frame of the fewest reads."""
-    reads = min(row["reads"] for row in rows)
+    """What charts draw of rows: instructions, and bytes written and read, of a pixel and frame, of the fewest reads and
+    the first size."""
+    reads, size = min(row["reads"] for row in rows), rows[0]["size"]
     found = {
         (row["gpu"], codec_label(row)): {
-            **{name: row[name] for name in ("gpu", "encoding", "storage", "reads", "ridge")},
+            **{name: row[name] for name in ("gpu", "encoding", "storage", "size", "reads", "ridge", "in_cache")},
             "codec": codec_label(row),
             "x": row["instructions"],
             "y": row["bytes_per_pixel"] * (row["overdraw"] + row["reads"]),
         }
         for row in rows
-        if row["reads"] == reads
+        if (row["reads"], row["size"]) == (reads, size)
     }
     return list(found.values())
 
 
-def ridge_line(found: Sequence[Row], ridge: float) -> list[tuple[float, float]]:
-    """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on."""
+def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
+    """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on: a line for codes in
+    memory, and one, under True, for those that the cache holds."""
     most, (least, _) = max(point["x"] for point in found) * 1.3 + 1, _bytes(found)
-    return [(x, x / ridge) for x in (most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)) if x / ridge >= least]
+    ridges = {point["in_cache"]: point["ridge"] for point in found if point["gpu"] == gpu}
+    across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
+    return {cached: [(x, x / ridge) for x in across if x / ridge >= least] for cached, ridge in ridges.items()}
 
 
 def _bytes(found: Sequence[Row]) -> tuple[float, float]:
@@ -69,8 +75,9 @@ def roofline_chart(rows: Sequence[Row]) -> Any:
             colour = COLOURS[encodings.index(point["encoding"]) % len(COLOURS)]
             mark = MARKERS[storages.index(point["storage"]) % len(MARKERS)]
             axis.scatter(point["x"], point["y"], color=colour, marker=mark, s=36, zorder=3)
-        line = ridge_line(found, part[0]["ridge"])
-        axis.plot([x for x, _ in line], [y for _, y in line], color="#777777", linewidth=1)
+        for cached, line in ridge_lines(found, gpu).items():
+            style = "--" if cached else "-"
+            axis.plot([x for x, _ in line], [y for _, y in line], style, color="#777777", linewidth=1)
         _axes(axis, found, gpu)
     for axis in axes.flat[len(gpus) :]:
         axis.remove()
@@ -81,7 +88,9 @@ def roofline_chart(rows: Sequence[Row]) -> Any:
 def _axes(axis: Any, found: Sequence[Row], gpu: str) -> None:
     reads = found[0]["reads"]
     axis.set(yscale="log", title=gpu, ylim=_bytes(found), ylabel="bytes written and read")
-    axis.set_xlabel(f"instructions of a pixel and frame, {reads} {'read' if reads == 1 else 'reads'}")
+    axis.set_xlabel(
+        f"instructions of a pixel and frame, {found[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}"
+    )
     axis.set_xscale("symlog", linthresh=LINEAR_TO)
     axis.set_xlim(-1, 1.3 * max(point["x"] for point in found) + 1)
     axis.set_xticks(_ticks(found), list(map(str, _ticks(found))))
@@ -99,9 +108,9 @@ def _legend(figure: Any, encodings: Sequence[str], storages: Sequence[str]) -> N
     marks = [
         Line2D([], [], linestyle="", marker=MARKERS[i % len(MARKERS)], color="#555555") for i in range(len(storages))
     ]
-    line = Line2D([], [], color="#777777", linewidth=1)
-    labels = [*encodings, *storages, LINE]
-    figure.legend([*dots, *marks, line], labels, loc="outside lower center", ncols=4, fontsize=7)
+    lines = [Line2D([], [], linestyle=style, color="#777777", linewidth=1) for style in ("-", "--")]
+    labels = [*encodings, *storages, LINE, "the same in the cache"]
+    figure.legend([*dots, *marks, *lines], labels, loc="outside lower center", ncols=4, fontsize=7)
 
 
 def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
@@ -113,18 +122,24 @@ def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
     found = points(rows)
     gpus = _names(found, "gpu")
     lines = [
-        {"machine": gpu, "x": rounded(x), "y": rounded(y)}
+        {"machine": gpu, "where": "cache" if cached else "memory", "x": rounded(x), "y": rounded(y)}
         for gpu in gpus
-        for x, y in ridge_line(found, next(point["ridge"] for point in found if point["gpu"] == gpu))
+        for cached, line in ridge_lines(found, gpu).items()
+        for x, y in line
     ]
-    data = [point | {"machine": point["gpu"], "x": rounded(point["x"]), "y": rounded(point["y"])} for point in found]
+    data = [
+        point
+        | {"machine": point["gpu"], "where": "cache" if point["in_cache"] else "memory"}
+        | {"x": rounded(point["x"]), "y": rounded(point["y"])}
+        for point in found
+    ]
     shown = [{"filter": "datum.machine == machine"}]
     layers = [
         {
             "data": {"values": lines},
             "transform": shown,
             "mark": {"type": "line", "clip": True, "color": INK, "strokeWidth": 1, "opacity": 0.6},
-            "encoding": _places(found),
+            "encoding": {**_places(found), "strokeDash": DASHES},
         },
         {
             "transform": shown,
@@ -134,7 +149,7 @@ def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
     ]
     params = [{"name": "machine", "value": gpus[0]}]
     switch = {"switch": {"param": "machine", "label": "GPU", "options": gpus}}
-    title = titled("") | {"text": {"expr": f"machine + '; line: {LINE}'"}}
+    title = titled("") | {"text": {"expr": f"machine + ', {found[0]['size']}; line: {LINE}'"}}
     said = "Bytes over instructions of a pixel and frame. Above the line memory takes longer, below it arithmetic."
     # On a phone there is no room for two legends beside each other.
     legends = CONFIG["legend"] | {"layout": {"top": {"anchor": "start", "direction": "vertical"}}}
@@ -163,5 +178,5 @@ def _looks(found: Sequence[Row]) -> Spec:
     colour["legend"] = {"columns": 2}
     shape: Spec = {"field": "storage", "type": "nominal", "scale": {"domain": storages, "range": SHAPES}, "title": None}
     shape["legend"] = {"columns": 3, "symbolFillColor": INK, "symbolStrokeColor": INK}
-    tooltip = tips(codec="codec", x="instructions", y="bytes", reads="reads", machine="GPU")
+    tooltip = tips(codec="codec", x="instructions", y="bytes", reads="reads", where="moved from", machine="GPU")
     return {"color": colour, "shape": shape, "tooltip": tooltip}

@@ -23,6 +23,8 @@ FOLDER, DRIVER = "LIBGL_DRIVERS_PATH", "r600_dri.so"
 EGL = "libEGL.so.1"
 # Lanes that an instruction is for, on all of these chips but the smallest.
 WAVEFRONT = 64
+# What a shader in 16-bit types asks for.
+HALVES = b"explicit_arithmetic_types_float16"
 _PRINTED = re.compile(r"^bytecode (\d+) dw -- (\d+) gprs -- .*\nshader .*\n((?:.*\n)*?)-{30,}$", re.M)
 
 
@@ -75,6 +77,8 @@ class Compiler:
         """
         if stage != "fragment":
             raise DriverError(f"{stage} shaders: these counts are of fragment shaders alone")
+        if HALVES in code:
+            raise DriverError(f"{self.device} computes no shaders in 16 bits")
         with _standard_error() as printed:
             try:
                 self._once.draw(self._context, vertex.decode(), code.decode())

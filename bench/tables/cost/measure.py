@@ -140,6 +140,8 @@ def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure
 
 
 def _as_cuda(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
+    if case.encoding and case.encoding.is_half:
+        return Failure(f"{case.name}: half arithmetic is not counted for NVIDIA")
     try:
         job, empty = (Job(stage, cuda_of(each).encode(), b"") for each in (operation, operation.empty))
     except ShaderError as error:

@@ -70,11 +70,12 @@ class Work:
 
     def times(self, frame: Frame, rates: Rates) -> tuple[float, float]:
         """Seconds that bytes take, and that instructions do."""
-        bandwidth = rates.cached if self.is_cached(frame, rates) else rates.memory
-        return (
-            self.traffic(frame) / (bandwidth * 1e9),
-            frame.pixels * self.instructions(frame) / rates.instructions,
-        )
+        moved = self.traffic(frame) / (self.bandwidth(frame, rates) * 1e9)
+        return moved, frame.pixels * self.instructions(frame) / rates.instructions
+
+    def bandwidth(self, frame: Frame, rates: Rates) -> float:
+        """GB/s at which the normals move: the cache's where they fit into their share of it."""
+        return rates.cached if self.is_cached(frame, rates) else rates.memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ class Case:
     def _row(self, codec: Codec, frame: Frame) -> Row:
         size = "x".join(map(str, frame.size))
         about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "gpu": self.gpu, "size": size}
-        about |= {"reads": frame.reads, "overdraw": frame.overdraw, "bits": codec.bits, "ridge": self.rates.ridge}
+        about |= {"reads": frame.reads, "overdraw": frame.overdraw, "bits": codec.bits}
         return TABLE.empty() | about | {"family": self.rates.family} | self._about
 
 
@@ -148,6 +149,7 @@ def _figures(work: Work, frame: Frame, rates: Rates) -> Row:
     figures: Row = {"bytes_per_pixel": work.bytes, "encode": work.encode, "decode": work.decode}
     figures |= {"instructions": work.instructions(frame), "megabytes": work.traffic(frame) / 1e6}
     figures |= {"memory_us": memory * 1e6, "alu_us": alu * 1e6, "frame_us": max(memory, alu) * 1e6}
+    figures["ridge"] = rates.ridge(work.bandwidth(frame, rates))
     return figures | {"bound": "memory" if memory >= alu else "alu", "in_cache": work.is_cached(frame, rates)}
 
 

@@ -38,10 +38,9 @@ class Rates:
         """Lanes' instructions in a second."""
         return self.lanes * self.clock * 1e9
 
-    @property
-    def ridge(self) -> float:
-        """Instructions that take as long as moving one byte does."""
-        return self.instructions / (self.memory * 1e9)
+    def ridge(self, bandwidth: float) -> float:
+        """Instructions that take as long as moving one byte does at so many GB/s."""
+        return self.instructions / (bandwidth * 1e9)
 
 
 # Shading units, boost clock, memory bandwidth by product pages of AMD, Intel, NVIDIA, Microsoft and Valve.
@@ -66,6 +65,8 @@ GPUS: Mapping[str, Rates] = MappingProxyType(
     }
 )
 USUAL = "rx480,rx6800xt,steam_deck,iris_xe"
+# Of a GPU that misses them in a message.
+SUCH = MappingProxyType({"lanes": 2304, "clock": 2.2, "memory": 448})
 # The least and the most that a setting may be.
 RANGES = MappingProxyType(
     {"lanes": (1.0, 1e6), "clock": (0.01, 100.0), "memory": (0.1, 1e6), "cache": (0.0, 1e5), "cached": (0.0, 1e7)}
@@ -87,14 +88,16 @@ def gpus_named(words: str) -> dict[str, Rates]:
 
 def _gpu(word: str) -> tuple[str, Rates]:
     name, *settings = word.split(":")
-    changed = dict(_setting(word, setting) for setting in settings)
+    found = [_setting(word, setting) for setting in settings]
+    changed = dict(found)
+    if len(changed) < len(found):
+        raise UsageError(f"--gpu {word}: a setting is given twice")
     if name in GPUS:
         made = replace(GPUS[name], **changed)
     elif name in FAMILIES:
         if missing := [one for one in ("lanes", "clock", "memory") if one not in changed]:
-            raise UsageError(
-                f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {name}:{missing[0]}=2"
-            )
+            such = ":".join([word, *(f"{one}={SUCH[one]}" for one in missing)])
+            raise UsageError(f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {such}")
         made = Rates(FAMILIES[name].title, name, **changed)
     else:
         raise UsageError(f"--gpu {word}: unknown GPU; known: all, {', '.join(GPUS)}, or a family with its rates")

@@ -66,7 +66,7 @@ COLUMNS = (
     Column("bound", "Which of the two is longer: memory or alu.", HOW),
     Column("rank", "The place by frame_us among the codes on this GPU, size and reads; equal ones share it.", HOW),
     Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),
-    Column("ridge", "Instructions that take as long as one byte from memory on this GPU.", HOW, drops=6),
+    Column("ridge", "Instructions that take as long as one byte does, at the bandwidth of the row.", HOW, drops=6),
     Column("overdraw", "How often each pixel's normal is encoded and written.", HOW, drops=10),
     Column("family", "The GPU family that instructions are counted for.", HOW, drops=9),
     Column("driver", "The compiler of the counts.", HOW, drops=11),

@@ -62,13 +62,17 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """A table for each GPU and size, the fastest code first, of the fewest reads."""
-    hidden = ("encoding", "storage", "gpu", "size", "overdraw", "ridge", "family", "driver", "in_cache", "skipped")
+    hidden = ["encoding", "storage", "gpu", "size", "overdraw", "ridge", "family", "driver", "skipped"]
     known = [row for row in rows if row["frame_us"] is not None]
     for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
         part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]
-        about = f"one byte takes as long as {part[0]['ridge']:.3g} instructions, {part[0]['driver']}"
+        ridges = {row["in_cache"]: f"{row['ridge']:.3g} instructions" for row in part}
+        memory = f"a byte from memory takes as long as {ridges[False]}" if False in ridges else ""
+        cache = f"a byte from the cache as long as {ridges[True]}" if True in ridges else ""
+        about = ", ".join(filter(None, (memory, cache, part[0]["driver"])))
+        unseen = hidden if cache else [*hidden, "in_cache"]
         lines = [
-            {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in hidden}
+            {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in unseen}
             for row in part
         ]
         yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines))
@@ -131,8 +135,9 @@ def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
     usable = having(rows, "instructions", "bytes_per_pixel")
     if usable:
         said = (
-            "Each code by the instructions and the bytes of a pixel and frame. Above the GPU's line a code's bytes "
-            "take longer than its instructions, below it the instructions do. The figures are in the table."
+            "Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the first size. "
+            "Above the GPU's line a code's bytes take longer than its instructions, below it the instructions do. The "
+            "dashed line is for codes that the cache holds. The figures are in the table."
         )
         yield drawing(
             "roofline", "Bytes against instructions", said, usable, charts.roofline_chart, charts.roofline_specs

@@ -14,6 +14,7 @@ from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.roofline import measure
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
 from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named
+from normalbench.reports.charts import roofline
 
 FULL_HD = (1920, 1080)
 ONE = Rates("of one lane", "navi21", 1, 1.0, 1.0)
@@ -31,7 +32,7 @@ def test_times_are_bytes_over_bandwidth_and_instructions_over_the_rate():
     memory, alu = Work(2, 16, 18).times(frame(4, overdraw=1.5), rates)
     assert memory == pytest.approx(2073600 * 2 * 5.5 / 512e9)
     assert alu == pytest.approx(2073600 * 96 / 10.368e12)
-    assert rates.ridge == pytest.approx(20.25)
+    assert rates.ridge(512) == pytest.approx(20.25)
 
 
 def test_normals_that_fit_into_their_share_of_the_cache_have_its_bandwidth():
@@ -70,6 +71,22 @@ def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_by
     assert from_reads(worse, a, ONE, frame(1)) == "never"
 
 
+def test_a_point_lies_above_its_line_where_memory_takes_longer():
+    """Of codes in memory and of codes that the cache holds."""
+    rates = Rates("", "navi21", 1, 1.0, 1, 20, 4)
+    rows = []
+    for at, work in enumerate((Work(2, 1, 1), Work(2, 20, 20), Work(9, 10, 10), Work(9, 50, 50))):
+        about = {"encoding": f"e{at}", "storage": "s", "gpu": "g", "size": "1920x1080", "reads": 1, "overdraw": 1.0}
+        rows.append(about | measure._figures(work, frame(1), rates))
+    assert [row["in_cache"] for row in rows] == [True, True, False, False]
+    found = roofline.points(rows)
+    lines = roofline.ridge_lines(found, "g")
+    for row, point in zip(rows, found, strict=True):
+        on_line = min(lines[row["in_cache"]], key=lambda place: abs(place[0] - point["x"]))
+        slope = on_line[1] / on_line[0]
+        assert (point["y"] > slope * point["x"]) == (row["bound"] == "memory"), row
+
+
 def test_equal_codes_share_a_rank():
     rows = [
         {"gpu": "g", "size": "s", "reads": 1, "frame_us": us, "code": name}
@@ -104,7 +121,8 @@ def test_a_users_own_rates():
     "words, said",
     [
         ("rx9999", "unknown GPU; known: all, rx480"),
-        ("navi21:clock=2", "a GPU of a family needs lanes, memory, such as navi21:lanes=2"),
+        ("navi21:clock=2", "needs lanes, memory, such as navi21:clock=2:lanes=2304:memory=448"),
+        ("rx480:clock=1:clock=2", "a setting is given twice"),
         ("rx480:speed=3", "unknown setting 'speed=3'; known: lanes, clock, memory"),
         ("rx480:title=mine", "unknown setting"),
         ("rx480:clock", "unknown setting 'clock'"),
@@ -179,7 +197,11 @@ def test_rows_are_the_counts_of_cost_and_the_answer_stands_below(run, tmp_path):
         False,
     )
     assert rows["xyz", "rgba16f", "1920x1080"]["alu_us"] == 0
+    # 4608 lanes of 2.25 GHz against 1664 GB/s of the cache and 512 of memory.
+    ridges = [row["ridge"] for row in (small, rows["octahedral", "rgba16f", "3840x2160"])]
+    assert ridges == pytest.approx([6.2308, 20.25], abs=1e-4)
     _, shown, _ = run("roofline", *words)
+    assert "a byte from memory takes as long as 20.2 instructions, a byte from the cache as long as 6.23" in shown
     assert "rx6800xt: octahedral rg8 is faster than xyz rgba16f: always" in shown
 
 
