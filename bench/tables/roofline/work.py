@@ -66,11 +66,11 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     known = [row for row in rows if row["frame_us"] is not None]
     for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
         part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]
-        ridges = {row["in_cache"]: f"{row['ridge']:.3g} instructions" for row in part}
-        memory = f"a byte from memory takes as long as {ridges[False]}" if False in ridges else ""
-        cache = f"a byte from the cache as long as {ridges[True]}" if True in ridges else ""
-        about = ", ".join(filter(None, (memory, cache, part[0]["driver"])))
-        unseen = hidden if cache else [*hidden, "in_cache"]
+        ridges = {row["in_cache"]: row["ridge"] for row in part}
+        places = (("memory", False), ("the cache", True))
+        takes = [f"a byte from {w} takes as long as {ridges[c]:.3g} instructions" for w, c in places if c in ridges]
+        about = ", ".join([*takes, part[0]["driver"]])
+        unseen = hidden if True in ridges else [*hidden, "in_cache"]
         lines = [
             {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in unseen}
             for row in part

@@ -201,7 +201,7 @@ def test_rows_are_the_counts_of_cost_and_the_answer_stands_below(run, tmp_path):
     ridges = [row["ridge"] for row in (small, rows["octahedral", "rgba16f", "3840x2160"])]
     assert ridges == pytest.approx([6.2308, 20.25], abs=1e-4)
     _, shown, _ = run("roofline", *words)
-    assert "a byte from memory takes as long as 20.2 instructions, a byte from the cache as long as 6.23" in shown
+    assert "a byte from memory takes as long as 20.2 instructions, a byte from the cache takes as long as 6.23" in shown
     assert "rx6800xt: octahedral rg8 is faster than xyz rgba16f: always" in shown
 
 
