@@ -82,10 +82,14 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
 
 
 class NoRowError(AssertionError):
-    """A baseline has no such row."""
+    """A baseline has no such row.
 
-    def __init__(self, path: Path, said: str, writer: str):
-        super().__init__(f"{path} has no row {said}; {writer} writes it")
+    Attributes:
+        said: what the row is called.
+    """
+
+    def __init__(self, message: str, said: str = ""):
+        super().__init__(message)
         self.said = said
 
 
@@ -121,7 +125,8 @@ class Baseline:
             self._read = read_baseline(self.path) if self.path.exists() else {}
         before = self._read.get(_text(one))
         if before is None:
-            raise NoRowError(self.path, f"{_name(one)}{self._other_compilers(one)}", self.writer)
+            said = f"{_name(one)}{self._other_compilers(one)}"
+            raise NoRowError(f"{self.path} has no row {said}; {self.writer} writes it", said)
         found = list(changes(before["row"], one["row"], tolerances))
         if found and before.get("listing") and one.get("listing"):
             changed = list(listing_differences(before["listing"], one["listing"]))
