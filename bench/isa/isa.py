@@ -197,6 +197,8 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
 
 def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
     """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
+    if not jobs:
+        return []
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
     if reason := missing(library):
         return [Failure(reason, True)] * len(jobs)
