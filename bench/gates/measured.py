@@ -23,13 +23,18 @@ class Found:
 
     Attributes:
         asked: every option that it was measured with; empty of a run's rows.
-        listing: the instructions that it was counted in; empty where there are none.
+        list_it: gives the instructions that it was counted in, or None.
     """
 
     row: Row
     find: Callable[[], Worst | None]
     asked: Mapping[str, Any] = field(default_factory=dict)
-    listing: str = ""
+    list_it: Callable[[], str | None] = lambda: None
+
+    @property
+    def listing(self) -> str:
+        """The instructions that it was counted in; empty where there are none."""
+        return self.list_it() or ""
 
     @cached_property
     def worst(self) -> Worst | None:
@@ -69,7 +74,7 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
 
 
 def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Found:
-    return Found(row, partial(table.work.worst, step), options, table.work.listing(step, row) or "")
+    return Found(row, partial(table.work.worst, step), options, partial(table.work.listing, step, row))
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import IO
 
@@ -35,12 +35,21 @@ def limit_this_process() -> None:
     """Memory, processor time and files; what goes beyond ends this process and no other."""
     import resource
 
-    limits = {
-        resource.RLIMIT_DATA: MEMORY,
-        resource.RLIMIT_CPU: SECONDS,
-        resource.RLIMIT_FSIZE: FILE,
-        resource.RLIMIT_CORE: 0,
-    }
+    limit_to({resource.RLIMIT_CPU: SECONDS, resource.RLIMIT_FSIZE: FILE, resource.RLIMIT_CORE: 0})
+    limit_memory(MEMORY)
+
+
+def limit_memory(most: int) -> None:
+    """This process's data, in bytes."""
+    import resource
+
+    limit_to({resource.RLIMIT_DATA: most})
+
+
+def limit_to(limits: Mapping[int, int]) -> None:
+    """This process's resources, by their numbers; never more than they were."""
+    import resource
+
     for limit, most in limits.items():
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))

@@ -10,6 +10,7 @@ RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk
 # NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
 NVRTC = "libnvrtc"
 R600, TURNIP, V3DV = "r600_dri", "libvulkan_freedreno", "libvulkan_broadcom"
+FRAGMENT = "fragment"
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,12 @@ TITLES = MappingProxyType(
         V3DV: "Broadcom v3dv",
     }
 )
+
+
+def usual_stage(family: str) -> str:
+    """Fragment shaders, or what a family is counted for where it has none of these."""
+    stages = FAMILIES[family].stages if family in FAMILIES else (FRAGMENT,)
+    return FRAGMENT if FRAGMENT in stages else stages[0]
 
 
 def titled(vendor: str) -> str:

@@ -23,7 +23,7 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
-from ..options.gpu_families import FAMILIES
+from ..options.gpu_families import FAMILIES, usual_stage
 from ..output import cache
 from ..output.errors import UsageError, tell
 from ..output.sources import sources
@@ -344,12 +344,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
     """The rows that have instructions: of fragment shaders, or of what else a family has where it has none."""
     rows = [r for r in tables.get("cost", ()) if r.get("family") and is_number(r.get("instructions"))]
-    return [row for row in rows if row.get("stage") == _stage_of(str(row["family"]))]
-
-
-def _stage_of(family: str) -> str:
-    stages = FAMILIES[family].stages if family in FAMILIES else (STAGE,)
-    return STAGE if STAGE in stages else stages[0]
+    return [row for row in rows if row.get("stage") == usual_stage(str(row["family"]))]
 
 
 def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
@@ -369,7 +364,7 @@ def _panels(
         for operation in OPERATIONS:
             points = list(_points(rows, operation, errors, lost))
             if points:
-                title = f"{operation}: instructions for {machine}, {_stage_of(family)} shaders"
+                title = f"{operation}: instructions for {machine}, {usual_stage(family)} shaders"
                 unit = f"instructions to {operation}, with its storage's"
                 about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
                 yield Panel(title, unit, points, **about)

@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from .pareto import LINEAR_TO, TICKS, Error, Panel, Point, pareto_front
-from .specs import INK, IS_PICKED, Row, Spec, by_bits, if_lit, rounded, shape_by_bits, spec, tips, titled
+from .specs import INK, IS_PICKED, Row, Spec, by_bits, if_lit, rounded, shape_by_bits, spec, switched, tips, titled
 
 HEIGHT = 420
 # Pixels from one label's line to the next's.
@@ -39,10 +39,7 @@ def _chart(panels: Sequence[Panel], error: Error) -> Spec:
     parts: dict[str, Any] = {"encoding": {"x": x, "y": y}, "layer": list(_layers(rows, machines)), "height": HEIGHT}
     if len(machines) > 1:
         usual = next(panel.machine for panel in panels if panel.is_usual)
-        parts["params"] = [{"name": "machine", "value": usual}]
-        # The page makes a control of it, one for all charts of a figure.
-        parts["usermeta"] = {"switch": {"param": "machine", "label": "GPU", "options": machines}}
-        parts["transform"] = [{"filter": "datum.machine == machine"}]
+        parts |= switched(machines, usual)
         parts["title"] = titled("") | {"text": {"expr": f"'{panels[0].kind}, ' + machine"}}
     else:
         parts["title"] = titled(panels[0].title)

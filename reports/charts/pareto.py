@@ -188,12 +188,16 @@ def _draw(axis: Any, panel: Panel, error: Error, styles: dict[int, dict[str, str
     if not error.more_is_better:
         axis.set_yscale("log")
     if panel.is_counted:
-        axis.set_xscale("symlog", linthresh=LINEAR_TO)
-        most = max(point.cost for point in panel.points)
-        ticks = [tick for tick in TICKS if tick <= 1.3 * most]
-        axis.set_xticks(ticks, list(map(str, ticks)), minor=False)
-        axis.set_xticks([], minor=True)
+        count_axis(axis, max(point.cost for point in panel.points))
     axis.grid(alpha=0.3)
+
+
+def count_axis(axis: Any, most: float) -> None:
+    """Makes an axis across one of instructions up to a count: logarithmic beyond the first few."""
+    axis.set_xscale("symlog", linthresh=LINEAR_TO)
+    ticks = [tick for tick in TICKS if tick <= 1.3 * most]
+    axis.set_xticks(ticks, list(map(str, ticks)), minor=False)
+    axis.set_xticks([], minor=True)
 
 
 def _bars(axis: Any, points: Sequence[Point], colour: str) -> None:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from .charts import Row, codec_label
-from .pareto import LINEAR_TO, TICKS
+from .pareto import LINEAR_TO, TICKS, count_axis
 from .plots import COLOURS, MARKERS, drawn_off_screen
-from .specs import CONFIG, INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, tips, titled
+from .specs import CONFIG, INK, PALETTE, SHAPES, Spec, if_lit, rounded, spec, switched, tips, titled
 
 STEPS = 40
 DASHES: Spec = {"field": "where", "type": "nominal", "legend": None}
@@ -45,10 +45,6 @@ def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, 
 def _bytes(found: Sequence[Row]) -> tuple[float, float]:
     """The axis of bytes, which has room for the points alone."""
     return min(point["y"] for point in found) / 1.5, max(point["y"] for point in found) * 1.5
-
-
-def _ticks(found: Sequence[Row]) -> list[int]:
-    return [tick for tick in TICKS if tick <= 1.3 * max(point["x"] for point in found)]
 
 
 def _names(found: Sequence[Row], column: str) -> list[str]:
@@ -91,10 +87,9 @@ def _axes(axis: Any, found: Sequence[Row], gpu: str) -> None:
     axis.set_xlabel(
         f"instructions of a pixel and frame, {found[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}"
     )
-    axis.set_xscale("symlog", linthresh=LINEAR_TO)
-    axis.set_xlim(-1, 1.3 * max(point["x"] for point in found) + 1)
-    axis.set_xticks(_ticks(found), list(map(str, _ticks(found))))
-    axis.set_xticks([], minor=True)
+    most = max(point["x"] for point in found)
+    count_axis(axis, most)
+    axis.set_xlim(-1, 1.3 * most + 1)
     for which in (axis.yaxis.set_major_formatter, axis.yaxis.set_minor_formatter):
         which("{x:g}")
     axis.tick_params(axis="y", which="both", labelsize=7)
@@ -133,34 +128,32 @@ def roofline_specs(rows: Sequence[Row]) -> list[Spec]:
         | {"x": rounded(point["x"]), "y": rounded(point["y"])}
         for point in found
     ]
-    shown = [{"filter": "datum.machine == machine"}]
+    switch = switched(gpus, gpus[0])
     layers = [
         {
             "data": {"values": lines},
-            "transform": shown,
+            "transform": switch["transform"],
             "mark": {"type": "line", "clip": True, "color": INK, "strokeWidth": 1, "opacity": 0.6},
             "encoding": {**_places(found), "strokeDash": DASHES},
         },
         {
-            "transform": shown,
+            "transform": switch["transform"],
             "mark": {"type": "point", "filled": True, "size": 70},
             "encoding": {**_places(found), **_looks(found), "opacity": if_lit(1, 0.2)},
         },
     ]
-    params = [{"name": "machine", "value": gpus[0]}]
-    switch = {"switch": {"param": "machine", "label": "GPU", "options": gpus}}
     title = titled("") | {"text": {"expr": f"machine + ', {found[0]['size']}; line: {LINE}'"}}
     said = "Bytes over instructions of a pixel and frame. Above the line memory takes longer, below it arithmetic."
     # On a phone there is no room for two legends beside each other.
     legends = CONFIG["legend"] | {"layout": {"top": {"anchor": "start", "direction": "vertical"}}}
     parts = {"layer": layers, "height": 380, "title": title, "config": CONFIG | {"legend": legends}}
-    return [spec(data, said, params=params, usermeta=switch, **parts)]
+    return [spec(data, said, params=switch["params"], usermeta=switch["usermeta"], **parts)]
 
 
 def _places(found: Sequence[Row]) -> Spec:
     x: Spec = {"field": "x", "type": "quantitative", "title": "instructions of a pixel and frame"}
     x["scale"] = {"type": "symlog", "constant": LINEAR_TO, "nice": False, "padding": 12}
-    x["axis"] = {"values": _ticks(found)}
+    x["axis"] = {"values": [tick for tick in TICKS if tick <= 1.3 * max(point["x"] for point in found)]}
     y: Spec = {"field": "y", "type": "quantitative", "title": "bytes written and read", "axis": {"format": "~g"}}
     y["scale"] = {"type": "log", "domain": list(_bytes(found)), "nice": False}
     return {"x": x, "y": y}

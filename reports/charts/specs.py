@@ -44,6 +44,16 @@ def spec(rows: Sequence[Row], description: str, **parts: Any) -> Spec:
     return common | {"data": {"values": list(rows)}, "params": params} | parts
 
 
+def switched(machines: Sequence[str], usual: str) -> Spec:
+    """A switch between the machines of the rows, of which one is shown at a time: parts of a specification.
+
+    The page makes a control of it, one for all charts of a figure.
+    """
+    switch = {"param": "machine", "label": "GPU", "options": list(machines)}
+    shown = [{"filter": "datum.machine == machine"}]
+    return {"params": [{"name": "machine", "value": usual}], "usermeta": {"switch": switch}, "transform": shown}
+
+
 def if_lit(lit: float, other: float) -> Spec:
     """A value for what is highlighted, and one for the rest; where nothing is, everything is."""
     return {"condition": {"test": IS_LIT, "value": lit}, "value": other}

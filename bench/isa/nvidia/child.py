@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from ...machine.children import limit_memory
 from ..child import own_output
 from ..compiler import DriverError, MissingDriverError
 from . import sass, tools
@@ -32,7 +33,7 @@ MEMORY = 4 << 30
 
 def main() -> int:
     """Compile every job that standard input holds."""
-    _limit_memory()
+    limit_memory(MEMORY)
     given = json.load(sys.stdin)
     out = own_output()
 
@@ -46,13 +47,6 @@ def main() -> int:
     except DriverError as error:
         say(failed=str(error))
     return 0
-
-
-def _limit_memory() -> None:
-    import resource
-
-    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY if hard == resource.RLIM_INFINITY else min(MEMORY, hard), hard))
 
 
 def _compile_all(jobs: Sequence[dict[str, str]], architecture: str, say: Callable[..., None]) -> None:

@@ -21,7 +21,7 @@ from ...isa.nvidia import sass
 from ...isa.nvidia.source import cuda_of
 from ...isa.terascale import disassembly as terascale_disassembly
 from ...machine.cores import on_all_cores
-from ...options.gpu_families import FAMILIES, NVRTC
+from ...options.gpu_families import FAMILIES, NVRTC, R600
 from ...output.errors import MissingError
 from .table import TABLE
 
@@ -124,12 +124,13 @@ class Prepared:
         return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
-def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure:
-    """A case's kernels, or why there are none. Raises MissingError where there is no compiler of SPIR-V."""
+def prepare(case: Case, stage: str, as_cuda: bool = False, as_glsl: bool = False) -> Prepared | Failure:
+    """A case's kernels, as CUDA and for drivers of GL where that is asked, or why there are none. Raises MissingError
+    where there is no compiler of SPIR-V."""
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
-            _job(o, stage, operation.is_portable) for o in (operation, operation.empty)
+            _job(o, stage, operation.is_portable, as_glsl) for o in (operation, operation.empty)
         )
     except spirv.ToolError as error:
         return Failure(str(error))
@@ -149,15 +150,20 @@ def _as_cuda(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | 
     return job, empty
 
 
+def _library(family: str) -> str:
+    return FAMILIES[family].library if family in FAMILIES else ""
+
+
 def _takes_cuda(family: str) -> bool:
-    return family in FAMILIES and FAMILIES[family].library == NVRTC
+    return _library(family) == NVRTC
 
 
-def _job(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | None]:
+def _job(operation: Operation, stage: str, counted: bool, as_glsl: bool) -> tuple[Job, int | None]:
     module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
     # A vertex shader feeds each fragment shader; a compute shader has none.
     vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
-    bare = [operation.source(f"kernel_bare.{kind}").text for kind in ("frag", "vert")] if stage == "fragment" else []
+    kinds = ("frag", "vert") if as_glsl and stage == "fragment" else ()
+    bare = [operation.source(f"kernel_bare.{kind}").text for kind in kinds]
     return Job(stage, module.binary, vertex, *bare), module.instructions
 
 
@@ -184,8 +190,8 @@ def isa_rows(
     compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
-    takes_cuda = any(map(_takes_cuda, families))
-    prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair), pairs))
+    takes_cuda, takes_glsl = (any(_library(f) == library for f in families) for library in (NVRTC, R600))
+    prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair, takes_glsl), pairs))
     outcomes: dict[tuple[str, Job], Outcome] = {}
     for some in ([f for f in families if _takes_cuda(f) == is_cuda] for is_cuda in (False, True)):
         outcomes |= isa.compile_all(_jobs(prepared, some[0]), some, tick) if some else {}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -84,6 +84,11 @@ class Costing:
     def cases(self) -> list[measure.Case]:
         """What is compiled or timed: encodings, and what packings add."""
         return measure.cases(self.encodings, self.packings, self.operations)
+
+    @cached_property
+    def texts(self) -> dict[str, str]:
+        """The kernels that rows were counted in, by the rows' names; once they are counted."""
+        return {TABLE.name_of(row): text for row, text in self.listed if text}
 
     @property
     def drawn_storages(self) -> list[Storage]:
@@ -282,8 +287,7 @@ def _plot(done: Measured) -> bool:
 
 def _listing(step: Step, row: Row) -> str | None:
     """The kernel that a row was counted in; None of what no compiler made."""
-    name = TABLE.name_of(row)
-    return next((text for one, text in step.case.asked.listed if TABLE.name_of(one) == name and text), None)
+    return step.case.asked.texts.get(TABLE.name_of(row))
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:

@@ -5,7 +5,7 @@ Williams, Waterman, Patterson (2009), Roofline: An Insightful Visual Performance
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod
@@ -13,14 +13,13 @@ from typing import Any
 
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.defines.packings import SIGN, packing_of
-from ...options.gpu_families import FAMILIES
+from ...options.gpu_families import usual_stage
 from ..cost import measure as cost
 from ..cost.codec_costs import Costs, LeftOutError, Where
 from .rates import Rates
 from .table import TABLE
 
 Row = dict[str, Any]
-STAGE = "fragment"
 # Full-rate instructions where a family's rates are known, and instructions as they are elsewhere.
 COLUMNS = ("issue_slots", "instructions")
 # Two times that differ by less are one: counts are whole numbers.
@@ -89,59 +88,53 @@ class Case:
 
     def rows(self) -> Iterator[Row]:
         """A row for each code and frame."""
+        driver = next((row["driver"] for row in self._counts if row["driver"]), None)
         for codec in self.codecs:
-            found = self.work(codec)
+            found = self._works[codec]
             for frame in self.frames:
-                yield self._row(codec, frame) | (_figures(found, frame, self.rates) if found else self._lost[codec])
+                row = self._row(codec, frame) | {"driver": driver}
+                yield row | ({"skipped": found} if isinstance(found, str) else _figures(found, frame, self.rates))
 
     def work(self, codec: Codec) -> Work | None:
         """What a code takes; None where it is not known."""
-        return self._works.get(codec)
+        found = self._works[codec]
+        return None if isinstance(found, str) else found
 
     @cached_property
-    def _works(self) -> dict[Codec, Work]:
+    def _works(self) -> dict[Codec, Work | str]:
+        """What each code takes, or why it is not known."""
+        costs = Costs(self._counts)
+        lost = next((row["skipped"] for row in self._counts if row["skipped"] and not row["encoding"]), None)
+        found: dict[Codec, Work | str] = {}
+        for codec in self.codecs:
+            try:
+                encode, decode = (self._counted(costs, codec, operation) for operation in cost.OPERATIONS)
+                found[codec] = Work(codec.bits / 8, encode, decode)
+            except LeftOutError as reason:
+                found[codec] = lost or str(reason)
+        return found
+
+    def _counted(self, costs: Costs, codec: Codec, operation: str) -> float:
+        column = COLUMNS[all(row[COLUMNS[0]] is None for row in self._counts)]
+        return costs.of(codec, Where("isa", self.rates.family, self._stage), operation, column).cost
+
+    @cached_property
+    def _counts(self) -> list[Row]:
+        """The rows of cost that the codes' are made of."""
         packings = dict.fromkeys(packing_of(codec) for codec in self.codecs)
         encodings = dict.fromkeys(codec.encoding for codec in self.codecs)
         chosen = cost.cases(encodings, [*packings, *SIGN], cost.OPERATIONS)
-        rows = [row for row, _ in cost.isa_rows(chosen, [self._stage], [self.rates.family], self._lacks, cost.nobody)]
-        self._about["driver"] = next((row["driver"] for row in rows if row["driver"]), None)
-        costs, found = Costs(rows), {}
-        for codec in self.codecs:
-            try:
-                encode, decode = (self._counted(costs, rows, codec, operation) for operation in cost.OPERATIONS)
-                found[codec] = Work(codec.bits / 8, encode, decode)
-            except LeftOutError as reason:
-                said = next((row["skipped"] for row in rows if row["skipped"] and not row["encoding"]), None)
-                self._lost[codec] = {"skipped": said or str(reason)}
-        return found
-
-    def _counted(self, costs: Costs, rows: Sequence[Row], codec: Codec, operation: str) -> float:
-        column = COLUMNS[all(row[COLUMNS[0]] is None for row in rows)]
-        return costs.of(codec, Where("isa", self.rates.family, self._stage), operation, column).cost
+        return [row for row, _ in cost.isa_rows(chosen, [self._stage], [self.rates.family], [], cost.nobody)]
 
     @property
     def _stage(self) -> str:
-        """Fragment shaders, or what the family's compiler makes."""
-        stages = FAMILIES[self.rates.family].stages
-        return STAGE if STAGE in stages else stages[0]
-
-    @cached_property
-    def _lacks(self) -> list[str]:
-        return []
-
-    @cached_property
-    def _lost(self) -> dict[Codec, Row]:
-        return {}
-
-    @cached_property
-    def _about(self) -> Row:
-        return {}
+        return usual_stage(self.rates.family)
 
     def _row(self, codec: Codec, frame: Frame) -> Row:
         size = "x".join(map(str, frame.size))
         about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "gpu": self.gpu, "size": size}
         about |= {"reads": frame.reads, "overdraw": frame.overdraw, "bits": codec.bits}
-        return TABLE.empty() | about | {"family": self.rates.family} | self._about
+        return TABLE.empty() | about | {"family": self.rates.family}
 
 
 def _figures(work: Work, frame: Frame, rates: Rates) -> Row:
@@ -191,12 +184,3 @@ def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
     if last == MOST_READS:
         return f"from {first}"
     return f"up to {last}" if first == 1 else f"from {first} to {last}"
-
-
-def works_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, Work]:
-    """What each code of rows takes, by its name."""
-    known = (row for row in rows if row["frame_us"] is not None)
-    return {
-        f"{row['encoding']} {row['storage']}": Work(row["bytes_per_pixel"], row["encode"], row["decode"])
-        for row in known
-    }

@@ -1,12 +1,11 @@
 """Instructions on GPUs of phones and small boards: what listings hold, the device that is not there, and the build."""
 
 import json
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from null_devices import NO_DEVICE, tried
 
 from normalbench.bench.isa import driver_files, isa
 from normalbench.bench.isa.mobile import build, driver, ir3_disassembly, qpu_disassembly
@@ -118,34 +117,11 @@ def test_without_a_build_the_rows_say_how_to_build(run, monkeypatch):
         require_mobile()
 
 
-# What a process with the null device finds: errno of each try, 0 where it works, and the driver's version.
-TRIES = """
-import fcntl, json, os
-def tried(what):
-    try:
-        what()
-    except OSError as error:
-        return error.errno
-    return 0
-zero, null = os.open("/dev/zero", os.O_RDWR), os.open("/dev/null", os.O_RDWR)
-version = bytearray(64)
-print(json.dumps([
-    tried(lambda: fcntl.ioctl(zero, 0xC0406400, version)),
-    tried(lambda: fcntl.ioctl(null, 0xC0406400, bytearray(64))),
-    tried(lambda: os.open("/dev/dri/renderD128", os.O_RDWR)),
-    list(version[:12:4]),
-]))
-"""
-NO_DEVICE = 19  # ENODEV
-
-
 @pytest.mark.usefixtures("intel", "own_cache")
 @pytest.mark.parametrize("family, version", [("a630", [1, 9, 0]), ("v3d42", [1, 0, 0])])
 def test_the_null_device_answers_for_itself_alone(family, version):
     told = driver.variables(FAMILIES[family].null_device)
-    asked = [sys.executable, "-c", TRIES]
-    done = subprocess.run(asked, capture_output=True, text=True, env=os.environ | told, check=True)
-    assert json.loads(done.stdout) == [0, NO_DEVICE, NO_DEVICE, version]
+    assert tried(told) == [0, NO_DEVICE, NO_DEVICE, version]
 
 
 def script(folder: Path, name: str, text: str) -> None:

@@ -1,13 +1,12 @@
 """Instructions by Mesa's r600 for the article's Radeons: what listings hold, and the device that is not there."""
 
 import json
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from null_devices import NO_DEVICE, tried
 
 from normalbench.bench.isa import isa, null_device
 from normalbench.bench.isa import process as isa_process
@@ -168,32 +167,9 @@ def test_a_machine_without_the_driver_says_what_to_install(run, monkeypatch):
     assert status == 3 and driver.NO_DRIVER in err and "instructions" in json.loads(out)[0]
 
 
-# What a process with the null device finds: errno of each try, 0 where it works, and the driver's version.
-TRIES = """
-import fcntl, json, os
-def tried(what):
-    try:
-        what()
-    except OSError as error:
-        return error.errno
-    return 0
-zero, null = os.open("/dev/zero", os.O_RDWR), os.open("/dev/null", os.O_RDWR)
-version = bytearray(64)
-print(json.dumps([
-    tried(lambda: fcntl.ioctl(zero, 0xC0406400, version)),
-    tried(lambda: fcntl.ioctl(null, 0xC0406400, bytearray(64))),
-    tried(lambda: os.open("/dev/dri/renderD128", os.O_RDWR)),
-    list(version[:12:4]),
-]))
-"""
-NO_DEVICE = 19  # ENODEV
-
-
 @pytest.mark.usefixtures("terascale", "own_cache")
 def test_the_null_device_answers_for_itself_alone():
     """It is radeon 2.50.0; DRM requests on other files and the opening of real devices are refused."""
     told = driver.variables(FAMILIES["cypress"].null_device)
-    asked = [sys.executable, "-c", TRIES]
-    done = subprocess.run(asked, capture_output=True, text=True, env=os.environ | told, check=True)
-    assert json.loads(done.stdout) == [0, NO_DEVICE, NO_DEVICE, [2, 50, 0]]
+    assert tried(told) == [0, NO_DEVICE, NO_DEVICE, [2, 50, 0]]
     assert re.fullmatch(r"null_radeon-\w{16}-\w{16}\.so", null_device.library(driver.SOURCE).name)
