@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import itertools
 import math
+import operator
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -19,37 +21,35 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ...encodings.codecs.codec import Codec
 from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
 from ..machine.cores import on_all_cores
 from .angles import angles_deg
+from .histogram import BINS, bin_of, bins_of, counts_below, counts_by_angle, percentile, tally
 
-BLOCK = 2**14
-FAST_BLOCK = 2**15
-LANES = 256
-# Bins of the angle's histogram: the upper bits of a float32, ten of them mantissa, from 2^-40 degrees to 180 and above.
-BIN_SHIFT = 13
-FIRST_BIN = int(np.float32(2.0**-40).view(np.uint32)) >> BIN_SHIFT
-BINS = (int(np.float32(256.0).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN
-UNCOVERED = BINS
-# A row keeps eight bins of an octave: three bits of mantissa.
-BINS_TOGETHER = 2**7
+# Lanes that are summed apart, and the rows added to them at a time. XLA copies a computation into each of its uses, up
+# to 15, and computes it anew for each. With 16 rows each number is computed once.
+SUM_LANES, ROWS = 1024, 16
+# A row's article error is at most 3 x 255^2 = 2^17.6: the sum of up to 86 rows leaves the bits from here to others.
+INVALID_BIT = 24
+# An angle in float32 below this share of another one is the smaller of the two in float64 as well.
+SAME_ANGLE = 0.999
 
 
 def idle() -> None:
     """What is done at each chunk when nobody watches."""
 
 
-class Sums(NamedTuple):
-    """Sums over lanes: squared error, the article's squared error (in units of 1/255), angle and its square (degrees),
-    and how many decodes were no number."""
+class Figures(NamedTuple):
+    """Of the covered normals of a chunk: sums of the squared error, of the article's squared error (in units of 1/255),
+    of the angle and of its square (degrees), how many decodes were not numbers, and the largest angle."""
 
     squared: Any
     article_squared: Any
     angle: Any
     angle_squared: Any
     invalid: Any
+    largest: Any
 
 
 def angle_between(a: Vec3, b: Vec3):
@@ -66,7 +66,8 @@ def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
 
 
 def _errors(n: Vec3, decoded: Vec3, covered):
-    """Per normal: squared error, the article's squared error, angle, and 1 where the decode is not a number.
+    """Per normal: squared error (float32), the article's squared error with 2^INVALID_BIT added where the decode is not
+    a number (int32), and angle (float32).
 
     Such a decode counts as the opposite direction.
     """
@@ -74,14 +75,9 @@ def _errors(n: Vec3, decoded: Vec3, covered):
     difference = select(covered, n - decoded, n * 0.0)
     # The article's difference image was |n - n'| in eight bits per channel.
     eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
+    invalid = jnp.asarray(~finite & covered, jnp.int32) << INVALID_BIT
     angle = jnp.where(covered, angle_between(n, decoded), 0.0)
-    invalid = jnp.where(finite | ~covered, 0.0, 1.0).astype(jnp.float32)
-    return dot(difference, difference), dot(eighths, eighths), angle, invalid
-
-
-def _histogram_key(angle, covered):
-    key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
-    return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED)
+    return dot(difference, difference), jnp.asarray(dot(eighths, eighths), jnp.int32) + invalid, angle
 
 
 class Decoded(NamedTuple):
@@ -93,82 +89,48 @@ class Decoded(NamedTuple):
 
 
 def _blocks(chunk):
-    return jax.tree.map(lambda a: a.reshape(-1, BLOCK // LANES, LANES), chunk)
+    return jax.tree.map(lambda a: a.reshape(-1, ROWS, SUM_LANES), chunk)
+
+
+def _as_it_is(row):
+    return row
+
+
+def _added(start, rows, of=_as_it_is):
+    """`of` a lane's numbers added one row after the other: the same bits however many rows a block has.
+
+    A row is computed and converted when it is added. XLA would write whole blocks in float64 first.
+    """
+    return reduce(operator.add, (of(rows[row]).astype(start.dtype) for row in range(ROWS)), start)
 
 
 def _traced_scan(chunk: Decoded):
-    """Sums (float64 over lanes), the largest angle and each normal's histogram bin, for one chunk."""
+    """Figures of one chunk, float64 in the order of `Figures`; how many normals lie in each bin; each normal's bin."""
 
-    def step(carry, block: Decoded):
-        sums, largest = carry
-        squared, article_squared, angle, invalid = _errors(*block)
-        key = _histogram_key(angle, block.covered)
+    def step(carry: Figures, block: Decoded):
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
-        squared, article_squared, angle, invalid, key = jax.lax.optimization_barrier(
-            (squared, article_squared, angle, invalid, key)
+        squared, article, angle = jax.lax.optimization_barrier(_errors(*block))
+        article = _added(jnp.zeros(SUM_LANES, jnp.int32), article).astype(jnp.int64)
+        added = Figures(
+            squared=_added(carry.squared, squared),
+            article_squared=carry.article_squared + article % 2**INVALID_BIT,
+            angle=_added(carry.angle, angle),
+            angle_squared=_added(carry.angle_squared, angle, lambda row: row * row),
+            invalid=carry.invalid + (article >> INVALID_BIT),
+            largest=reduce(jnp.maximum, (angle[row] for row in range(ROWS)), carry.largest),
         )
-        parts = (squared, article_squared, angle, angle * angle, invalid)
-        added = Sums(*(s + p.astype(jnp.float64).sum(0) for s, p in zip(sums, parts, strict=True)))
-        return (added, jnp.maximum(largest, angle.max(0))), key
+        return added, bins_of(angle, block.covered)
 
-    zero = jnp.zeros(LANES, jnp.float64)
-    start = (Sums(*[zero] * len(Sums._fields)), zero.astype(jnp.float32))
-    (sums, largest), keys = jax.lax.scan(step, start, _blocks(chunk))
-    return Sums(*(s.sum() for s in sums)), largest.max(), keys.ravel()
-
-
-def compiled(function):
-    """`function` jitted with the widest vectors XLA will use: 1.2 to 1.5 times as fast where there are 512 bits."""
-    wide = jax.jit(function, compiler_options={"xla_cpu_prefer_vector_width": 512})
-    usable = [wide]
-
-    def call(*arguments):
-        try:
-            return usable[0](*arguments)
-        except Exception:
-            # The option is XLA's own affair and may go away, and another back end has never heard of it. Whatever else
-            # was wrong is raised again by the plain function.
-            if usable[0] is not wide:
-                raise
-            usable[0] = jax.jit(function)
-            return usable[0](*arguments)
-
-    return call
+    zero, whole = jnp.zeros(SUM_LANES, jnp.float64), jnp.zeros(SUM_LANES, jnp.int64)
+    start = Figures(zero, whole, zero, zero, whole, zero.astype(jnp.float32))
+    found, bins = jax.lax.scan(step, start, _blocks(chunk))
+    figures = [*(total.sum().astype(jnp.float64) for total in found[:-1]), found.largest.max().astype(jnp.float64)]
+    return jnp.stack(figures), tally(bins), bins.ravel()
 
 
-_scan = compiled(_traced_scan)
-# Sums, the largest angle, how many normals lie in each bin of the histogram, and the normal with the largest angle.
-Part = tuple[np.ndarray, float, np.ndarray, "Worst | None"]
-
-
-def squared_errors(codec: Codec):
-    """The fastest path: squared error alone, over normals in memory.
-
-    Returns:
-        a function of (n, view), planes of a multiple of FAST_BLOCK float32 normals, that gives the sum and the largest
-        of |n - n'|^2, float64. One call is one core's work; run shards side by side.
-    """
-
-    def scan(n: Vec3, view: Vec3):
-        def step(carry, block):
-            total, largest = carry
-            difference = block[0] - codec.round_trip(*block)
-            squared = jax.lax.optimization_barrier(dot(difference, difference))
-            return (total + squared.sum(0).astype(jnp.float64), jnp.maximum(largest, squared.max(0))), None
-
-        blocks = jax.tree.map(lambda a: a.reshape(-1, FAST_BLOCK // LANES, LANES), (n, view))
-        start = (jnp.zeros(LANES, jnp.float64), jnp.zeros(LANES, jnp.float32))
-        (total, largest), _ = jax.lax.scan(step, start, blocks)
-        return total.sum(), largest.max().astype(jnp.float64)
-
-    call = compiled(scan)
-
-    def run(n: Vec3, view: Vec3) -> tuple[float, float]:
-        with jax.enable_x64(True):
-            total, largest = call(n, view)
-            return float(total), float(largest)
-
-    return run
+_scan = jax.jit(_traced_scan)
+# Figures, how many normals lie in each bin of the histogram, and the normal with the largest angle.
+Part = tuple[Figures, np.ndarray, "Worst | None"]
 
 
 @dataclass(frozen=True)
@@ -220,36 +182,11 @@ def psnr_db(mse: float) -> float:
     return 10 * math.log10(1 / mse) if mse > 0 else math.inf
 
 
-def _percentile(histogram: np.ndarray, largest: float, share: float) -> float:
-    """The value below which `share` of the counts lie, interpolated within its bin."""
-    cumulative = np.cumsum(histogram[:BINS])
-    rank = share * cumulative[-1]
-    index = int(np.searchsorted(cumulative, rank))
-    edges = ((np.arange(index, index + 2) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
-    within = (rank - (cumulative[index] - histogram[index])) / histogram[index]
-    return min(float(edges[0] + within * (edges[1] - edges[0])), largest) if largest else 0.0
-
-
-def _counts(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
-    counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
-    edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
-    edges[0] = 0
-    return tuple((float(edges[i]), int(counts[i])) for i in np.flatnonzero(counts))
-
-
-def _within(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
-    octave = 2 ** (23 - BIN_SHIFT)
-    below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]
-    first = np.log2(np.uint32(FIRST_BIN << BIN_SHIFT).view(np.float32))
-    return tuple((float(2.0 ** (first + k + 1)), int(count)) for k, count in enumerate(below))
-
-
-def _worst(keys: np.ndarray, n: Vec3, decoded: Vec3) -> Worst | None:
+def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
     """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
-    highest = int(np.max(keys, where=keys < BINS, initial=-1))
-    if highest < 0:
+    at = np.flatnonzero(bins == bin_of(largest))
+    if not at.size:
         return None
-    at = np.flatnonzero(keys == highest)
     normals, found = ([np.asarray(plane).ravel()[at] for plane in planes] for planes in (n, decoded))
     # What comes back as it was has an angle of 0: the first of these stands for all.
     moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
@@ -271,15 +208,27 @@ class Total:
     """What chunks add up to."""
 
     def __init__(self):
-        self.sums, self.largest, self.histogram = np.zeros(len(Sums._fields)), 0.0, np.zeros(BINS + 1, np.int64)
+        self.figures, self.histogram = Figures(*[0.0] * len(Figures._fields)), np.zeros(BINS + 1, np.int64)
         self.worst: Worst | None = None
 
+    @property
+    def met_deg(self) -> float:
+        """The largest angle so far, in float64; other threads may ask."""
+        return self.worst.angle_deg if self.worst else 0.0
+
     def add(self, part: Part) -> None:
-        """One chunk's sums, largest angle, histogram and worst normal."""
-        sums, largest, counts, worst = part
-        self.sums, self.largest, self.histogram = self.sums + sums, max(self.largest, largest), self.histogram + counts
+        """One chunk's figures, histogram and worst normal."""
+        figures, counts, worst = part
+        sums = Figures(*map(operator.add, self.figures, figures))
+        self.figures = sums._replace(largest=max(self.figures.largest, figures.largest))
+        self.histogram += counts
         if worst and (self.worst is None or worst.angle_deg > self.worst.angle_deg):
             self.worst = worst
+
+
+def _on_device(plane: Any) -> Any:
+    """A plane as JAX has it. To ask this of each is ten times as fast as to convert what is there already."""
+    return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
 
 
 class Once:
@@ -313,15 +262,17 @@ class Meter:
         """What a block is decoded as."""
         return self._decode(block, *self._given)
 
-    def one(self, load: Callable[[], Any]) -> Part:
-        """One chunk's part of the statistics."""
+    def one(self, load: Callable[[], Any], met_deg: float = 0.0) -> Part:
+        """One chunk's part of the statistics. Its worst normal is not looked for where an angle of `met_deg`, which
+        another chunk has, is larger than all of its own."""
         with jax.enable_x64(True):
-            chunk = jax.tree.map(jnp.asarray, load())
+            chunk = jax.tree.map(_on_device, load())
             decoded = self.decoded(chunk)
-            sums, largest, keys = _scan(Decoded(chunk.n, decoded, chunk.covered))
-            keys = np.asarray(keys)
-            histogram = np.bincount(keys, minlength=BINS + 1)
-            return np.array([float(s) for s in sums]), float(largest), histogram, _worst(keys, chunk.n, decoded)
+            found = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
+        figures, histogram, bins = Figures(*found[0].tolist()), *found[1:]
+        if figures.largest < SAME_ANGLE * met_deg:
+            return figures, histogram, None
+        return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
     def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
         """Statistics of a set, its chunks shared among the cores.
@@ -347,8 +298,8 @@ def measure_together(
     """
     totals = [Total() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
-    work = ((meter, once) for once in map(Once, loads) for meter in meters)
-    for part in on_all_cores(lambda item: item[0].one(item[1]), work):
+    work = ((*each, once) for once in map(Once, loads) for each in zip(meters, totals, strict=True))
+    for part in on_all_cores(lambda item: item[0].one(item[2], item[1].met_deg), work):
         index = next(whose)
         totals[index].add(part)
         tick(index)
@@ -356,20 +307,19 @@ def measure_together(
 
 
 def _statistics(pixels: int, total: Total) -> Statistics:
-    largest, histogram = total.largest, total.histogram
+    figures, histogram = total.figures, total.histogram
     count = int(histogram[:BINS].sum())
-    squared, article_squared, angle, angle_squared, invalid = total.sums
     return Statistics(
         count=count,
         pixels=pixels,
-        invalid=int(invalid),
-        mse=squared / (3 * count),
-        article_mse=article_squared / 255**2 / (3 * pixels),
-        angle_mean_deg=angle / count,
-        angle_rms_deg=math.sqrt(angle_squared / count),
-        angle_p99_deg=_percentile(histogram, largest, 0.99),
-        angle_max_deg=largest,
-        angle_counts=_counts(histogram),
-        within=_within(histogram),
+        invalid=int(figures.invalid),
+        mse=figures.squared / (3 * count),
+        article_mse=figures.article_squared / 255**2 / (3 * pixels),
+        angle_mean_deg=figures.angle / count,
+        angle_rms_deg=math.sqrt(figures.angle_squared / count),
+        angle_p99_deg=percentile(histogram, figures.largest, 0.99),
+        angle_max_deg=figures.largest,
+        angle_counts=counts_by_angle(histogram),
+        within=counts_below(histogram),
         worst=total.worst,
     )

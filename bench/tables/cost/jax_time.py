@@ -13,7 +13,7 @@ import jax.numpy as jnp
 
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
-from ...metrics.meter import FAST_BLOCK, LANES, compiled
+from ...metrics.moments import FAST_BLOCK, LANES
 from ...normals.directions import CORES, make_input
 from ...output.errors import MissingError
 from .clocks import summary
@@ -107,7 +107,7 @@ class Normals:
 
     def work(self, function: Function, size: int) -> Work:
         """A function of numbers, `size` to a normal, and views, over all of them."""
-        call = compiled(partial(total_by_blocks, function)) if self._is_cpu else jax.jit(partial(total, function))
+        call = jax.jit(partial(total_by_blocks if self._is_cpu else total, function))
         shards = [(n if size == 3 else Vec2(n.x, n.y), view) for n, view in self._shards]
         return lambda: list(self._pool.map(lambda shard: float(call(*shard)), shards))
 

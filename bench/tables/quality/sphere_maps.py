@@ -12,13 +12,14 @@ from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
+import jax
 import numpy as np
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
-from ...metrics.meter import angle_between, compiled, readable
+from ...metrics.meter import angle_between, readable
 from ...output.arrays import DamagedError, read_npz
 from ...output.writing import whole_file
 from ...worst_case.exact_figures import has_twin
@@ -81,7 +82,7 @@ def _angles(codec: Codec):
         decoded, _ = readable(n, codec.round_trip(n, ahead))
         return angle_between(n, decoded)
 
-    return compiled(angles)
+    return jax.jit(angles)
 
 
 def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:

@@ -3,6 +3,7 @@
 import math
 import re
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from exact_codes import nearest_of, storage
 
 from normalbench.bench.metrics import meter as metrics
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
-from normalbench.bench.metrics.meter import compiled
 from normalbench.bench.normals.normal_sets import from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
@@ -84,7 +84,7 @@ def test_codes_that_a_format_cannot_tell_apart_do_not_count():
 def broken(monkeypatch, angle_between) -> None:
     """Another angle in place of the measure's own, compiled anew."""
     monkeypatch.setattr(metrics, "angle_between", angle_between)
-    monkeypatch.setattr(metrics, "_scan", compiled(lambda chunk: metrics._traced_scan(chunk)))
+    monkeypatch.setattr(metrics, "_scan", jax.jit(lambda chunk: metrics._traced_scan(chunk)))
 
 
 def test_an_arc_cosine_in_float32_is_caught(monkeypatch):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from normalbench.bench.metrics import meter as metrics
+from normalbench.bench.metrics import histogram as metrics
 from normalbench.bench.normals.normal_sets import hemisphere, playground
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps
@@ -99,7 +99,7 @@ def test_a_rows_histogram_holds_every_normal_between_its_angles(backend):
 def test_no_error_at_all_is_in_the_first_bin():
     histogram = np.zeros(metrics.BINS + 1, np.int64)
     histogram[0] = 5
-    assert metrics._counts(histogram) == ((0.0, 5),)
+    assert metrics.counts_by_angle(histogram) == ((0.0, 5),)
 
 
 def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001

@@ -1,0 +1,61 @@
+"""The histogram of angles, and the figures that come from it.
+
+A bin is the upper bits of a float32, ten of them mantissa: 2^-10 of an octave, so that percentiles hold to 0.1 %. Bins
+go from 2^-40 degrees to 180 and above, and their numbers fit in 16 bits.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+
+BIN_SHIFT = 13
+FIRST_BIN = int(np.float32(2.0**-40).view(np.uint32)) >> BIN_SHIFT
+BINS = (int(np.float32(256.0).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN
+# The bin of normals that do not count.
+UNCOVERED = BINS
+# A row keeps eight bins of an octave: three bits of mantissa.
+BINS_TOGETHER = 2**7
+
+
+def bins_of(angle, covered):
+    """The bin of each angle (float32, degrees, any shape), uint16; UNCOVERED where a normal does not count."""
+    key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
+    return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED).astype(jnp.uint16)
+
+
+def bin_of(angle_deg: float) -> int:
+    """The bin of one angle."""
+    return min(max((int(np.float32(angle_deg).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN, 0), BINS - 1)
+
+
+def tally(bins):
+    """How many normals lie in each bin, int32 of shape (BINS + 1,). Integers: the order in which they are counted does
+    not matter."""
+    return jnp.zeros(BINS + 1, jnp.int32).at[bins.ravel()].add(1, mode="promise_in_bounds")
+
+
+def percentile(histogram: np.ndarray, largest: float, share: float) -> float:
+    """The value below which `share` of the counts lie, interpolated within its bin."""
+    cumulative = np.cumsum(histogram[:BINS])
+    rank = share * cumulative[-1]
+    index = int(np.searchsorted(cumulative, rank))
+    edges = ((np.arange(index, index + 2) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
+    within = (rank - (cumulative[index] - histogram[index])) / histogram[index]
+    return min(float(edges[0] + within * (edges[1] - edges[0])), largest) if largest else 0.0
+
+
+def counts_by_angle(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+    """How many angles lie in each eighth of an octave that has any, by its lower edge; the first edge is 0."""
+    counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
+    edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
+    edges[0] = 0
+    return tuple((float(edges[i]), int(counts[i])) for i in np.flatnonzero(counts))
+
+
+def counts_below(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+    """How many angles are below each power of two of degrees, ascending."""
+    octave = 2 ** (23 - BIN_SHIFT)
+    below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]
+    first = np.log2(np.uint32(FIRST_BIN << BIN_SHIFT).view(np.float32))
+    return tuple((float(2.0 ** (first + k + 1)), int(count)) for k, count in enumerate(below))

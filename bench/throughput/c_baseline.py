@@ -1,0 +1,60 @@
+"""The row in C (`row.c`), compiled for this machine where there is a C compiler."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+SOURCE = Path(__file__).with_name("row.c")
+FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-shared", "-fPIC", "-w")
+# What of the encodings there is in C, and whether it reads view positions.
+ENCODINGS = {"xyz": False, "spheremap": False, "octahedral": False, "spherical": False, "per_pixel_view": True}
+BINS = 2**17
+COMPILING_S = 60
+
+
+def missing(name: str) -> str:
+    """Why there are no figures of C for an encoding; nothing where there are."""
+    if name not in ENCODINGS:
+        return f"{SOURCE.name} has no {name}"
+    return "" if shutil.which("cc") else "no C compiler: install one that is called cc (Debian: gcc)"
+
+
+def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callable[[], np.ndarray]:
+    """A function that measures an encoding through UNORM8 once, on all cores.
+
+    Args:
+        name: one of ENCODINGS.
+        statistics: "moments": the sum of |n - n'|^2 and the largest; "row": the sum of the angles, that of their
+            squares, and the largest, in degrees.
+        n, view: float32 of shape (count, 3).
+
+    Raises:
+        OSError, subprocess.SubprocessError: it cannot be compiled.
+    """
+    function, figures = getattr(_library(name), statistics), np.zeros(3)
+    planes = [np.ascontiguousarray(a.T, np.float32) for a in (n, view)]
+    rows = [(ctypes.c_void_p * 3)(*(plane.ctypes.data for plane in each)) for each in planes]
+    counts = [np.zeros(BINS, np.int64)] if statistics == "row" else []
+    given = (*rows, ctypes.c_long(len(n)), *(ctypes.c_void_p(a.ctypes.data) for a in (figures, *counts)))
+
+    def run(_kept=(planes, counts)) -> np.ndarray:
+        function(*given)
+        return figures
+
+    return run
+
+
+def _library(name: str) -> ctypes.CDLL:
+    chosen = (f"-DENCODING={name}", f"-DVIEW={int(ENCODINGS[name])}")
+    with TemporaryDirectory() as folder:
+        made = str(Path(folder) / f"{name}.so")
+        command = ["cc", *FLAGS, *chosen, str(SOURCE), "-o", made, "-lm"]
+        subprocess.run(command, check=True, capture_output=True, timeout=COMPILING_S)
+        return ctypes.CDLL(made)
