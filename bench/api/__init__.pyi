@@ -601,6 +601,22 @@ def tune(
         size: WIDTHxHEIGHT of the picture of a mesh.
     """
 
+def throughput(
+    *,
+    encoding: Names = ...,
+    statistics: Names = ...,
+    counts: Names = ...,
+) -> Rows:
+    """How fast rows are measured, next to a C program, NumPy and reading the input.
+
+    All of them encode, store in UNORM of 8 bits, decode and measure the same normals, on all cores in one run, and take turns.
+
+    Args:
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
+        statistics: moments (squared error and its maximum), row (a whole row of the quality table); comma-separated, or all.
+        counts: Numbers of normals, comma-separated, such as 256k,2^20.
+    """
+
 def published(
     *,
     source: Names = ...,

@@ -24,6 +24,7 @@ FOLDERS = (
     "vectors",
     "sweep",
     "tune",
+    "throughput",
     "published",
 )
 TABLES: Mapping[str, Table] = MappingProxyType(

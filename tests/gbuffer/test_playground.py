@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench.metrics import published
-from normalbench.bench.throughput import numpy_baseline as independent
+from normalbench.bench.tables.throughput import numpy_baseline as independent
 from normalbench.gbuffer.scenes.playground import playground as rendered
 
 

@@ -385,22 +385,3 @@ def test_doctor_says_what_this_machine_has(run):
     assert {"python", "jax", "processor", "GL"} <= set(facts)
     if "GL version" in facts:
         assert facts["GL rounds rgba8"] == "nearest"
-
-
-@pytest.mark.slow
-def test_throughput_prints_ratios_of_one_run():
-    command = [sys.executable, "-m", "normalbench.bench.throughput", "--count", "262144", "--encoding", "spheremap"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    report = json.loads(done.stdout)
-    assert done.returncode == 0 and [row["statistics"] for row in report["rows"]] == ["moments", "row"]
-    for row in report["rows"]:
-        assert row["times_numpy"] == pytest.approx(row["project"] / row["numpy"], rel=0.02)
-        assert row["share_of_reading"] == pytest.approx(row["project"] / report["reading"], rel=0.02, abs=1e-3)
-
-
-@pytest.mark.slow
-def test_throughput_refuses_bad_input_in_one_line():
-    for arguments, said in ((["--encoding", "no"], "unknown encoding"), (["--count", "3"], "--count 3")):
-        command = [sys.executable, "-m", "normalbench.bench.throughput", *arguments]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1

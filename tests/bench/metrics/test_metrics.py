@@ -20,7 +20,7 @@ from normalbench.bench.metrics.moments import squared_errors
 from normalbench.bench.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.options import counts
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.throughput.numpy_baseline import whole_row
+from normalbench.bench.tables.throughput.numpy_baseline import whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

@@ -95,6 +95,19 @@ static inline Vec at(const float *const *plane, long i) { return (Vec){plane[0][
 #define SEEN ((Vec){0, 0, -1})
 #endif
 
+// Sum of all components, into figures[0]: the normals are read, and nothing else is done.
+void reading(const float *const *n, const float *const *view, long count, double *figures) {
+    double total = 0;
+#pragma omp parallel for reduction(+ : total) schedule(static)
+    for (long first = 0; first < count; first += BLOCK) {
+        float sum = 0;
+        long end = first + BLOCK < count ? first + BLOCK : count;
+        for (long i = first; i < end; i++) sum += n[0][i] + n[1][i] + n[2][i];
+        total += sum;
+    }
+    figures[0] = total;
+}
+
 // Sum and maximum of |n - n'|^2, into figures[0] and [1].
 void moments(const float *const *n, const float *const *view, long count, double *figures) {
     double total = 0;

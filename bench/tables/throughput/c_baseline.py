@@ -12,7 +12,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 SOURCE = Path(__file__).with_name("row.c")
-FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-shared", "-fPIC", "-w")
+FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-fPIC", "-w")
+# Not with -ffast-math: that links a start-up which makes the whole process take small numbers for 0 (GCC bug 55522).
+LINK_FLAGS = ("-shared", "-fopenmp", "-lm")
 # What of the encodings there is in C, and whether it reads view positions.
 ENCODINGS = {"xyz": False, "spheremap": False, "octahedral": False, "spherical": False, "per_pixel_view": True}
 BINS = 2**17
@@ -20,7 +22,7 @@ COMPILING_S = 60
 
 
 def missing(name: str) -> str:
-    """Why there are no figures of C for an encoding; nothing where there are."""
+    """Why there are no figures of C for an encoding; empty where there are."""
     if name not in ENCODINGS:
         return f"{SOURCE.name} has no {name}"
     return "" if shutil.which("cc") else "no C compiler: install one that is called cc (Debian: gcc)"
@@ -32,7 +34,7 @@ def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callabl
     Args:
         name: one of ENCODINGS.
         statistics: "moments": the sum of |n - n'|^2 and the largest; "row": the sum of the angles, that of their
-            squares, and the largest, in degrees.
+            squares, and the largest, in degrees; "reading": the sum of all components.
         n, view: float32 of shape (count, 3).
 
     Raises:
@@ -51,10 +53,20 @@ def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callabl
     return run
 
 
+def compiler() -> str:
+    """What the C compiler calls itself."""
+    said = subprocess.run(["cc", "--version"], capture_output=True, text=True, timeout=COMPILING_S, check=False)
+    return (said.stdout.splitlines() or ["cc"])[0]
+
+
 def _library(name: str) -> ctypes.CDLL:
     chosen = (f"-DENCODING={name}", f"-DVIEW={int(ENCODINGS[name])}")
     with TemporaryDirectory() as folder:
-        made = str(Path(folder) / f"{name}.so")
-        command = ["cc", *FLAGS, *chosen, str(SOURCE), "-o", made, "-lm"]
-        subprocess.run(command, check=True, capture_output=True, timeout=COMPILING_S)
-        return ctypes.CDLL(made)
+        compiled, linked = (str(Path(folder) / f"{name}{ending}") for ending in (".o", ".so"))
+        _run("cc", *FLAGS, *chosen, "-c", str(SOURCE), "-o", compiled)
+        _run("cc", compiled, "-o", linked, *LINK_FLAGS)
+        return ctypes.CDLL(linked)
+
+
+def _run(*command: str) -> None:
+    subprocess.run(command, check=True, capture_output=True, timeout=COMPILING_S)

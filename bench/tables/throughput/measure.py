@@ -1,0 +1,140 @@
+"""How fast the project measures, against NumPy, C and reading the input once, all in one run on one machine.
+
+C's row is the angle's mean, RMS, maximum and histogram.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import jax
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import STORAGES
+from ...codecs.user_encodings import NoTwinError
+from ...machine.cores import on_all_cores
+from ...metrics.meter import Meter
+from ...metrics.moments import FAST_BLOCK, squared_errors
+from ...normals.directions import CORES, Input, make_input
+from . import c_baseline
+from . import numpy_baseline as baseline
+from .table import TABLE
+
+# Every rate is of a multiple of so many normals: whole blocks on every core.
+WHOLE = FAST_BLOCK * CORES
+STORAGE = "rgba8"
+BLOCK = 2**14
+LONG_ENOUGH = 1.0
+# To read the input an encoding of C's is compiled with it.
+ANY_IN_C = next(iter(c_baseline.ENCODINGS))
+
+Row = dict[str, Any]
+Task = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row: an encoding through UNORM of 8 bits; `count` is a multiple of WHOLE."""
+
+    encoding: Encoding
+    statistics: str
+    count: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name} {self.statistics} {self.count}"
+
+
+def rates(works: Sequence[Task], count: int) -> list[float]:
+    """Million normals a second of works that take turns: the best of three turns or more, for LONG_ENOUGH seconds each,
+    after one to warm up."""
+    for work in works:
+        work()
+    times: list[list[float]] = [[] for _ in works]
+    while len(times[0]) < 3 or sum(map(sum, times)) < LONG_ENOUGH * len(works):
+        for work, taken in zip(works, times, strict=True):
+            begin = time.perf_counter()
+            work()
+            taken.append(time.perf_counter() - begin)
+    return [count / min(taken) / 1e6 for taken in times]
+
+
+@lru_cache(maxsize=1)
+def _input(count: int) -> Input:
+    return make_input(count)
+
+
+@lru_cache(maxsize=1)
+def _reading_rate(count: int) -> float:
+    """By C where it can be compiled, which is the fastest."""
+    data = _input(count)
+    in_c, _ = _by_c(ANY_IN_C, "reading", data)
+    return rates(in_c or [_reading(data)], count)[0]
+
+
+def _reading(data: Input) -> Task:
+    """Work that reads every plane of normals once and does next to nothing with it."""
+    call = jax.jit(lambda n: (n.x + n.y + n.z).sum())
+    return lambda: _by_shards(lambda n, _: float(call(n)), data)
+
+
+def _by_shards(function: Callable[..., object], data: Input) -> list[object]:
+    """What a function makes of each shard's planes, side by side."""
+    return list(on_all_cores(lambda shard: function(*shard), data.shards))
+
+
+def _project(case: Case, data: Input) -> Task:
+    codec = Codec(case.encoding, STORAGES[STORAGE])
+    if case.statistics == "row":
+        meter, normals = Meter(jax.jit(lambda b: codec.round_trip(b.n, b.view))), data.normal_set()
+        return lambda: meter.measure(normals.loads(), len(data.n))
+    errors = squared_errors(codec)
+    return lambda: _by_shards(errors, data)
+
+
+def _by_c(name: str, statistics: str, data: Input) -> tuple[list[Task], str | None]:
+    """C's work, and why there is none."""
+    if missing := c_baseline.missing(name):
+        return [], missing
+    try:
+        return [c_baseline.work(name, statistics, data.n, data.view)], None
+    except (OSError, subprocess.SubprocessError) as error:
+        return [], f"cc cannot compile {name}: {error}"
+
+
+def _by_numpy(case: Case, data: Input) -> list[Task]:
+    """NumPy's work over whole arrays, and over blocks; none where the encoding is not written in NumPy."""
+    round_trip = baseline.BASELINES.get(case.encoding.name)
+    if round_trip is None:
+        return []
+    summary = baseline.whole_row if case.statistics == "row" else baseline.squared_error_and_maximum
+
+    def over(size: int) -> list[object]:
+        parts = (slice(start, start + size) for start in range(0, len(data.n), size))
+        quantise = baseline.quantise_unorm
+        return [summary(data.n[p], round_trip(data.n[p], data.view[p], quantise)) for p in parts]
+
+    return [lambda: over(len(data.n)), lambda: over(BLOCK)]
+
+
+def measure(case: Case) -> Row:
+    """One row of the table; one without figures, and why, for an encoding that is written in GLSL alone."""
+    row = TABLE.empty() | {"encoding": case.encoding.name, "statistics": case.statistics, "count": case.count}
+    row |= {"device": f"{jax.devices()[0].device_kind}, {CORES} cores"}
+    data = _input(case.count)
+    try:
+        in_c, no_c = _by_c(case.encoding.name, case.statistics, data)
+        rate, *theirs = rates([_project(case, data), *in_c], case.count)
+    except NoTwinError as error:
+        return row | {"skipped": str(error)}
+    reading, by_numpy = _reading_rate(case.count), [rates([work], case.count)[0] for work in _by_numpy(case, data)]
+    found: Row = {"rate": rate, "reading": reading, "share_of_reading": rate / reading, "no_c": no_c}
+    others = dict(zip(("c", "numpy", "numpy_blocked"), [*(theirs or [None]), *by_numpy], strict=False))
+    ratios = {f"times_{name}": rate / other for name, other in others.items() if other}
+    return row | found | others | ratios | {"compiler": c_baseline.compiler() if in_c else None}

@@ -1,1 +1,0 @@
-"""How fast the quality table is measured, against NumPy."""
