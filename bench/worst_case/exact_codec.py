@@ -1,19 +1,22 @@
 """A codec in float64, which stands for the exact map: what the searches for worst cases and odd codes ask of it.
 
-Everything is done in blocks of one size, so that a codec is compiled once for all of it: three functions, from codes to
-normals, from normals to codes, and from normals to how far off they come back.
+Everything is done in blocks of one size, so that it is compiled once for an encoding: functions from codes to normals,
+from normals to codes, and from normals to how far off they come back. Scales of fixed-point formats are arguments.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property, reduce
+from functools import cache, reduce
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.rounding import Scale, fixed, shared
+from ...encodings.storages.storage import Storage
 from ...encodings.vec import Vec2, Vec3, dot, select
 
 BLOCK = 2**15
@@ -33,47 +36,36 @@ def _toward(v: Vec3) -> Vec3:
     return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
 
 
-class ExactCodec:
-    """A codec in float64 on the whole sphere, or on z >= 0 alone.
+class _Programs:
+    """What is compiled of an encoding, for every fixed-point format of a kind: they are given its scales."""
 
-    Planes are NumPy arrays of shape (3, count) and codes of shape (components and sign bits, count), float64, of any
-    count up to BLOCK.
-    """
-
-    def __init__(self, codec: Codec, is_half: bool):
-        self.codec, self.is_half = codec, is_half
-        self.size = codec.encoding.components + codec.encoding.sign_bits
+    def __init__(self, encoding: Encoding, like: Storage, rounding: str, is_half: bool):
+        self._encoding, self._like, self._rounding, self._is_half = encoding, like, rounding, is_half
+        self.size = encoding.components + encoding.sign_bits
+        self.free = [i for i in range(self.size) if not encoding.levels_of(i)]
         self._code = Vec2 if self.size == 2 else Vec3
-        self._normals = jax.jit(self._traced_normals)
-        self._chords = jax.jit(self._traced_chords)
-        self._codes = jax.jit(self._traced_codes)
-        self._stored = jax.jit(self._traced_stored)
-        self._corners = jax.jit(self._traced_corners)
+        self.normals = jax.jit(self._normals)
+        self.chords = jax.jit(self._chords)
+        self.codes = jax.jit(lambda n, *scales: jnp.stack(self._codec(scales).stored(Vec3(*n), ahead(n[0]))))
+        self.stored = jax.jit(lambda code, *scales: jnp.stack(self._codec(scales).store(self._code(*code))))
+        self.corners = jax.jit(self._corners)
 
-    @cached_property
-    def free(self) -> list[int]:
-        """The components that are numbers like any other: not signs, nor one of few values."""
-        return [i for i in range(self.size) if not self.codec.encoding.levels_of(i)]
+    def _codec(self, scales: tuple[Scale, ...]) -> Codec:
+        return Codec(self._encoding, fixed(self._like, scales), self._rounding)
 
-    def _traced_normals(self, code):
-        return jnp.stack(_toward(self.codec.encoding.decode(self._code(*code), ahead(code[0]))))
+    def _normals(self, code, *_: Scale):
+        return jnp.stack(_toward(self._encoding.decode(self._code(*code), ahead(code[0]))))
 
-    def _traced_codes(self, n):
-        return jnp.stack(self.codec.stored(Vec3(*n), ahead(n[0])))
-
-    def _traced_stored(self, code):
-        return jnp.stack(self.codec.store(self._code(*code)))
-
-    def _traced_chords(self, n):
+    def _chords(self, n, *scales: Scale):
         n = Vec3(*n)
-        decoded = self.codec.round_trip(n, ahead(n.z))
+        decoded = self._codec(scales).round_trip(n, ahead(n.z))
         length2 = dot(decoded, decoded)
         is_direction = (length2 > 0.0) & jnp.isfinite(length2)
         miss = n - decoded * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0)))
         chords = select(is_direction, dot(miss, miss), 4.0)
-        return select(n.z >= 0.0, chords, -1.0) if self.is_half else chords
+        return select(n.z >= 0.0, chords, -1.0) if self._is_half else chords
 
-    def _traced_corners(self, edges, numbers, others):
+    def _corners(self, edges, numbers, others):
         u, v = self.free
 
         def at(across, along) -> list:
@@ -82,17 +74,38 @@ class ExactCodec:
             return code
 
         corner, centre = at(*edges), at(*numbers)
-        n, decoded = (Vec3(*self._traced_normals(code)) for code in (corner, centre))
-        inside = (n.z >= 0.0) if self.is_half else True
-        is_precise = self.codec.encoding.is_precise
+        n, decoded = (Vec3(*self._normals(code)) for code in (corner, centre))
+        inside = (n.z >= 0.0) if self._is_half else True
+        is_precise = self._encoding.is_precise
         # Precise rounding takes the nearest code, whichever the corner's normal is encoded to.
-        back = corner if is_precise else self.codec.encoding.encode(n, ahead(n.z))
+        back = corner if is_precise else self._encoding.encode(n, ahead(n.z))
         for mine, its in zip(corner, back, strict=True):
             inside &= abs(mine - its) < TOLERANCE
         rows, columns = n.z.shape
         around = (Vec3(*(c[i : i + rows, j : j + columns] for c in decoded)) for i in (0, 1) for j in (0, 1))
         chords = reduce(jnp.minimum if is_precise else jnp.maximum, (dot(n - d, n - d) for d in around))
         return jnp.where(inside, chords, -1.0)
+
+
+_compiled = cache(_Programs)
+
+
+class ExactCodec:
+    """A codec in float64 on the whole sphere, or on z >= 0 alone.
+
+    Planes are NumPy arrays of shape (3, count) and codes of shape (components and sign bits, count), float64, of any
+    count up to BLOCK.
+    """
+
+    def __init__(self, codec: Codec, is_half: bool):
+        like, self._scales = shared(codec.storage, codec.encoding.components, np.float64)
+        self._programs = _compiled(codec.encoding, like, codec.rounding, is_half)
+        self.codec, self.is_half, self.size = codec, is_half, self._programs.size
+
+    @property
+    def free(self) -> list[int]:
+        """The components that are numbers like any other: not signs, nor one of few values."""
+        return self._programs.free
 
     def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
         """Squared chords from the corners of a plane's cells to the farthest of the four codes around, which each have
@@ -107,31 +120,33 @@ class ExactCodec:
             shape (edges of the one, of the other); -1 where the code of the corner is another, or outside the domain.
         """
         with jax.enable_x64(True):
-            return np.asarray(self._corners(edges, numbers, others))
+            return np.asarray(self._programs.corners(edges, numbers, others))
 
     def normals(self, code: np.ndarray) -> np.ndarray:
         """The directions of codes, which need not be stored ones."""
-        return self._in_blocks(self._normals, code)
+        return self._in_blocks(self._programs.normals, code)
 
     def stored(self, code: np.ndarray) -> np.ndarray:
         """Numbers as they come back from the storage."""
-        return self._in_blocks(self._stored, code)
+        return self._in_blocks(self._programs.stored, code)
 
     def codes(self, n: np.ndarray) -> np.ndarray:
         """The codes of unit normals as they are stored."""
-        return self._in_blocks(self._codes, n)
+        return self._in_blocks(self._programs.codes, n)
 
     def chords(self, n: np.ndarray) -> np.ndarray:
         """The squared distance of unit normals from what they are decoded as, at length 1: 4 where that is no
         direction, -1 for normals outside the domain."""
-        return self._in_blocks(self._chords, n)
+        return self._in_blocks(self._programs.chords, n)
 
     def _in_blocks(self, function, planes: np.ndarray) -> np.ndarray:
         count = planes.shape[1]
         short = -count % BLOCK
         padded = np.pad(planes, ((0, 0), (0, short)), mode="edge") if short else planes
+        # Odd codes are looked for in float32, as a shader makes them.
+        scales = jax.tree.map(planes.dtype.type, self._scales)
         with jax.enable_x64(True):
-            parts = [function(padded[:, start : start + BLOCK]) for start in range(0, count, BLOCK)]
+            parts = [function(padded[:, start : start + BLOCK], *scales) for start in range(0, count, BLOCK)]
             return np.concatenate([np.asarray(part) for part in parts], axis=-1)[..., :count]
 
     def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:

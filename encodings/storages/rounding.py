@@ -133,18 +133,19 @@ class Fixed(Storage):
     scales: tuple[Scale, ...] = ()
 
 
-def scales_of(storage: Storage) -> tuple[Scale, ...]:
-    """The scales of a fixed-point format as float32, to be given to a traced function."""
+def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple[Scale, ...]:
+    """The scales of a fixed-point format, as float32 or as float64, to be given to a traced function."""
     scales = (scale_of(storage.scale(channel)) for channel in range(storage.channels))
-    return tuple(Scale(*map(np.float32, scale)) for scale in scales)
+    return tuple(Scale(*map(number, scale)) for scale in scales)
 
 
-def shared(storage: Storage, count: int) -> tuple[Storage, tuple[Scale, ...]]:
+def shared(storage: Storage, count: int, number: type[np.floating] = np.float32) -> tuple[Storage, tuple[Scale, ...]]:
     """What a traced function is given to serve every fixed-point format of a kind: a format that stands for all of
-    them, and this one's scales of the first `count` channels. Others stand for themselves, and have no scales."""
+    them, and this one's scales of the first `count` channels, of float32 or float64. Others stand for themselves, and
+    have no scales."""
     if storage.kind == "float" or storage.curved:
         return storage, ()
-    return STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], scales_of(storage)[:count]
+    return STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], scales_of(storage, number)[:count]
 
 
 def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:
