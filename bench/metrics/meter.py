@@ -262,10 +262,10 @@ class Meter:
         """What a block is decoded as."""
         return self._decode(block, *self._given)
 
-    def one(self, load: Callable[[], Any], met_deg: float = 0.0) -> Part:
-        """One chunk's part of the statistics. Its worst normal is not looked for where an angle of `met_deg`, which
-        another chunk has, is larger than all of its own."""
-        with jax.enable_x64(True):
+    def one(self, load: Callable[[], Any], met_deg: float = 0.0, device: Any = None) -> Part:
+        """One chunk's part of the statistics, by one of JAX's devices. Its worst normal is not looked for where an
+        angle of `met_deg`, which another chunk has, is larger than all of its own."""
+        with jax.enable_x64(True), jax.default_device(device):
             chunk = jax.tree.map(_on_device, load())
             decoded = self.decoded(chunk)
             found = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
@@ -294,12 +294,13 @@ def measure_together(
 ) -> list[Statistics]:
     """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
 
-    The rest is as for `Meter.measure`.
+    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.measure`.
     """
     totals = [Total() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
-    work = ((*each, once) for once in map(Once, loads) for each in zip(meters, totals, strict=True))
-    for part in on_all_cores(lambda item: item[0].one(item[2], item[1].met_deg), work):
+    chunks = zip(map(Once, loads), itertools.cycle(jax.local_devices()), strict=False)
+    work = ((*each, *chunk) for chunk in chunks for each in zip(meters, totals, strict=True))
+    for part in on_all_cores(lambda item: item[0].one(item[2], item[1].met_deg, item[3]), work):
         index = next(whose)
         totals[index].add(part)
         tick(index)

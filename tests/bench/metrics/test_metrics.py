@@ -1,5 +1,8 @@
 """The statistics of a row, against NumPy in float64 and against the laws they obey."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import jax
@@ -264,6 +267,38 @@ def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
                 assert other[name] == pytest.approx(row[name], rel=0 if lanes == 1024 else 1e-13, abs=0), (name, rows)
             same = ("angle_max_deg", "angle_p99_deg", "angle_counts", "worst_normal", "invalid")
             assert [other[name] for name in same] == [row[name] for name in same], rows
+
+
+ON_DEVICES = """
+import jax
+from normalbench.bench.metrics.meter import Meter
+from normalbench.bench.normals.normal_sets import CHUNK, sphere
+
+used = set()
+
+class Seen(Meter):
+    def decoded(self, block):
+        used.update(block.n.x.devices())
+        return super().decoded(block)
+
+print(Seen(jax.jit(lambda block: block.n * 0.999 + 0.001)).measure(sphere(4 * CHUNK + 9).loads(), 4 * CHUNK + 9))
+print(len(used), len(jax.local_devices()))
+"""
+
+
+@pytest.mark.slow
+def test_chunks_are_dealt_to_all_devices_and_rows_are_the_same():
+    """One device of JAX or three: each measures some of the chunks, and no digit of the statistics differs."""
+    found = {}
+    for count in (1, 3):
+        flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={count}"}
+        done = subprocess.run(
+            [sys.executable, "-c", ON_DEVICES], env=os.environ | flags, capture_output=True, text=True, check=True
+        )
+        *statistics, devices = done.stdout.splitlines()
+        assert devices == f"{count} {count}", done.stderr
+        found[count] = statistics
+    assert found[1] == found[3]
 
 
 def test_any_count_is_constant_memory():
