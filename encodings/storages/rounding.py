@@ -141,9 +141,12 @@ def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple
 
 def shared(storage: Storage, count: int, number: type[np.floating] = np.float32) -> tuple[Storage, tuple[Scale, ...]]:
     """What a traced function is given to serve every fixed-point format of a kind: a format that stands for all of
-    them, and this one's scales of the first `count` channels, of float32 or float64. Others stand for themselves, and
-    have no scales."""
-    if storage.kind == "float" or storage.curved:
+    them, and this one's scales of the first `count` channels, of float32 or float64. Floats have no scales; the first
+    format with as many bits in these channels stands for them. Others stand for themselves."""
+    if storage.kind == "float":
+        alike = (s for s in STORAGES.values() if (s.kind, s.bits[:count]) == ("float", storage.bits[:count]))
+        return next(alike, storage), ()
+    if storage.curved:
         return storage, ()
     return STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], scales_of(storage, number)[:count]
 

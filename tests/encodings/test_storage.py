@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from neighbours import around
 
-from normalbench.encodings.storages.rounding import scale_of, store_half, store_number, store_texel, store_unorm
+from normalbench.encodings.storages.rounding import (
+    fixed,
+    scale_of,
+    shared,
+    store_half,
+    store_number,
+    store_texel,
+    store_unorm,
+)
 from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.encodings.storages.words import words
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
@@ -232,3 +240,16 @@ def test_every_number_has_bits_of_its_own(name):
 def test_the_bits_of_a_number_are_the_formats(name, number, bits):
     """OpenGL 4.6, sections 2.3.4 and 2.3.5; an 11-bit float has the exponent of a half and six bits of mantissa."""
     assert int(words(np.array(number), STORAGES[name], 0)) == bits
+
+
+@pytest.mark.parametrize("name", sorted(STORAGES))
+def test_a_format_that_stands_for_others_stores_the_same(name):
+    """One program serves all formats that `shared` gives the same stand-in: with a format's own scales its numbers are
+    that format's, bit for bit, however many channels are used."""
+    storage = STORAGES[name]
+    c = jnp.asarray(np.random.default_rng(1).uniform(-1.1, 1.1, 4096), jnp.float32)
+    for count in range(1, storage.channels + 1):
+        like, scales = shared(storage, count)
+        for channel in range(count):
+            found = store_number(c, fixed(like, scales), channel)
+            assert np.array_equal(found, store_number(c, storage, channel)), (count, channel)
