@@ -485,6 +485,7 @@ def frames(
     backend: Names = ...,
     count: int = ...,
     seed: int = ...,
+    worst_case: bool = ...,
 ) -> Rows:
     """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost handedness.
 
@@ -497,6 +498,7 @@ def frames(
         backend: jax, glsl; comma-separated, or all.
         count: Tangent frames in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
+        worst_case: The true largest rotation, by search in float64; seconds a code.
     """
 
 def vectors(

@@ -21,6 +21,7 @@ from ....gbuffer.codecs.frame_passes import FramePasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...metrics.code_limits import is_measurable
+from ...worst_case.frame_search import worst_frame
 from .limits import frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
 from .table import TABLE
@@ -41,6 +42,7 @@ class Case:
     codec: FrameCodec
     frame_set: FrameSet
     backend: str
+    worst_case: bool = False
 
     @property
     def name(self) -> str:
@@ -149,7 +151,16 @@ def measure(case: Case) -> Row:
                 total.add(given, Frames(found.normals[:count], found.tangents[:count]))
     except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
-    return row | _figures(total) | _held(case, total) | how
+    found = _figures(total) | (_supremum(case) if case.worst_case else {})
+    return row | found | _held(case, total, found) | how
+
+
+def _supremum(case: Case) -> Row:
+    """Of all tangent frames by search; of a mesh, whose frames are all measured, there is no other."""
+    if not case.frame_set.is_uniform:
+        return {}
+    worst = worst_frame(case.codec)
+    return {"rotation_sup_deg": worst.angle_deg, "sup_moved_deg": worst.moved_deg}
 
 
 def _whole(frames: Frames) -> Frames:
@@ -167,13 +178,14 @@ def _figures(total: Total) -> Row:
     return row
 
 
-def _held(case: Case, total: Total) -> Row:
+def _held(case: Case, total: Total, figures: Row) -> Row:
     """The limit, and the row's share of it; nothing on sets that are not uniform, and no share of a limit that float32
     frames cannot tell from none."""
     if not case.frame_set.is_uniform:
         return {}
-    figures, least = _figures(total), frame_limit(case.codec.codes)
-    mean, rms, largest = (figures[f"rotation_{figure}_deg"] for figure in ("mean", "rms", "max"))
+    least = frame_limit(case.codec.codes)
+    mean, rms, met = (figures[f"rotation_{figure}_deg"] for figure in ("mean", "rms", "max"))
+    largest = figures.get("rotation_sup_deg", met)
     row: Row = {"limit_mean_deg": least.mean_deg, "limit_rms_deg": least.rms_deg, "limit_max_deg": least.max_deg}
     row["effective_bits"] = frame_effective_bits(rms)
     if not is_measurable(least):

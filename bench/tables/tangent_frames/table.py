@@ -26,6 +26,9 @@ class FramesOptions:
     backend: Backends = "jax,glsl"
     count: Annotated[int, Option("--count", "Tangent frames in a uniform set.")] = 2**16
     seed: Seed = 0
+    worst_case: Annotated[
+        bool, Option("--worst-case", "The true largest rotation, by search in float64; seconds a code.", in_run=True)
+    ] = False
 
 
 def _angle(what: str, says: str, *drops: int) -> tuple[Column, ...]:
@@ -48,6 +51,22 @@ COLUMNS = (
     *_angle("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
     *_angle("tangent", "angle between a tangent and its decode.", 10, 8, 15),
     *_angle("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),
+    Column(
+        "rotation_sup_deg",
+        "The largest rotation over all tangent frames of exact arithmetic, by search; no sample can be above it.",
+        unit="degrees",
+        better="less",
+        drops=3,
+        option="worst_case",
+    ),
+    Column(
+        "sup_moved_deg",
+        "How much the last round of the search still raised it.",
+        HOW,
+        "degrees",
+        drops=2,
+        option="worst_case",
+    ),
     Column(
         "effective_bits",
         "log2 of the number of ideally placed codes that have this RMS rotation; uniform sets only.",

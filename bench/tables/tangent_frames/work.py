@@ -34,7 +34,12 @@ def cases(options: FramesOptions) -> list[measure.Case]:
     if backends == ["glsl"]:
         require_device()
     sets = frame_sets_named(options.frames, count, options.seed)
-    return [measure.Case(codec, frames, backend) for frames in sets for codec in chosen for backend in backends]
+    return [
+        measure.Case(codec, frames, backend, options.worst_case)
+        for frames in sets
+        for codec in chosen
+        for backend in backends
+    ]
 
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
@@ -54,7 +59,8 @@ def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:
 
 def _key(case: measure.Case) -> Row:
     key: Row = {"codec": case.codec.name, "frame_set": case.frame_set.name, "backend": case.backend}
-    return key | {"count": case.frame_set.count, "seed": case.frame_set.seed}
+    key |= {"count": case.frame_set.count, "seed": case.frame_set.seed}
+    return key | ({"worst_case": True} if case.worst_case else {})
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
