@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 
-# Of glibc's malloc.h: mallopt's names, and what they are set to, in bytes or as a number.
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, M_ARENA_MAX = -1, -3, -8
-LARGE, ARENAS = 1 << 20, 2
+# mallopt's name in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
+M_ARENA_MAX, ARENAS = -8, 2
+
+
+def have_few_heaps() -> None:
+    """Threads share two heaps from here on; elsewhere than on glibc nothing is done."""
+    if mallopt := getattr(ctypes.CDLL(None), "mallopt", None):
+        mallopt(M_ARENA_MAX, ARENAS)
 
 
 def give_back_what_is_freed() -> None:
-    """Have large arrays be the system's again once they are freed; elsewhere than on glibc nothing is done.
+    """What is freed within the heaps is the system's again: hundreds of megabytes after a table of images."""
+    gc.collect()
+    if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
+        trim(0)
 
-    By itself glibc raises the size from which it does so with each that is freed, and has as many heaps as eight for
-    each core: after a minute of images there are hundreds of megabytes of holes.
-    """
-    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt:
-        for name, value in ((M_MMAP_THRESHOLD, LARGE), (M_TRIM_THRESHOLD, 16 * LARGE), (M_ARENA_MAX, ARENAS)):
-            mallopt(name, value)
+
+def keep_what_is_imported() -> None:
+    """Have the garbage collector pass over what is there now: with JAX that is a million objects, looked at again and
+    again for nothing."""
+    gc.collect()
+    gc.freeze()

@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from ...reports import tables
+from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
 from ..results.measuring import Asked, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
-from ..tables.table import Measured, Table
+from ..tables.table import Measured, Role, Table
 from .second import is_worth_it, second_process
 from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
@@ -105,9 +106,8 @@ def run_command(request: Any, output: Path | None) -> int:
         the exit status: 1 where a row fails.
     """
     from ..machine.devices import require_jax
-    from ..machine.memory import give_back_what_is_freed
 
-    give_back_what_is_freed()
+    have_few_heaps()
     require_jax()
     facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
     facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
@@ -115,6 +115,7 @@ def run_command(request: Any, output: Path | None) -> int:
     with noting_what_is_left_out() as left_out:
         asks = asked_of(request, folder)
     facts |= {"left_out": left_out}
+    keep_what_is_imported()
     total = sum(len(ask.steps) for ask in asks)
     with opened(folder, facts) as run:
         if run.kept:
@@ -176,7 +177,8 @@ def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
 
 
 def _takes_times(ask: Asked) -> bool:
-    return bool(getattr(ask.options, "repeats", 0))
+    """Whether a table's rows have times; some have them only where frames are repeated."""
+    return bool(ask.table.of_role(Role.TIME)) and getattr(ask.options, "repeats", 1) > 0
 
 
 class Shown:
@@ -195,6 +197,7 @@ class Shown:
     def add(self, ask: Asked, done: Measured) -> None:
         """A table that is measured; shown once those before it are."""
         self.done[ask.table.name] = done
+        give_back_what_is_freed()
         while self._left and self._left[0].table.name in self.done:
             table = self._left.popleft().table
             self.failed |= _show(table, self.done[table.name].rows)

@@ -17,7 +17,7 @@ from pathlib import Path
 from threading import Thread
 from typing import IO, Any
 
-from ..machine.memory import give_back_what_is_freed
+from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
 from ..output.errors import MissingError, UsageError, told
 from ..results.measuring import measured
 from ..results.plain import key_text, plain
@@ -53,10 +53,13 @@ class Sent:
 def measure(given: Mapping[str, Any], sent: Sent) -> None:
     """The tables that are asked for, one after the other."""
     request = RunOptions(tables=",".join(given["tables"]), **given["said"])
-    for ask in asked_of(request, Path(given["folder"])):
+    asks = asked_of(request, Path(given["folder"]))
+    keep_what_is_imported()
+    for ask in asks:
         done = measured(ask, sent)
         ask.table.work.write(done, lambda _: None)
         sent.send({"written": ask.table.name})
+        give_back_what_is_freed()
 
 
 def _end_with_the_first() -> None:
@@ -74,7 +77,7 @@ def _own_output() -> IO[str]:
 
 def main() -> None:
     """Measure what standard input asks for."""
-    give_back_what_is_freed()
+    have_few_heaps()
     out, given = _own_output(), json.loads(sys.stdin.readline())
     Thread(target=_end_with_the_first, daemon=True).start()
     # The first process has said it.
