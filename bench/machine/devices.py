@@ -2,19 +2,53 @@
 
 from __future__ import annotations
 
+import platform
+import warnings
+from pathlib import Path
+from typing import Any
+
 import jax
 
 from ...gbuffer.gl.device import Device, NoDeviceError, device
+from ..output import cache
 from ..output.errors import MissingError
+
+CPU = Path("/proc/cpuinfo")
 
 
 def require_jax() -> None:
     """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it."""
+    keep_programs()
     try:
         jax.devices()
     except Exception as error:
         reason = str(error).strip().splitlines() or ["the platform does not start"]
         raise MissingError(f"JAX has no device to compute on: {reason[0]}; unset JAX_PLATFORMS") from error
+
+
+def keep_programs() -> None:
+    """Have JAX keep what it compiles in the user's cache folder, so that the next process need not.
+
+    Whoever has chosen a folder for JAX, or none (JAX_ENABLE_COMPILATION_CACHE=0), is not overruled.
+    """
+    chosen: Any = jax.config
+    if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache:
+        jax.config.update("jax_compilation_cache_dir", str(programs_folder()))
+        # An entry that was damaged, or cannot be written, is no more than one that is not there.
+        warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache entry")
+        # What takes less than a second is kept too, however small: there are hundreds of these.
+        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+        jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def programs_folder() -> Path:
+    """Where compiled programs lie: a folder for each version of JAX and kind of processor, which they are made for."""
+    try:
+        lines = CPU.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    kind = sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))})
+    return cache.folder() / "programs" / cache.key_of(jax.__version__, platform.machine(), *kind)[:16]
 
 
 def found_device() -> tuple[Device | None, str]:

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
 from ...encodings.codecs.files import file_json
 from ..output.errors import UsageError
@@ -135,7 +136,7 @@ class Run:
     """A results folder being written; make it with `opened`."""
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
-        self.folder, self.facts, self._journal = folder, facts, kept
+        self.folder, self.facts, self._journal, self._lock = folder, facts, kept, Lock()
         _check_steps(folder, kept.lines)
         self._kept = {key_text(step["table"], step["key"]): step["rows"] for step in kept.lines}
 
@@ -155,8 +156,10 @@ class Run:
             UsageError: they cannot be written; what was kept before stays.
         """
         text, kept = key_text(table, step.key), plain(rows)
-        self._journal.add({"table": table, "key": plain([step.key])[0], "rows": kept})
-        self._kept[text] = kept
+        # Those of the second process come in a thread of their own.
+        with self._lock:
+            self._journal.add({"table": table, "key": plain([step.key])[0], "rows": kept})
+            self._kept[text] = kept
         return kept
 
     def finish(self) -> None:

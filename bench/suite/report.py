@@ -184,7 +184,9 @@ def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
 
 def gathered(folder: Path, done: Done) -> Found:
     """Everything that a page shows of a run; nothing is measured."""
-    tables = {str(plain_text(name)): _clean(rows) for name, rows in done.tables.items()}
+    measured = {str(plain_text(name)): _clean(rows) for name, rows in done.tables.items()}
+    # In the order of the page, whichever was measured first.
+    tables = {name: measured[name] for name in (*TABLES, *measured) if name in measured}
     facts = plain_text(done.facts)
     remarks: list[str] = [f"{plain_text(done.damage)}."] if done.damage else []
     unknown = [name for name in tables if name not in TABLES]

@@ -5,19 +5,22 @@ from __future__ import annotations
 import itertools
 import sys
 import time
-from collections.abc import Iterable, Mapping
+from collections import deque
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 from ...reports import tables
+from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
 from ..results.measuring import Asked, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
-from ..tables.table import Measured, Table
+from ..tables.table import Measured, Role, Table
+from .second import is_worth_it, second_process
 from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
 
@@ -104,6 +107,7 @@ def run_command(request: Any, output: Path | None) -> int:
     """
     from ..machine.devices import require_jax
 
+    have_few_heaps()
     require_jax()
     facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
     facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
@@ -111,18 +115,17 @@ def run_command(request: Any, output: Path | None) -> int:
     with noting_what_is_left_out() as left_out:
         asks = asked_of(request, folder)
     facts |= {"left_out": left_out}
+    keep_what_is_imported()
     total = sum(len(ask.steps) for ask in asks)
     with opened(folder, facts) as run:
         if run.kept:
             tell(f"{folder} goes on: {_there(run, asks)} of {total} steps are there")
         try:
-            failed = [_measure(run, ask) for ask in asks]
-            done = [one for one, _ in failed]
-            _complete(run, asks, done)
+            failed = _measure_all(run, asks, given(request))
         except (KeyboardInterrupt, SystemExit):
             tell(f"{run.kept} of {total} steps are kept; the same command goes on")
             raise
-    return int(any(one for _, one in failed))
+    return int(failed)
 
 
 def _there(run: Run, asks: Iterable[Asked]) -> int:
@@ -135,30 +138,96 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure(run: Run, ask: Asked) -> tuple[Measured, bool]:
-    """One table: its rows kept, its summary shown; whether a row fails."""
-    done = measured(ask, run)
-    say_skipped(ask.table, done.rows)
-    say_lines(ask.table.work.warnings(done.rows))
-    failed = say_lines(ask.table.work.failures(done.rows))
-    show_summary(ask.table, done.rows)
-    return done, failed
+def _measure_all(run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> bool:
+    """Every table measured, shown and written, and the page; whether a row fails."""
+    # The answer first: nothing else runs while people wait for it.
+    first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
+    shown = Shown([*first, *rest])
+    for ask in first:
+        shown.add(ask, measured(ask, run))
+    if is_worth_it(rest):
+        return _complete(run, shown, _measure_beside(run, rest, shown, said))
+    for ask in rest:
+        shown.add(ask, measured(ask, run))
+    return _complete(run, shown, ())
 
 
-def _complete(run: Run, asks: list[Asked], done: list[Measured]) -> None:
-    """Tables for others, the pictures and the page; then the run is finished."""
+def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any]) -> Collection[str]:
+    """Tables measured by two processes at the same time; those whose files are written."""
+    beside = [ask for ask in asks if ask.table.is_measured_beside]
+    with second_process(run, beside, _taken(said, beside)) as second:
+        # What takes times is measured when nothing else runs.
+        for ask in sorted((ask for ask in asks if ask not in beside), key=_takes_times):
+            if _takes_times(ask):
+                second.wait()
+            shown.add(ask, measured(ask, run))
+            for other in beside:
+                if other.table.name in second.written:
+                    shown.add(other, measured(other, run))
+        second.wait()
+    # What the process did not get to, because something killed it, is measured here.
+    for ask in beside:
+        shown.add(ask, measured(ask, run))
+    return second.written
+
+
+def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
+    """What was said of some tables."""
+    return {name: value for name, value in said.items() if any(_takes(ask.table, name) for ask in asks)}
+
+
+def _takes_times(ask: Asked) -> bool:
+    """Whether a table's rows have times; some have them only where frames are repeated."""
+    return bool(ask.table.of_role(Role.TIME)) and getattr(ask.options, "repeats", 1) > 0
+
+
+class Shown:
+    """Tables as they are measured: shown in the order in which they were asked for, whichever is done first.
+
+    Attributes:
+        failed: whether a row fails.
+        done: what was measured, by table.
+    """
+
+    def __init__(self, asks: Sequence[Asked]):
+        self.failed, self.asks = False, asks
+        self.done: dict[str, Measured] = {}
+        self._left = deque(asks)
+
+    def add(self, ask: Asked, done: Measured) -> None:
+        """A table that is measured; shown once those before it are."""
+        self.done[ask.table.name] = done
+        give_back_what_is_freed()
+        while self._left and self._left[0].table.name in self.done:
+            table = self._left.popleft().table
+            self.failed |= _show(table, self.done[table.name].rows)
+
+
+def _show(table: Table, rows: Sequence[Row]) -> bool:
+    """A table's summary, and what is to be said of its rows; whether one fails."""
+    say_skipped(table, rows)
+    say_lines(table.work.warnings(rows))
+    failed = say_lines(table.work.failures(rows))
+    show_summary(table, rows)
+    return failed
+
+
+def _complete(run: Run, shown: Shown, written: Collection[str]) -> bool:
+    """Tables for others, the pictures and the page; then the run is finished. Whether a row fails."""
     from .report import write_report
 
     for name, rows in read_run(run.folder).tables.items():
         table = TABLES.get(name)
         _write_table(run.folder / name, table.work.finish(rows) if table else rows)
-    for ask, one in zip(asks, done, strict=True):
-        ask.table.work.write(one, lambda _: None)
+    for ask in shown.asks:
+        if ask.table.name not in written:
+            ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
     whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
     page = write_report(run.folder, whole, run.folder / PAGE)
     run.finish()
     say(f"All of it on one page: {page}\n")
+    return shown.failed
 
 
 def _write_table(path: Path, rows: list[Row]) -> None:

@@ -218,6 +218,8 @@ class Table:
         by: a column; for people rows that differ in it are tables of their own.
         partial: whether a row that says why figures are missing may have others.
         in_all: whether `run` measures it without being asked to.
+        is_measured_beside: whether `run` measures it in its second process: what needs JAX or compilers rather than
+            the GL device.
         old_names: what older runs call the table.
         renamed: columns of older runs, by what they are called now.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
@@ -238,6 +240,7 @@ class Table:
     by: str = ""
     partial: bool = False
     in_all: bool = True
+    is_measured_beside: bool = False
     old_names: tuple[str, ...] = ()
     renamed: Mapping[str, str] = field(default_factory=dict)
     compilers: tuple[str, ...] = ()

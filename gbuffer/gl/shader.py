@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from ...encodings.codecs.files import file_text
@@ -56,7 +56,7 @@ class Source:
         self.place = main = Path(shaders().get(str(path), path)).resolve()
         version, *rest = self._expand(main)
         macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
-        mentioned = set(re.findall(r"\w+", " ".join([*(line for line, _, _ in rest), *macros.values()])))
+        mentioned = _words("\n".join(line for line, _, _ in rest)) | _words(" ".join(macros.values()))
         head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
         self._lines: list[Line] = [version, *head, *rest]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
@@ -65,7 +65,7 @@ class Source:
         self._seen.add(path)
         lines: list[Line] = []
         for number, line in enumerate(read_shader(path).splitlines(), 1):
-            match = _INCLUDE.match(line)
+            match = _INCLUDE.match(line) if "#include" in line else None
             # moderngl expands what is left of them, in comments as well, and knows no files.
             lines += self._include(path, number, match) if match else [(line.replace("#inc", "# inc"), path, number)]
         return lines
@@ -88,6 +88,12 @@ class Source:
             return f"{path}:{number}"
 
         return _PLACE.sub(place, log.strip())
+
+
+@lru_cache(maxsize=256)
+def _words(text: str) -> frozenset[str]:
+    """The words of a text; frames ask for the same programs again and again."""
+    return frozenset(re.findall(r"\w+", text))
 
 
 def _beside(path: Path, file: str) -> Path:

@@ -9,6 +9,8 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from ..ties import TIE_DB, TIE_SHARE
 from .plots import COLOURS, MARKERS, drawn_off_screen
 
@@ -132,7 +134,7 @@ def pareto_figure(panels: Sequence[Panel], error: Error) -> Any:
     figure.suptitle(GREY + "\n* counts both sides of a branch" * is_starred, size=9)
     _legend(figure)
     # Labels keep clear of what is drawn, which must stand where it will stand.
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     for axis, panel in zip(axes.flat, panels, strict=False):
         _label(axis, panel.points, error)
     return figure
@@ -260,19 +262,29 @@ def _along(a: Any, b: Any, pixels: float) -> Iterator[Any]:
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
     """Moves a label to the nearest place that is free, or else to the one that is taken least; gives its box."""
-    found = []
+    found, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
+    # Laying text out takes a hundred times as long as moving its box.
+    at_point: dict[tuple[str, str], Any] = {}
     for x, y in _places():
         side = "left" if x > 1 else "right" if x < -1 else "center"
         height = "center" if abs(x) > abs(y) else "bottom" if y > 0 else "top"
-        written.set(position=(x, y), ha=side, va=height)
-        box = _extent(written)
+        if (side, height) not in at_point:
+            written.set(position=(0, 0), ha=side, va=height)
+            at_point[side, height] = _extent(written)
+        box = at_point[side, height].translated(x * pixels, y * pixels)
         outside = not (within.x0 <= box.x0 and box.x1 <= within.x1 and within.y0 <= box.y0 and box.y1 <= within.y1)
-        found.append((sum(box.overlaps(other) for other in taken) + 2 * outside, (x, y, side, height)))
+        found.append((_overlaps(box, boxes) + 2 * outside, (x, y, side, height)))
         if not found[-1][0]:
             break
     x, y, side, height = min(found, key=lambda f: f[0])[1]
     written.set(position=(x, y), ha=side, va=height)
     return _extent(written)
+
+
+def _overlaps(box: Any, others: np.ndarray) -> int:
+    """How many boxes, (count, 4) of left, bottom, right and top, a box meets."""
+    left, bottom, right, top = others.T
+    return int(np.count_nonzero((left <= box.x1) & (box.x0 <= right) & (bottom <= box.y1) & (box.y0 <= top)))
 
 
 def _extent(written: Any) -> Any:

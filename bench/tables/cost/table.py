@@ -245,6 +245,7 @@ TABLE = Table(
     by="measure",
     partial=True,
     compilers=("driver", "compiler"),
+    is_measured_beside=True,
     section=Section(
         title="What it costs",
         short="Cost",

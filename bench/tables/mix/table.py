@@ -189,6 +189,7 @@ TABLE = Table(
         },
     ),
     single={"encoding": "octahedral", "operation": "filter", "normals": "axes", "angle": "5", "backend": "jax"},
+    is_measured_beside=True,
     section=Section(
         title="Can a code be filtered, blended or resolved?",
         short="Mixing",

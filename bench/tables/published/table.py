@@ -49,6 +49,7 @@ TABLE = Table(
     columns=COLUMNS,
     usual=({"source": "pranckevicius,cigolle,smith"},),
     single={"source": "cigolle"},
+    is_measured_beside=True,
     section=Section(
         title="Published figures, measured anew",
         short="Published",

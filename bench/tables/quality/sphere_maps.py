@@ -8,9 +8,9 @@ hemisphere; at a distance r from its middle |z| = 1 - r^2, so that every cell st
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -23,7 +23,7 @@ from ...metrics.meter import angle_between, readable
 from ...output.arrays import DamagedError, read_npz
 from ...output.writing import whole_file
 from ...worst_case.exact_figures import has_twin
-from .measure import UNMEASURABLE, rgba
+from .measure import UNMEASURABLE, rgba, round_trip
 
 # Cells across a disc, and directions along each side of a cell.
 CELLS, FINE = 96, 5
@@ -67,8 +67,8 @@ def sphere_map(codec: Codec) -> SphereMap:
     held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
     n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
     found = np.full((2, *inside.shape), np.nan, np.float32)
-    angles = _angles(codec) if has_twin(codec.encoding) else partial(_angles_by_glsl, codec)
-    found[:held, inside] = np.asarray(angles(n))
+    angles = _angles if has_twin(codec.encoding) else _angles_by_glsl
+    found[:held, inside] = np.asarray(angles(codec, n))
     cells = found.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
     some = ~np.isnan(cells).all(axis=-1)
     mean, largest = (np.full(some.shape, np.nan, np.float32) for _ in range(2))
@@ -76,13 +76,17 @@ def sphere_map(codec: Codec) -> SphereMap:
     return SphereMap(mean, largest, FINE * FINE)
 
 
-def _angles(codec: Codec):
-    def angles(n: Vec3):
-        ahead = Vec3(n.x * 0.0, n.y * 0.0, n.z * 0.0 - 1.0)
-        decoded, _ = readable(n, codec.round_trip(n, ahead))
-        return angle_between(n, decoded)
+def _angles(codec: Codec, n: Vec3) -> Any:
+    """Angles of planes of shape (halves, pixels), by the program that the table is measured with."""
+    given = np.stack([plane.ravel() for plane in n], axis=1)
+    ahead = np.broadcast_to(np.array([0.0, 0.0, -1.0], np.float32), given.shape)
+    decoded = round_trip(codec, given, ahead).T.reshape(3, *n.x.shape)
+    return _apart(n, Vec3(*decoded))
 
-    return jax.jit(angles)
+
+@jax.jit
+def _apart(n: Vec3, decoded: Vec3) -> Any:
+    return angle_between(n, readable(n, decoded)[0])
 
 
 def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:

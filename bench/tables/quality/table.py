@@ -219,6 +219,7 @@ TABLE = Table(
     single={"encoding": "octahedral", "backend": "jax"},
     files={"images": "images", "maps": "sphere"},
     renamed={"psnr_seed_db": "psnr_article_db"},
+    is_measured_beside=True,
     section=Section(
         title="What normals lose",
         short="Normals",

@@ -1,0 +1,29 @@
+"""How this process's memory is given back. Imports nothing heavy."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+
+# mallopt's name in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
+M_ARENA_MAX, ARENAS = -8, 2
+
+
+def have_few_heaps() -> None:
+    """Threads share two heaps from here on; elsewhere than on glibc nothing is done."""
+    if mallopt := getattr(ctypes.CDLL(None), "mallopt", None):
+        mallopt(M_ARENA_MAX, ARENAS)
+
+
+def give_back_what_is_freed() -> None:
+    """What is freed within the heaps is the system's again: hundreds of megabytes after a table of images."""
+    gc.collect()
+    if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
+        trim(0)
+
+
+def keep_what_is_imported() -> None:
+    """Have the garbage collector pass over what is there now: with JAX that is a million objects, looked at again and
+    again for nothing."""
+    gc.collect()
+    gc.freeze()

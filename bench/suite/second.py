@@ -1,0 +1,117 @@
+"""The second process of a run, which measures tables while the first one renders others.
+
+One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
+starts it with `second_process`; what happens in it stands in `second_child.py`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from threading import Event, Thread
+from typing import IO, Any
+
+from ..machine.children import environment, python
+from ..machine.cores import cores
+from ..output.errors import MissingError, UsageError, tell, told
+from ..results.measuring import Asked
+from ..results.plain import key_text
+from ..results.runs import Run
+
+CHILD = python("normalbench.bench.suite.second_child")
+ERRORS: Mapping[int, type[Exception]] = {error.exit_code: error for error in (UsageError, MissingError)}
+
+
+def is_worth_it(asks: Sequence[Asked]) -> bool:
+    """Whether there is something to measure at the same time, and a core for it."""
+    return cores() > 1 and len({ask.table.is_measured_beside for ask in asks}) > 1
+
+
+class Second:
+    """The second process, as the first one sees it.
+
+    Attributes:
+        written: the tables whose files are written, too.
+    """
+
+    def __init__(self, process: subprocess.Popen[str], run: Run, asks: Sequence[Asked]):
+        self.written: set[str] = set()
+        self._process, self._run, self._error = process, run, None
+        self._steps = {key_text(ask.table.name, step.key): (ask.table.name, step) for ask in asks for step in ask.steps}
+        self._ended = Event()
+        self._reader = Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def wait(self) -> None:
+        """Until its tables are measured and written; rows are missing where something killed it.
+
+        Raises:
+            UsageError, MissingError: what was wrong there.
+        """
+        self._ended.wait()
+        if self._error:
+            raise self._error
+
+    def end(self) -> None:
+        """End the process, and what it started; rows that it has sent are kept."""
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._reader.join()
+
+    def _read(self) -> None:
+        try:
+            for line in self._process.stdout or ():
+                # A line without an end is of a process that was killed meanwhile.
+                if line.endswith("\n"):
+                    self._take(json.loads(line))
+        except Exception as error:  # raised again where somebody waits
+            self._error = error
+        finally:
+            self._ended.set()
+
+    def _take(self, line: Mapping[str, Any]) -> None:
+        if "rows" in line:
+            self._run.keep(*self._steps[line["step"]], line["rows"])
+        elif "written" in line:
+            self.written.add(line["written"])
+        else:
+            raise ERRORS[line["status"]](line["error"])
+
+
+@contextmanager
+def second_process(run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> Iterator[Second]:
+    """A process that measures tables into a run; ended with the block.
+
+    Args:
+        said: the options that were given.
+    """
+    given = {"folder": str(run.folder), "tables": [ask.table.name for ask in asks], "said": said, "told": sorted(told)}
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors, _started(errors) as process:
+        assert process.stdin
+        second = Second(process, run, asks)
+        try:
+            # What ends early says why in another way.
+            with suppress(BrokenPipeError):
+                process.stdin.write(json.dumps(given) + "\n")
+                process.stdin.flush()
+            yield second
+        finally:
+            second.end()
+            _tell_all(errors)
+
+
+def _started(errors: IO[str]) -> subprocess.Popen[str]:
+    # In a session of its own: what interrupts this process does not reach it twice.
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": errors}
+    return subprocess.Popen(CHILD, text=True, env=environment(), start_new_session=True, **pipes)
+
+
+def _tell_all(errors: IO[str]) -> None:
+    errors.seek(0)
+    for line in errors:
+        tell(line.removeprefix("normalbench: "))

@@ -1,0 +1,96 @@
+"""What the second process of a run does; see `second.py`.
+
+    python -m normalbench.bench.suite.second_child < REQUEST
+
+REQUEST is a line of JSON. Prints lines of JSON: a step and its rows, a table whose steps are all measured and whose
+files are written, or what is wrong. Ends when its standard input does, as when the first process was killed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from threading import Thread
+from typing import IO, Any
+
+from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
+from ..output.errors import MissingError, UsageError, told
+from ..results.measuring import measured
+from ..results.plain import key_text, plain
+from ..results.runs import read_run
+from ..tables.table import Row, Step
+from .run import asked_of
+from .run_options import RunOptions
+
+
+class Sent:
+    """Rows that the first process keeps."""
+
+    def __init__(self, folder: Path, out: IO[str]):
+        self._rows = {key_text(step["table"], step["key"]): step["rows"] for step in read_run(folder).steps}
+        self._out = out
+
+    def find(self, table: str, step: Step) -> list[Row] | None:
+        """The rows of a step that were kept before; None where there are none."""
+        return self._rows.get(key_text(table, step.key))
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
+        """Send the rows of a step, and give them as they are read back."""
+        kept = plain(rows)
+        self.send({"step": key_text(table, step.key), "rows": kept})
+        return kept
+
+    def send(self, line: Mapping[str, Any]) -> None:
+        """A line to the first process."""
+        self._out.write(json.dumps(line) + "\n")
+        self._out.flush()
+
+
+def measure(given: Mapping[str, Any], sent: Sent) -> None:
+    """The tables that are asked for, one after the other."""
+    request = RunOptions(tables=",".join(given["tables"]), **given["said"])
+    asks = asked_of(request, Path(given["folder"]))
+    keep_what_is_imported()
+    for ask in asks:
+        done = measured(ask, sent)
+        ask.table.work.write(done, lambda _: None)
+        sent.send({"written": ask.table.name})
+        give_back_what_is_freed()
+
+
+def _end_with_the_first() -> None:
+    """End this process and what it started once nobody writes to it any more."""
+    sys.stdin.read()
+    os.killpg(0, signal.SIGKILL)
+
+
+def _own_output() -> IO[str]:
+    """Where lines go: what libraries print goes to standard error."""
+    out = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return out
+
+
+def main() -> None:
+    """Measure what standard input asks for."""
+    have_few_heaps()
+    out, given = _own_output(), json.loads(sys.stdin.readline())
+    Thread(target=_end_with_the_first, daemon=True).start()
+    # The first process has said it.
+    told.update(given["told"])
+    sent = Sent(Path(given["folder"]), out)
+    try:
+        measure(given, sent)
+    except (UsageError, MissingError) as error:
+        sent.send({"error": str(error), "status": error.exit_code})
+
+
+if __name__ == "__main__":
+    main()
+    # What computed in other threads need not be tidied up.
+    sys.stderr.flush()
+    os._exit(0)
