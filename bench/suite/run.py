@@ -14,10 +14,11 @@ from ...reports import tables
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
-from ..results.measuring import Asked, asked, measured
+from ..results.measuring import Asked, Place, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
+from ..workers.places import keep_times, place
 from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
 
@@ -93,11 +94,14 @@ def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
     outputs = in_folder(table, table.outputs(), folder)
     asks = [asked(table, options, outputs) for options in options_of(table, said)]
     steps = {repr(step.key): step for ask in asks for step in ask.steps}
-    return replace(asks[0], steps=list(steps.values()))
+    return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
 
 
-def run_command(request: Any, output: Path | None) -> int:
+def run_command(request: Any, output: Path | None, on: str | None = None) -> int:
     """Measure tables into a results folder, their summaries to standard output. What was stopped goes on.
+
+    Args:
+        on: where they are measured; None for this process.
 
     Returns:
         the exit status: 1 where a row fails.
@@ -112,12 +116,13 @@ def run_command(request: Any, output: Path | None) -> int:
         asks = asked_of(request, folder)
     facts |= {"left_out": left_out}
     total = sum(len(ask.steps) for ask in asks)
-    with opened(folder, facts) as run:
+    with place(on) as where, opened(folder, facts) as run:
         if run.kept:
             tell(f"{folder} goes on: {_there(run, asks)} of {total} steps are there")
         try:
-            failed = [_measure(run, ask) for ask in asks]
+            failed = [_measure(run, ask, where) for ask in asks]
             done = [one for one, _ in failed]
+            keep_times(where, folder)
             _complete(run, asks, done)
         except (KeyboardInterrupt, SystemExit):
             tell(f"{run.kept} of {total} steps are kept; the same command goes on")
@@ -135,9 +140,9 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure(run: Run, ask: Asked) -> tuple[Measured, bool]:
+def _measure(run: Run, ask: Asked, where: Place) -> tuple[Measured, bool]:
     """One table: its rows kept, its summary shown; whether a row fails."""
-    done = measured(ask, run)
+    done = measured(ask, run, where)
     say_skipped(ask.table, done.rows)
     say_lines(ask.table.work.warnings(done.rows))
     failed = say_lines(ask.table.work.failures(done.rows))
