@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ..languages.source import Source
-from ..languages.words import file_of, is_translated, names_an_encoder, twin_of
+from ..languages.words import file_of, names_an_encoder, twin_of
 from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
@@ -183,7 +183,7 @@ def _buffers(path: Path) -> list[Path]:
 def _included(path: Path) -> list[Path]:
     """The files that a user's encoder includes; none of one that cannot be read."""
     try:
-        return list(Source(path).files.values()) if is_translated(path) else []
+        return list(Source(path).files.values())
     except UsageError:
         return []
 
