@@ -122,6 +122,8 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
         try:
             failed = [_measure(run, ask, where) for ask in asks]
             done = [one for one, _ in failed]
+            if on:
+                run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
             keep_times(where, folder)
             _complete(run, asks, done)
         except (KeyboardInterrupt, SystemExit):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,14 +36,8 @@ def place(on: str | None) -> Iterator[Here | Pool]:
         with _local(named.count) as pool:
             yield pool
         return
-    from .about import about
-    from .pool import Pool
-
-    pool = Pool(named.text, about())
-    try:
+    with _crew(named.text) as pool:
         yield pool
-    finally:
-        pool.close()
 
 
 @contextmanager
@@ -52,17 +46,24 @@ def _local(count: int) -> Iterator[Pool]:
 
     processes = LocalProcesses(count)
     try:
-        # Imported while the workers start.
-        from .about import about
-        from .pool import Pool
-
-        pool = Pool(processes.address, about(), processes.look_after)
-        try:
+        with _crew(processes.address, processes.look_after) as pool:
             yield pool
-        finally:
-            pool.close()
     finally:
         processes.close()
+
+
+@contextmanager
+def _crew(address: str, look_after: Callable[[], bool] = lambda: False) -> Iterator[Pool]:
+    # Imported while workers start.
+    from .about import about
+    from .crew import Crew
+    from .pool import Pool
+
+    crew = Crew(address, about(), look_after)
+    try:
+        yield Pool(crew)
+    finally:
+        crew.close()
 
 
 def keep_times(where: object, folder: Path) -> None:
