@@ -22,7 +22,7 @@ from ..tables.table import Measured, Row, Step, Table, Tick
 from .plain import key_text, plain
 
 # Beside a file of one of these, files that it refers to are read too.
-COMPANIONS = {".obj": ("*.mtl",)}
+COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
 
 
 @dataclass(frozen=True)

@@ -171,6 +171,10 @@ def _by_backend(step: Step) -> frozenset[str]:
     return BACKENDS_NEED[step.key.get("backend", "glsl")]
 
 
+def _by_repeats(step: Step) -> bool:
+    return bool(step.key.get("repeats"))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Work:
     """How a table is measured and shown. Everything here may import heavy packages.
@@ -194,6 +198,7 @@ class Work:
         missing: why `run` leaves the table out on this machine; empty where it does not.
         needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS. Workers that have another one, or none,
             do not measure it.
+        is_timed: whether a clock is read for a step's rows: then nothing else is measured on its machine meanwhile.
         stays: whether measuring leaves behind what `write` takes, so that no other process can do it.
     """
 
@@ -214,6 +219,7 @@ class Work:
     lacking: Callable[[Measured], Iterable[str]] = _nothing
     missing: Callable[[], str] = str
     needs: Callable[[Step], frozenset[str]] = _by_backend
+    is_timed: Callable[[Step], bool] = _by_repeats
     stays: bool = False
 
 
@@ -284,10 +290,6 @@ class Table:
     def name_of(self, row: Mapping[str, Any]) -> str:
         """What a row is called: its key columns' values."""
         return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
-
-    def is_timed(self, step: Step) -> bool:
-        """Whether a clock is read for a step's rows: its key says how many `repeats` there are."""
-        return bool(self.of_role(Role.TIME) and step.key.get("repeats"))
 
     def lacking(self, done: Measured) -> list[str]:
         """What the machine, or a worker, turned out to lack; each once."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from ..tables.table import Step
 from .orders import Order
@@ -46,24 +47,41 @@ class Chunk:
     steps: list[Waiting]
 
 
-@dataclass(eq=False)
 class Line:
-    """The steps of an order that wait, in their order."""
+    """The steps of an order that wait, in their order, apart by what they need."""
 
-    order: Order
-    waiting: list[Waiting] = field(default_factory=list)
+    def __init__(self, order: Order, steps: Iterable[Waiting]):
+        self.order = order
+        self._groups: dict[tuple[bool, frozenset[str]], deque[Waiting]] = {}
+        for one in steps:
+            self._group(one).append(one)
 
-    def next_chunk(self, fits: Callable[[Waiting], bool], workers: int, is_timed: bool) -> Chunk | None:
-        """The first steps that a worker can measure; None where there is none."""
-        usable = [one for one in self.waiting if one.is_timed == is_timed and fits(one)]
-        if not usable:
-            return None
-        size = 1 if is_timed else chunk_size(len(usable), workers)
-        taken = usable[:1] if usable[0].lost else [one for one in usable[:size] if not one.lost]
-        chosen = set(map(id, taken))
-        self.waiting = [one for one in self.waiting if id(one) not in chosen]
+    def _group(self, one: Waiting) -> deque[Waiting]:
+        return self._groups.setdefault((one.is_timed, one.needs), deque())
+
+    def needs(self, is_timed: bool) -> list[frozenset[str]]:
+        """What the steps that wait need, the most first: a worker that can measure all begins with what few can."""
+        found = [needs for (timed, needs), steps in self._groups.items() if steps and timed == is_timed]
+        return sorted(found, key=len, reverse=True)
+
+    def next_chunk(self, needs: frozenset[str], workers: int, is_timed: bool) -> Chunk:
+        """The first steps of those with the same needs; of timed ones, and those that were lost, one."""
+        steps = self._groups[is_timed, needs]
+        size = 1 if is_timed else chunk_size(len(steps), workers)
+        taken = [steps.popleft()]
+        while not taken[0].lost and len(taken) < size and steps and not steps[0].lost:
+            taken.append(steps.popleft())
         return Chunk(self.order, taken)
 
-    def again(self, steps: Iterable[Waiting]) -> None:
-        """Steps that a lost worker had; those that were lost before wait for the end of the line, alone."""
-        self.waiting = sorted([*self.waiting, *steps], key=lambda one: (one.lost, one.place))
+    def again(self, steps: Sequence[Waiting]) -> None:
+        """Steps that did not come back: first in the line; last, if it was with a worker that they were lost."""
+        for one in reversed(steps):
+            if one.lost:
+                self._group(one).append(one)
+            else:
+                self._group(one).appendleft(one)
+
+    @property
+    def left(self) -> list[Waiting]:
+        """All that wait, in their order."""
+        return sorted((one for steps in self._groups.values() for one in steps), key=lambda one: one.place)

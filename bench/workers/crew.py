@@ -12,8 +12,8 @@ from .admission import Admission
 from .link import LOST, Flight, Link
 from .tasks import probe
 
-# How often workers are looked for, and how long there may be none, in seconds.
-LOOK_S, PATIENCE_S = 0.5, 60.0
+# How often workers are looked for, in seconds and in the time that a look takes; how long there may be none.
+LOOK_S, PAUSES, PATIENCE_S = 0.5, 20.0, 60.0
 
 
 class Probing:
@@ -45,6 +45,7 @@ class Crew:
         self._flights: dict[str, Flight] = {}
         self._refused: set[str] = set()
         self._seen_at = self._looked_at = time.monotonic()
+        self._pause = LOOK_S
 
     def idle(self) -> list[str]:
         """The workers that may measure and have nothing to do."""
@@ -91,11 +92,14 @@ class Crew:
             UsageError: the scheduler is gone and does not come back.
             MissingError: no worker was there for a minute.
         """
-        if time.monotonic() - self._looked_at < LOOK_S:
+        began = time.monotonic()
+        if began - self._looked_at < self._pause:
             return []
         there = None if self._look_after() or not self._link.is_there else self._link.workers()
         found = self._start_again() if there is None else self._gone(there)
         self._looked_at = time.monotonic()
+        # To ask after many workers takes a while; most of the time is for what they bring.
+        self._pause = max(LOOK_S, PAUSES * (self._looked_at - began))
         if len(self.admission) or self._flights:
             self._seen_at = self._looked_at
         elif self._looked_at - self._seen_at > PATIENCE_S:

@@ -56,7 +56,7 @@ class Pool:
                 for _ in range(waiting.step.ticks):
                     tick(waiting.step.name)
                 yield waiting.step, rows
-        yield from self._measured_here(ask, queue.line.waiting, tick)
+        yield from self._measured_here(ask, queue.line.left, tick)
 
     def _measured(self, queue: _Queue, is_timed: bool) -> Found:
         """The steps that a clock is read for, or the others: all that workers can measure."""
@@ -118,29 +118,28 @@ class _Queue:
 
     def has_work(self, is_timed: bool) -> bool:
         """Whether something is under way, or waits for a worker that is there or may come."""
-        wanted = [one for one in self.line.waiting if one.is_timed == is_timed]
+        wanted = self.line.needs(is_timed)
         if not wanted and not self._under_way:
             return False
         admission = self._crew.admission
         may_come = self._under_way or self._crew.is_deciding or not len(admission)
-        if may_come or any(self._fits(address, one) for one in wanted for address in admission):
+        if may_come or any(self._fits(address, needs) for needs in wanted for address in admission):
             self._fitted_at = time.monotonic()
         return time.monotonic() - self._fitted_at < WAIT_S
 
-    def _fits(self, address: str, one: Waiting) -> bool:
-        return address not in self._refused and self._crew.admission.fits(address, one.needs)
+    def _fits(self, address: str, needs: frozenset[str]) -> bool:
+        return address not in self._refused and self._crew.admission.fits(address, needs)
 
     def dispatch(self, is_timed: bool) -> None:
         """A chunk for each idle worker; of timed steps one for each machine."""
-        admission, busy = self._crew.admission, self._crew.busy_hosts()
+        admission, busy = self._crew.admission, self._crew.busy_hosts() if is_timed else set[str]()
         for address in self._crew.idle():
-            host = admission.host(address)
-            if is_timed and host in busy:
-                continue
-            chunk = self.line.next_chunk(lambda one, at=address: self._fits(at, one), len(admission), is_timed)
-            if chunk:
-                busy.add(host)
-                self._send(address, chunk)
+            host, wanted = admission.host(address), self.line.needs(is_timed)
+            needs = next((needs for needs in wanted if self._fits(address, needs)), None)
+            if needs is not None and host not in busy:
+                if is_timed:
+                    busy.add(host)
+                self._send(address, self.line.next_chunk(needs, len(admission), is_timed))
 
     def _send(self, address: str, chunk: Chunk) -> None:
         key = (self._crew.generation, address)
@@ -168,7 +167,7 @@ class _Queue:
         self._under_way.discard(id(chunk))
         for one in chunk.steps:
             one.lost += is_fault
-        self.line.again(one for one in chunk.steps if one.lost <= MOST_LOST)
+        self.line.again([one for one in chunk.steps if one.lost <= MOST_LOST])
         for one in chunk.steps:
             if one.lost > MOST_LOST:
                 why = f"{one.lost} workers were lost while they measured it"
@@ -177,7 +176,7 @@ class _Queue:
 
 
 def _waiting(table: Table, step: Step, place: int) -> Waiting:
-    return Waiting(step, step_name(table.name, step.key), table.work.needs(step), table.is_timed(step), place)
+    return Waiting(step, step_name(table.name, step.key), table.work.needs(step), table.work.is_timed(step), place)
 
 
 def _lost_row(table: Table, step: Step, why: str) -> Row:
