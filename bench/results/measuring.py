@@ -150,7 +150,7 @@ def _fingerprint(path: Path) -> str:
     try:
         if not path.is_file():
             return ""
-        digests = [_digest(one) for one in (path, *companions(path))]
+        digests = [file_digest(one) for one in (path, *companions(path))]
         return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
     except (OSError, ValueError):
         return ""
@@ -188,7 +188,8 @@ def _included(path: Path) -> list[Path]:
         return []
 
 
-def _digest(path: Path) -> bytes:
+def file_digest(path: Path) -> bytes:
+    """The SHA-256 of a file's content. Raises OSError."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").digest()
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..tables.table import Step
-from .orders import Order
+from .orders import Parcel
 
 # Of few steps with many workers one at a time; of many, as many as the quality table measures at once.
 MOST_TOGETHER = 16
@@ -32,6 +33,7 @@ class Waiting:
     """
 
     step: Step
+    parcel: Parcel
     name: str
     needs: frozenset[str]
     is_timed: bool
@@ -39,47 +41,57 @@ class Waiting:
     lost: int = 0
 
 
+class Group(NamedTuple):
+    """What steps have in common that travel together."""
+
+    is_timed: bool
+    needs: frozenset[str]
+    parcel: Parcel
+
+
 @dataclass(eq=False)
 class Chunk:
     """Steps that travel together."""
 
-    order: Order
+    parcel: Parcel
     steps: list[Waiting]
 
 
 class Line:
-    """The steps of an order that wait, in their order, apart by what they need."""
+    """The steps that wait, in their order, apart by the parcel that they are of and by what they need."""
 
-    def __init__(self, order: Order, steps: Iterable[Waiting]):
-        self.order = order
-        self._groups: dict[tuple[bool, frozenset[str]], deque[Waiting]] = {}
+    def __init__(self, steps: Iterable[Waiting]):
+        self._groups: dict[Group, deque[Waiting]] = {}
+        self._count = 0
         for one in steps:
-            self._group(one).append(one)
+            self._join(one)
 
-    def _group(self, one: Waiting) -> deque[Waiting]:
-        return self._groups.setdefault((one.is_timed, one.needs), deque())
+    def _join(self, one: Waiting, is_first: bool = False) -> None:
+        group = self._groups.setdefault(Group(one.is_timed, one.needs, one.parcel), deque())
+        (group.appendleft if is_first else group.append)(one)
+        self._count += 1
 
-    def needs(self, is_timed: bool) -> list[frozenset[str]]:
-        """What the steps that wait need, the most first: a worker that can measure all begins with what few can."""
-        found = [needs for (timed, needs), steps in self._groups.items() if steps and timed == is_timed]
-        return sorted(found, key=len, reverse=True)
+    def groups(self, is_timed: bool) -> list[Group]:
+        """The groups that wait, those with the most needs first: who can measure all begins with what few can."""
+        found = [group for group in self._groups if group.is_timed == is_timed]
+        return sorted(found, key=lambda group: len(group.needs), reverse=True)
 
-    def next_chunk(self, needs: frozenset[str], workers: int, is_timed: bool) -> Chunk:
-        """The first steps of those with the same needs; of timed ones, and those that were lost, one."""
-        steps = self._groups[is_timed, needs]
-        size = 1 if is_timed else chunk_size(len(steps), workers)
+    def next_chunk(self, group: Group, workers: int) -> Chunk:
+        """The first steps of a group; of timed ones, and those that were lost, one."""
+        steps = self._groups[group]
+        size = 1 if group.is_timed else chunk_size(self._count, workers)
         taken = [steps.popleft()]
         while not taken[0].lost and len(taken) < size and steps and not steps[0].lost:
             taken.append(steps.popleft())
-        return Chunk(self.order, taken)
+        if not steps:
+            del self._groups[group]
+        self._count -= len(taken)
+        return Chunk(group.parcel, taken)
 
     def again(self, steps: Sequence[Waiting]) -> None:
         """Steps that did not come back: first in the line; last, if it was with a worker that they were lost."""
         for one in reversed(steps):
-            if one.lost:
-                self._group(one).append(one)
-            else:
-                self._group(one).appendleft(one)
+            self._join(one, is_first=not one.lost)
 
     @property
     def left(self) -> list[Waiting]:

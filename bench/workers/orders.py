@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import io
 import os
-import pickle
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
 from ..languages.words import file_of
 from ..options.words import given_in
-from ..output.errors import UsageError
-from ..results.measuring import Asked, companions, words_of
+from ..output.errors import UsageError, noting_what_is_left_out
+from ..results.measuring import Asked, companions, file_digest, words_of
 from ..results.plain import key_text
 from ..tables.table import Row, Step
 
 # Where a worker keeps files that do not lie below the folder in which the command was typed.
 ELSEWHERE = ".elsewhere"
+# Bytes of files from which on each travels with the steps that read it, and not all with all.
+APART = 1 << 23
 # The output whose files are written while steps are measured, and come back with their rows.
 PICTURES = "images"
 
@@ -29,24 +31,22 @@ class Order:
     """What a worker makes a table's steps of.
 
     Attributes:
+        id: the same for the same work, whoever asks.
         table: the table's name.
         options: sets of options, each the typed values by name.
         pictures: whether pictures are wanted.
         files: users' files, by their place in the worker's folder.
         typed: by a folder that the worker has under another name, how the user typed it.
+        known: fingerprints of all files of the command, as typed; a worker has those of its order.
     """
 
+    id: str
     table: str
     options: tuple[Mapping[str, Any], ...]
     pictures: bool = False
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     typed: Mapping[str, str] = field(default_factory=dict)
-
-    @cached_property
-    def id(self) -> str:
-        """The same for the same work."""
-        said = [self.table, self.options, self.pictures, sorted(self.files.items()), sorted(self.typed.items())]
-        return hashlib.sha256(pickle.dumps(said)).hexdigest()[:16]
+    known: Mapping[str, str] = field(default_factory=dict)
 
     def as_typed(self, value: Any) -> Any:
         """A value of a row or a key with files as the user named them."""
@@ -59,8 +59,10 @@ class Order:
         return [self.as_typed(one) for one in value] if isinstance(value, list) else value
 
     def name_of(self, step: Step) -> str:
-        """What a step is known by, the same here and on every worker."""
-        return step_name(self.table, self.as_typed(step.key))
+        """What a step is known by, the same here and on every worker that has the same files."""
+        key = self.as_typed(step.key)
+        is_same = key.get("files", {}).items() <= self.known.items()
+        return step_name(self.table, key | {"files": dict(self.known)} if self.known and is_same else key)
 
 
 def step_name(table: str, key: Row) -> str:
@@ -72,7 +74,7 @@ class Packing:
     """The users' files of a command, as they are collected."""
 
     def __init__(self) -> None:
-        self.files: dict[str, bytes] = {}
+        self.files: dict[str, Path] = {}
         self.typed: dict[str, str] = {}
 
     def packed(self, word: str) -> str:
@@ -82,7 +84,7 @@ class Packing:
             return word
         folder = self._place(path)
         for one in (path, *companions(path)):
-            self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one.read_bytes()
+            self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one
         return word.replace(str(path), str(folder / path.name), 1)
 
     def _place(self, path: Path) -> Path:
@@ -106,15 +108,94 @@ def _file_in(word: str) -> Path | None:
     return None
 
 
-def order_of(ask: Asked) -> Order:
-    """What is asked, as it travels. Raises UsageError for values and files that cannot."""
-    packing = Packing()
+@dataclass(frozen=True, eq=False)
+class Parcel:
+    """An order that has yet to be packed: files are read when a worker is sent it.
+
+    Attributes:
+        id: that of the order.
+        steps: the steps that workers make of it.
+    """
+
+    id: str
+    steps: Sequence[Step]
+    table: str
+    options: tuple[Mapping[str, Any], ...]
+    pictures: bool
+    packing: Packing
+    known: Mapping[str, str]
+
+    def order(self) -> Order:
+        """With the files as they are now. Raises UsageError where one cannot be read."""
+        try:
+            files = {place: path.read_bytes() for place, path in self.packing.files.items()}
+        except OSError as error:
+            raise UsageError(f"cannot read {error.filename}: {error.strerror or error}") from error
+        return Order(self.id, self.table, self.options, self.pictures, files, self.packing.typed, self.known)
+
+
+def parcels_of(ask: Asked, steps: Sequence[Step]) -> list[Parcel]:
+    """What is asked, as it travels: one parcel, or one for each file where there are many large ones.
+
+    Raises:
+        UsageError: for values and files that cannot travel.
+    """
+    parts = _parts(ask.options) if not ask.others else []
+    if len(parts) > 1:
+        divided = _divided(ask, steps, parts)
+        if sum(len(one.steps) for one in divided) == len(steps):
+            return divided
+    return [_parcel(ask, steps, (ask.options, *ask.others))]
+
+
+def _parts(options: Any) -> list[Any]:
+    """Options for one file each, of the option that names most files; none where all files together are small."""
+    named = {name: [word for word in words if _file_in(word)] for name, words in words_of(options).items()}
+    name = max(named, key=lambda name: len(named[name]), default="")
+    files = named.get(name, [])
+    if sum(path.stat().st_size for path in map(_file_in, files) if path) < APART:
+        return []
+    others = [word for word in words_of(options)[name] if word and word not in files]
+    return [replace(options, **{name: word}) for word in (*files, *([",".join(others)] if others else []))]
+
+
+def _divided(ask: Asked, steps: Sequence[Step], parts: Sequence[Any]) -> list[Parcel]:
+    """A parcel for each part, with those of the steps that are made of it."""
+    known = _known(steps)
+    wanted = {step_name(ask.table.name, step.key): step for step in steps}
+    found: list[Parcel] = []
+    for options in parts:
+        keys = [step.key | ({"files": dict(known)} if known else {}) for step in _quietly_made(ask, options)]
+        own = [wanted.pop(name) for key in keys if (name := step_name(ask.table.name, key)) in wanted]
+        if own:
+            found.append(_parcel(ask, own, (options,)))
+    return found
+
+
+def _quietly_made(ask: Asked, options: Any) -> Sequence[Step]:
+    """Steps; what there is to say of them has been said."""
+    with contextlib.redirect_stderr(io.StringIO()), noting_what_is_left_out():
+        try:
+            return ask.table.work.steps(options, ask.outputs)
+        except UsageError:
+            return []
+
+
+def _known(steps: Sequence[Step]) -> Mapping[str, str]:
+    return next((step.key["files"] for step in steps if "files" in step.key), {})
+
+
+def _parcel(ask: Asked, steps: Sequence[Step], several: Sequence[Any]) -> Parcel:
+    packing, known = Packing(), _known(steps)
     try:
-        options = tuple(_packed(one, packing) for one in (ask.options, *ask.others))
+        options = tuple(_packed(one, packing) for one in several)
+        digests = [(place, file_digest(path)) for place, path in sorted(packing.files.items())]
     except OSError as error:
         raise UsageError(f"cannot read {error.filename}: {error.strerror or error}") from error
     pictures = getattr(ask.outputs, PICTURES, None) is not None
-    return Order(ask.table.name, options, pictures, packing.files, packing.typed)
+    said = [ask.table.name, options, pictures, digests, sorted(packing.typed.items()), sorted(known.items())]
+    identity = hashlib.sha256(repr(said).encode()).hexdigest()[:16]
+    return Parcel(identity, steps, ask.table.name, options, pictures, packing, known)
 
 
 def _packed(options: Any, packing: Packing) -> dict[str, Any]:

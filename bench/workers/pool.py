@@ -14,10 +14,10 @@ from ..output.writing import whole_file
 from ..results.measuring import HERE, Asked
 from ..tables.table import Role, Row, Step, Table, Tick
 from . import tasks
-from .chunks import MOST_LOST, Chunk, Line, Waiting
+from .chunks import MOST_LOST, Chunk, Group, Line, Waiting
 from .crew import Crew
 from .link import LOST
-from .orders import PICTURES, Order, order_of, step_name
+from .orders import PICTURES, Order, Parcel, parcels_of, step_name
 
 # How long a worker may be missing that can measure a step before this process does, in seconds.
 WAIT_S = 10.0
@@ -108,42 +108,44 @@ class _Queue:
 
     def __init__(self, crew: Crew, ask: Asked, steps: Sequence[Step]):
         self.ask, self._crew = ask, crew
-        self.line = Line(order_of(ask), [_waiting(ask.table, step, at) for at, step in enumerate(steps)])
+        place = {id(step): at for at, step in enumerate(steps)}
+        parcels = parcels_of(ask, steps)
+        self.line = Line(_waiting(ask.table, step, one, place[id(step)]) for one in parcels for step in one.steps)
         self._under_way: set[int] = set()
         # When a worker was last there that fits.
         self._fitted_at = time.monotonic()
-        # Workers that have the order, and those that refuse it.
-        self._sent: set[tuple[int, str]] = set()
-        self._refused: set[str] = set()
+        # Workers by the orders that they have, and by those that they refuse.
+        self._sent: set[tuple[int, str, str]] = set()
+        self._refused: set[tuple[str, str]] = set()
 
     def has_work(self, is_timed: bool) -> bool:
         """Whether something is under way, or waits for a worker that is there or may come."""
-        wanted = self.line.needs(is_timed)
+        wanted = self.line.groups(is_timed)
         if not wanted and not self._under_way:
             return False
         admission = self._crew.admission
         may_come = self._under_way or self._crew.is_deciding or not len(admission)
-        if may_come or any(self._fits(address, needs) for needs in wanted for address in admission):
+        if may_come or any(self._fits(address, group) for group in wanted for address in admission):
             self._fitted_at = time.monotonic()
         return time.monotonic() - self._fitted_at < WAIT_S
 
-    def _fits(self, address: str, needs: frozenset[str]) -> bool:
-        return address not in self._refused and self._crew.admission.fits(address, needs)
+    def _fits(self, address: str, group: Group) -> bool:
+        return (address, group.parcel.id) not in self._refused and self._crew.admission.fits(address, group.needs)
 
     def dispatch(self, is_timed: bool) -> None:
         """A chunk for each idle worker; of timed steps one for each machine."""
         admission, busy = self._crew.admission, self._crew.busy_hosts() if is_timed else set[str]()
         for address in self._crew.idle():
-            host, wanted = admission.host(address), self.line.needs(is_timed)
-            needs = next((needs for needs in wanted if self._fits(address, needs)), None)
-            if needs is not None and host not in busy:
+            host = admission.host(address)
+            group = next((one for one in self.line.groups(is_timed) if self._fits(address, one)), None)
+            if group and host not in busy:
                 if is_timed:
                     busy.add(host)
-                self._send(address, self.line.next_chunk(needs, len(admission), is_timed))
+                self._send(address, self.line.next_chunk(group, len(admission)))
 
     def _send(self, address: str, chunk: Chunk) -> None:
-        key = (self._crew.generation, address)
-        order: Order | str = chunk.order.id if key in self._sent else chunk.order
+        key = (self._crew.generation, address, chunk.parcel.id)
+        order: Order | str = chunk.parcel.id if key in self._sent else chunk.parcel.order()
         self._sent.add(key)
         self._under_way.add(id(chunk))
         self._crew.send(address, chunk, tasks.measure, order, tuple(one.name for one in chunk.steps))
@@ -153,9 +155,9 @@ class _Queue:
         self._under_way.discard(id(chunk))
         self.line.again(left)
         if not answer.knows:
-            self._sent.discard((self._crew.generation, address))
+            self._sent.discard((self._crew.generation, address, chunk.parcel.id))
         if answer.refused:
-            self._refused.add(address)
+            self._refused.add((address, chunk.parcel.id))
             leave_out(f"{self.ask.table.name} on worker {address}: {answer.refused}")
 
     def lose(self, chunk: Chunk, is_fault: bool) -> Found:
@@ -175,8 +177,9 @@ class _Queue:
                 yield one, [_lost_row(self.ask.table, one.step, why)]
 
 
-def _waiting(table: Table, step: Step, place: int) -> Waiting:
-    return Waiting(step, step_name(table.name, step.key), table.work.needs(step), table.work.is_timed(step), place)
+def _waiting(table: Table, step: Step, parcel: Parcel, place: int) -> Waiting:
+    work, name = table.work, step_name(table.name, step.key)
+    return Waiting(step, parcel, name, work.needs(step), work.is_timed(step), place)
 
 
 def _lost_row(table: Table, step: Step, why: str) -> Row:

@@ -4,11 +4,15 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from written import as_document
 
+import normalbench as nb
+from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
+from normalbench.bench.workers import orders
 from normalbench.bench.workers.local import LocalProcesses
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -97,3 +101,34 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
         here = measured(run, tmp_path / f"{table}-one", table, words)
         there = measured(run, tmp_path / f"{table}-two", table, words, "--on", scheduler)
         assert len(here[0]) >= 2 and here == there, table
+
+
+def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp_path, monkeypatch):  # noqa: ARG001
+    """Three scenes and one of the catalogue: four parcels, each with one file or none, and the rows of one process."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(orders, "APART", 0)
+    sent: list[orders.Order] = []
+    packed = orders.Parcel.order
+    monkeypatch.setattr(orders.Parcel, "order", lambda self: sent.append(packed(self)) or sent[-1])
+    for number in range(3):
+        as_document([sphere(1.0 + number, 16, 8)]).write(tmp_path / f"scene{number}.glb")
+    words = "--encoding octahedral,spheremap --storage rg8 --scene scene0.glb,gloss,scene1.glb,scene2.glb"
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+    here = measured(run, tmp_path / "one", "render", f"{words} --size 64x36 --repeats 0")
+    there = measured(run, tmp_path / "two", "render", f"{words} --size 64x36 --repeats 0", "--on", scheduler)
+    assert len(here[0]) == 8 and here == there
+    files = {order.id: sorted(order.files) for order in sent}
+    assert sorted(files.values()) == [[], ["scene0.glb"], ["scene1.glb"], ["scene2.glb"]]
+
+
+def test_python_takes_workers_as_well(scheduler):
+    found, same = (nb.quality(encoding="octahedral", storage="rg8", normals="axes", on=on) for on in (scheduler, None))
+    pd.testing.assert_frame_equal(found, same)
+
+
+def test_a_value_of_pythons_own_is_refused(scheduler):
+    """Workers measure what has a name or is a file."""
+    normals = {"own": np.eye(3)}
+    with pytest.raises(UsageError, match="normals: own is a value of this process; workers measure names and files"):
+        nb.quality(encoding="octahedral", storage="rg8", normals=normals, on=scheduler)
