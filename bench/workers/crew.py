@@ -12,8 +12,10 @@ from .admission import Admission
 from .link import LOST, Flight, Link
 from .tasks import probe
 
-# How often workers are looked for, in seconds and in the time that a look takes; how long there may be none.
-LOOK_S, PAUSES, PATIENCE_S = 0.5, 20.0, 60.0
+# How often workers are looked for, and how long there may be none, in seconds.
+LOOK_S, PATIENCE_S = 0.5, 60.0
+# Between two questions who is there: so often the time that the first took, and no more seconds than this.
+PAUSES, LONGEST_S = 20.0, 3.0
 
 
 class Probing:
@@ -45,7 +47,7 @@ class Crew:
         self._flights: dict[str, Flight] = {}
         self._refused: set[str] = set()
         self._seen_at = self._looked_at = time.monotonic()
-        self._pause = LOOK_S
+        self._ask_at = 0.0
 
     def idle(self) -> list[str]:
         """The workers that may measure and have nothing to do."""
@@ -92,19 +94,26 @@ class Crew:
             UsageError: the scheduler is gone and does not come back.
             MissingError: no worker was there for a minute.
         """
-        began = time.monotonic()
-        if began - self._looked_at < self._pause:
+        if time.monotonic() - self._looked_at < LOOK_S:
             return []
-        there = None if self._look_after() or not self._link.is_there else self._link.workers()
-        found = self._start_again() if there is None else self._gone(there)
+        is_lost = self._look_after() or not self._link.is_there
+        found = self._start_again() if is_lost else self._looked_for()
         self._looked_at = time.monotonic()
-        # To ask after many workers takes a while; most of the time is for what they bring.
-        self._pause = max(LOOK_S, PAUSES * (self._looked_at - began))
         if len(self.admission) or self._flights:
             self._seen_at = self._looked_at
         elif self._looked_at - self._seen_at > PATIENCE_S:
             raise MissingError(f"--on {self._link.address}: no worker may measure; start one: normalbench worker")
         return [(what, is_fault) for what, is_fault in found if what is not PROBING]
+
+    def _looked_for(self) -> list[tuple[Any, bool]]:
+        """To ask after many workers takes a while; most of the time is for what they bring."""
+        began = time.monotonic()
+        if began < self._ask_at:
+            return []
+        there = self._link.workers()
+        took = time.monotonic() - began
+        self._ask_at = began + took + min(PAUSES * took, LONGEST_S)
+        return self._start_again() if there is None else self._gone(there)
 
     def expect(self) -> None:
         """From now on workers are waited for."""

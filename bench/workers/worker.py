@@ -141,7 +141,12 @@ def worker_command(address: str) -> int:
 
 def quiet() -> None:
     """Dask says nothing of lost connections: they are seen to."""
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    # Its import sets levels of its own.
+    import distributed  # noqa: F401
+
+    for name in ("distributed", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
 def end_with_parent() -> None:

@@ -17,7 +17,7 @@ from normalbench.bench.workers.places import TIMES
 PART = "quality,effects,mix,frames,vectors"
 WORKER_KILLS, SCHEDULER_KILLS = 20, 2
 # Seconds between two kills: a worker that is started anew takes some of them until it measures.
-PAUSES_S = (2.0, 4.0)
+PAUSES_S = (2.5, 4.5)
 
 
 def started(folder: Path, *on: str) -> subprocess.Popen[str]:
@@ -29,6 +29,11 @@ def running(pid: int, module: str) -> list[int]:
     """A process's children that run a module."""
     found = subprocess.run(["ps", "-o", "pid=,args=", "--ppid", str(pid)], capture_output=True, text=True).stdout
     return sorted(int(line.split()[0]) for line in found.splitlines() if f"bench.workers.{module}" in line)
+
+
+def has_rows(folder: Path) -> bool:
+    path = folder / "rows.jsonl"
+    return path.exists() and b"\n" in path.read_bytes()
 
 
 def kill_one(process: subprocess.Popen[str], module: str, rng: random.Random) -> bool:
@@ -50,7 +55,7 @@ def test_twenty_kills_of_workers_and_two_of_the_scheduler_change_nothing(tmp_pat
     rng = random.Random(20260801)
     process = started(tmp_path / "killed", "--on", "local:4")
     began = time.monotonic()
-    while process.poll() is None and not (tmp_path / "killed" / "rows.jsonl").exists():
+    while process.poll() is None and not has_rows(tmp_path / "killed"):
         time.sleep(0.2)
     victims = ["worker"] * WORKER_KILLS + ["scheduler"] * SCHEDULER_KILLS
     rng.shuffle(victims)
