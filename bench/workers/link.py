@@ -84,9 +84,12 @@ class Link:
         arrived = self._arrived
         key = f"normalbench-{self._name}-{next(self._numbers)}"
         try:
-            flight.future = self._client.submit(
-                function, *arguments, key=key, workers=[flight.address], pure=False, retries=0
-            )
+            with warnings.catch_warnings():
+                # Files are large, and each worker is sent them once.
+                warnings.simplefilter("ignore")
+                flight.future = self._client.submit(
+                    function, *arguments, key=key, workers=[flight.address], pure=False, retries=0
+                )
             flight.future.add_done_callback(lambda _: arrived.put(flight))
         except Exception:
             arrived.put(flight)

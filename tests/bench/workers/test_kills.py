@@ -16,8 +16,9 @@ from normalbench.bench.workers.places import TIMES
 # four kills hit it by chance, which would give it up.
 PART = "quality,effects,mix,frames,vectors"
 WORKER_KILLS, SCHEDULER_KILLS = 20, 2
-# Seconds between two kills: a worker that is started anew takes some of them until it measures.
-PAUSES_S = (2.5, 4.5)
+# Seconds between two kills: a worker that is started anew takes more of them until it measures, so that little is
+# done meanwhile, and all kills come before the page is drawn.
+PAUSES_S = (1.6, 3.0)
 
 
 def started(folder: Path, *on: str) -> subprocess.Popen[str]:

@@ -96,6 +96,8 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
         "quality": f"--encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl",
         "render": f"--encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0",
     }.items():
+        if is_absolute and table == "quality":
+            continue  # to look at encoders first takes seconds, and paths are the same everywhere
         for name in ("one", "two"):
             (tmp_path / f"{table}-{name}").mkdir()
         here = measured(run, tmp_path / f"{table}-one", table, words)

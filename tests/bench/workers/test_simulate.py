@@ -12,7 +12,7 @@ from normalbench.bench.workers.simulate import ON_A_MACHINE, Costs, Load, record
 from normalbench.reports.tables import written
 
 FREE = Costs(start=0, task=0, row=0, byte=0)
-# Step times of `normalbench run --on local:2`, and costs, by `simulate --record`; the work that is simulated is told in
+# Step times of `normalbench run --on local:4`, and costs, by `simulate --record`; the work that is simulated is told in
 # docs/workers.md.
 RECORD = json.loads((Path(__file__).parent / "record.json").read_text())
 
