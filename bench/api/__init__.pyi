@@ -41,6 +41,7 @@ def pick(
     nan_share: float = ...,
     fov: float | None = ...,
     size: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """Which code to take for each storage, at what price, and what to take instead.
 
@@ -71,6 +72,7 @@ def pick(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def quality(
@@ -95,6 +97,7 @@ def quality(
     nan_share: float = ...,
     fov: float | None = ...,
     size: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
 
@@ -121,6 +124,7 @@ def quality(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def render(
@@ -147,6 +151,7 @@ def render(
     repeats: int = ...,
     seed: int = ...,
     flip: bool = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
 
@@ -175,6 +180,7 @@ def render(
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def mix(
@@ -199,6 +205,7 @@ def mix(
     nan_share: float = ...,
     fov: float | None = ...,
     size: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.
 
@@ -225,6 +232,7 @@ def mix(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def maps(
@@ -244,6 +252,7 @@ def maps(
     nan_share: float = ...,
     fov: float | None = ...,
     size: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What block compression loses of a normal map: BC5, BC7, EAC RG11 and ASTC 4x4.
 
@@ -265,6 +274,7 @@ def maps(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def cost(
@@ -285,6 +295,7 @@ def cost(
     seed: int = ...,
     normals: Names = ...,
     error: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What encoding and decoding cost: instructions on GPUs of five vendors, and time; all of it by default.
 
@@ -307,6 +318,7 @@ def cost(
         seed: The random seed of uniform sets, points and scenes.
         normals: --plot: normal sets, comma-separated, or all; `normalbench list` shows them.
         error: --plot: psnr, mean or max, the largest angle.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def roofline(
@@ -318,6 +330,7 @@ def roofline(
     reads: Names = ...,
     overdraw: float = ...,
     cache_share: float = ...,
+    on: str | None = ...,
 ) -> Rows:
     """Bytes saved against instructions spent: which code is faster on which GPU, by a model.
 
@@ -331,6 +344,7 @@ def roofline(
         reads: Passes that read and decode each pixel's normal, comma-separated.
         overdraw: How often each pixel's normal is encoded and written.
         cache_share: The share of the last-level cache that normals may have, 0 to 1.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def effects(
@@ -350,6 +364,7 @@ def effects(
     repeats: int = ...,
     seed: int = ...,
     flip: bool = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How much of a code's error arrives in effects that read the G-buffer: ambient occlusion and others.
 
@@ -371,6 +386,7 @@ def effects(
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def motion(
@@ -388,6 +404,7 @@ def motion(
     size: Names = ...,
     lights: int = ...,
     seed: int = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How much a code's error changes from frame to frame while the camera or an object turns.
 
@@ -407,6 +424,7 @@ def motion(
         size: WIDTHxHEIGHT of the image.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def lights(
@@ -425,6 +443,7 @@ def lights(
     objects: int = ...,
     lights: int = ...,
     seed: int = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.
 
@@ -445,6 +464,7 @@ def lights(
         objects: Objects in the scene `objects`.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def depth(
@@ -459,6 +479,7 @@ def depth(
     backend: Names = ...,
     count: int = ...,
     seed: int = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.
 
@@ -475,6 +496,7 @@ def depth(
         backend: jax, glsl; comma-separated, or all.
         count: Points at each distance.
         seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def frames(
@@ -486,6 +508,7 @@ def frames(
     count: int = ...,
     seed: int = ...,
     worst_case: bool = ...,
+    on: str | None = ...,
 ) -> Rows:
     """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost handedness.
 
@@ -499,6 +522,7 @@ def frames(
         count: Tangent frames in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         worst_case: The true largest rotation, by search in float64; seconds a code.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def vectors(
@@ -511,6 +535,7 @@ def vectors(
     range: Names = ...,
     count: int = ...,
     seed: int = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How exact motion vectors are in compact targets: errors in pixels over the speed, what slow motion is lost, and how far reprojected points drift.
 
@@ -525,6 +550,7 @@ def vectors(
         range: Largest motions that are kept, in screens a frame, comma-separated.
         count: Points that move, each for 16 frames.
         seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def sweep(
@@ -541,6 +567,7 @@ def sweep(
     lights: int = ...,
     repeats: int = ...,
     seed: int = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.
 
@@ -557,6 +584,7 @@ def sweep(
         lights: Point lights.
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def tune(
@@ -578,6 +606,7 @@ def tune(
     nan_share: float = ...,
     fov: float | None = ...,
     size: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out.
 
@@ -601,6 +630,7 @@ def tune(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def throughput(
@@ -608,6 +638,7 @@ def throughput(
     encoding: Names = ...,
     statistics: Names = ...,
     counts: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """How fast rows are measured, next to a C program, NumPy and reading the input.
 
@@ -617,11 +648,13 @@ def throughput(
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         statistics: moments (squared error and its maximum), row (a whole row of the quality table); comma-separated, or all.
         counts: Numbers of normals, comma-separated, such as 256k,2^20.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
 def published(
     *,
     source: Names = ...,
+    on: str | None = ...,
 ) -> Rows:
     """Figures of articles and engines, measured anew: what is printed, what is measured here, and why they differ.
 
@@ -629,4 +662,5 @@ def published(
 
     Args:
         source: Words of the sources' names, comma-separated, such as cigolle,2010; or all.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """

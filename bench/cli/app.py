@@ -27,7 +27,8 @@ from ..output.progress import ending
 from ..output.writing import abandon_output, check_is_folder, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
-from .commands import add_tables, command_with
+from ..workers.words import check_place
+from .commands import OnOption, add_tables, command_with
 from .formats import Format, FormatOption, format_of
 from .typed import added_up, check_begins_with_command
 
@@ -128,11 +129,12 @@ def doctor(
 add_tables(app, TABLES.values())
 
 
-def _run(options: Any, output: Path | None) -> int:
+def _run(options: Any, output: Path | None, on: str | None) -> int:
     from ..suite.run import run_command
 
     check_is_folder(output, "run writes into")
-    return run_command(options, output)
+    check_place(on)
+    return run_command(options, output, on)
 
 
 RunOutput = Annotated[
@@ -143,7 +145,17 @@ app.command(
     "run",
     help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
     "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
-)(command_with(RunOptions, _run, output=RunOutput))
+)(command_with(RunOptions, _run, output=RunOutput, on=OnOption))
+
+
+@app.command()
+def worker(
+    scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
+) -> int:
+    """A worker that measures for the commands that name this scheduler in --on, until it is interrupted."""
+    from ..workers.worker import worker_command
+
+    return worker_command(scheduler)
 
 
 def _code(options: Any, format: Format | None, output: Path | None) -> int:

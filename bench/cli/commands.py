@@ -13,6 +13,7 @@ from ..options.counts import whole_number
 from ..options.option import Field, Reading, fields_of
 from ..output.writing import check_is_folder, check_page
 from ..tables.table import Table
+from ..workers.words import HELP, check_place
 from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
 from .names import NAMES, completion_of
 
@@ -28,6 +29,9 @@ ReportOption = Annotated[
 ]
 
 
+OnOption = Annotated[str | None, typer.Option("--on", help=HELP, metavar="WORKERS")]
+
+
 def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
     """A command for each table."""
     for table in tables:
@@ -37,15 +41,17 @@ def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
 def command_of(table: Table) -> Callable[..., int]:
     """A table's command, with its options, what it writes, and what every table takes."""
 
-    def command(format: Format | None, output: Path | None, report: Path | None, **typed: Any) -> int:
+    def command(format: Format | None, output: Path | None, report: Path | None, on: str | None, **typed: Any) -> int:
         from ..suite.table_command import table_command
 
         check_page(report)
+        check_place(on)
         check_is_folder(typed.get("images"), "--images writes into")
         options, outputs = (_made(group, typed) for group in (table.options, table.outputs))
-        return table_command(table, options, outputs, format_of(format, output), output, report)
+        return table_command(table, options, outputs, format_of(format, output), output, report, on)
 
     ends = {"format": (FormatOption, None), "output": (OutputOption, None), "report": (ReportOption, None)}
+    ends |= {"on": (OnOption, None)}
     reads = fields_of(Reading) if issubclass(table.options, Reading) else {}
     typed = [parameter_of(f, FILES if f.name in reads else MEASURED) for f in fields_of(table.options).values()]
     typed += [parameter_of(field, WRITTEN) for field in fields_of(table.outputs).values()]

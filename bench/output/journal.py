@@ -6,7 +6,7 @@ import errno
 import fcntl
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
@@ -55,6 +55,29 @@ class Journal:
             raise UsageError(f"cannot write {self.path}: {error.strerror or error}; {kept}") from error
         self.lines.append(line)
 
+    def replace(self, lines: Sequence[Line]) -> None:
+        """Put other lines in place of all there are, at once or not at all. Raises UsageError."""
+        data = b"".join(json.dumps(line).encode() + b"\n" for line in lines)
+        partial = self.path.with_name(f".{self.path.name}.{os.getpid()}.partial")
+        try:
+            file = partial.open("w+b", buffering=0)
+            # Another process must not take the new file for one that nobody writes.
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            while data:
+                data = data[file.write(data) :]
+            os.fsync(file.fileno())
+            partial.replace(self.path)
+        except OSError as error:
+            raise UsageError(f"cannot write {self.path}: {error.strerror or error}") from error
+        finally:
+            partial.unlink(missing_ok=True)
+        self._file.close()
+        self._file, self.lines = file, list(lines)
+
+    def close(self) -> None:
+        """Let others write it."""
+        self._file.close()
+
 
 @contextmanager
 def journal(path: Path) -> Iterator[Journal]:
@@ -73,7 +96,11 @@ def journal(path: Path) -> Iterator[Journal]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise UsageError(f"another process writes {path}; wait for it, or name another place") from error
-        yield Journal(path, file)
+        kept = Journal(path, file)
+        try:
+            yield kept
+        finally:
+            kept.close()
 
 
 def read_lines(path: Path) -> list[Line]:

@@ -10,6 +10,7 @@ import textwrap
 from ..options.option import Field, fields_of
 from ..tables.registry import TABLES
 from ..tables.table import Table
+from ..workers.words import HELP
 
 HEAD = '''"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/python/stub.py."""
 
@@ -38,9 +39,10 @@ def stub() -> str:
 
 def _function(table: Table) -> str:
     options = fields_of(table.options)
-    said = "".join(f"\n    {name}: {one.option.help}" for name, one in options.items())
+    said = "".join(f"\n    {name}: {one.option.help}" for name, one in options.items()) + f"\n    on: {HELP}"
     doc = textwrap.indent(f'"""{table.help}\n\nArgs:{said}\n"""', "    ")
     parameters = "".join(f"    {name}: {_type(one)} = ...,\n" for name, one in options.items())
+    parameters += "    on: str | None = ...,\n"
     return f"def {table.name}(\n    *,\n{parameters}) -> Rows:\n{doc}\n"
 
 

@@ -20,6 +20,8 @@ from ..output.errors import UsageError
 from ..results.measuring import Nothing, asked, measured
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
+from ..workers.places import place
+from ..workers.words import HELP, check_place
 
 
 class Rows(pd.DataFrame):
@@ -67,17 +69,19 @@ def function_of(name: str) -> Callable[..., Rows]:
     """The function of a table: its options are keyword arguments, and lists stand for comma-separated names."""
     table = TABLES[name]
 
-    def call(**options: Any) -> Rows:
+    def call(*, on: str | None = None, **options: Any) -> Rows:
         given = {key: _typed(key, value) for key, value in options.items()}
         chosen = table.options(**checked_options(table.options, given))
-        done = measured(asked(table, chosen), Nothing())
-        return _framed(table, done)
+        check_place(on)
+        with place(on) as where:
+            return _framed(table, measured(asked(table, chosen), Nothing(), where))
 
     known = fields_of(table.options)
     parameters = [inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=f.default) for n, f in known.items()]
+    parameters.append(inspect.Parameter("on", inspect.Parameter.KEYWORD_ONLY, default=None))
     call.__name__ = call.__qualname__ = name
     call.__signature__ = inspect.Signature(parameters, return_annotation=Rows)  # pyright: ignore[reportFunctionMemberAccess]
-    said = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items())
+    said = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items()) + f"\n    on: {HELP}"
     call.__doc__ = f"{table.help}\n\nArgs:{said}\n\nReturns:\n    a pandas DataFrame, a line for each row.\n"
     return call
 

@@ -25,7 +25,8 @@ ROUNDS = {
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan", "openimageio")
 
 
-def _cpu() -> str:
+def processor() -> str:
+    """The processor's name."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
@@ -39,11 +40,11 @@ def machine() -> dict[str, str]:
     facts = {
         "python": platform.python_version(),
         "system": platform.platform(),
-        "processor": f"{_cpu()}, {os.cpu_count()} cores",
+        "processor": f"{processor()}, {os.cpu_count()} cores",
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | _gl() | isa.driver_versions() | _compilers()
+    return facts | _gl() | compilers()
 
 
 def _gl() -> dict[str, str]:
@@ -61,6 +62,11 @@ def _gl() -> dict[str, str]:
         "GL loops": f"ended after {most} turns" if (most := loop_limit(gl)) else f"make {MANY} turns and more",
         **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
+
+
+def compilers() -> dict[str, str]:
+    """The compilers of GPU drivers, and those of shaders; of one that is missing, what to install."""
+    return isa.driver_versions() | _compilers()
 
 
 def _compilers() -> dict[str, str]:

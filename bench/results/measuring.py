@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
@@ -10,13 +12,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ..languages.source import Source
-from ..languages.words import file_of, is_translated, names_an_encoder, twin_of
+from ..languages.words import file_of, names_an_encoder, twin_of
 from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
 from ..output.progress import progress
 from ..output.writing import is_special
-from ..tables.table import Measured, Row, Step, Table
+from ..tables.table import Measured, Row, Step, Table, Tick
 from .plain import key_text, plain
 
 # Beside a file of one of these, files that it refers to are read too.
@@ -25,12 +27,17 @@ COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
 
 @dataclass(frozen=True)
 class Asked:
-    """A table and what is asked of it, checked; nothing is measured yet."""
+    """A table and what is asked of it, checked; nothing is measured yet.
+
+    Attributes:
+        others: further options; their steps are among the steps.
+    """
 
     table: Table
     options: Any
     outputs: Any
     steps: Sequence[Step]
+    others: Sequence[Any] = ()
 
 
 class Kept(Protocol):
@@ -43,6 +50,36 @@ class Kept(Protocol):
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
         """Keep the rows of a step for good, and give them as they are read back. Raises UsageError."""
         ...
+
+
+class Place(Protocol):
+    """Where steps are measured."""
+
+    def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
+        """Each step with its rows, in whatever order they are there.
+
+        Args:
+            steps: those of `ask` that are wanted.
+            tick: called once for each part of a step that is done.
+        """
+        ...
+
+    def lacking(self, table: str) -> Sequence[str]:
+        """What another process turned out to lack for a table's steps."""
+        ...
+
+
+class Here:
+    """Steps are measured in this process, in their order."""
+
+    def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
+        return zip(steps, ask.table.work.measure(steps, tick), strict=True)
+
+    def lacking(self, table: str) -> Sequence[str]:  # noqa: ARG002 # as of every Place
+        return ()
+
+
+HERE = Here()
 
 
 class Nothing:
@@ -74,59 +111,85 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
     return Asked(table, options, outputs, [replace(step, key=step.key | found) for step in steps])
 
 
-def measured(ask: Asked, kept: Kept) -> Measured:
+def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
     """The finished rows: those that are kept, and the others measured now and kept as they come."""
-    rows = [row for rows in measured_steps(ask, kept) for row in rows]
-    return Measured(ask.options, ask.outputs, ask.steps, ask.table.work.finish(rows))
+    rows = [row for rows in measured_steps(ask, kept, place) for row in rows]
+    lacks = place.lacking(ask.table.name)
+    return Measured(ask.options, ask.outputs, ask.steps, ask.table.work.finish(rows), lacks)
 
 
-def measured_steps(ask: Asked, kept: Kept) -> list[list[Row]]:
+def measured_steps(ask: Asked, kept: Kept, place: Place = HERE) -> list[list[Row]]:
     """The rows of each step, not finished yet."""
-    name, work = ask.table.name, ask.table.work
+    name = ask.table.name
     found = {id(step): kept.find(name, step) for step in ask.steps}
     missing = [step for step in ask.steps if found[id(step)] is None]
     with progress(sum(step.ticks for step in missing)) as tick:
-        for step, rows in zip(missing, work.measure(missing, tick), strict=True):
+        for step, rows in place.measure(ask, missing, tick):
             found[id(step)] = kept.keep(name, step, rows)
     return [found[id(step)] or [] for step in ask.steps]
 
 
 def files_of(options: Any) -> Row:
     """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
-    words = [
-        word.strip()
-        for field in fields(options)
-        if fields_of(type(options))[field.name].option.files
-        for word in str(getattr(options, field.name) or "").split(",")
-    ]
+    words = [word for words in words_of(options).values() for word in words]
     found = {word: digest for word in words if word and (digest := _fingerprint(file_of(word)))}
     return {"files": found} if found else {}
 
 
+def words_of(options: Any) -> dict[str, list[str]]:
+    """By option the words that may name files."""
+    return {
+        field.name: [word.strip() for word in str(getattr(options, field.name) or "").split(",")]
+        for field in fields(options)
+        if fields_of(type(options))[field.name].option.files
+    }
+
+
 def _fingerprint(path: Path) -> str:
-    """Of a file and its companions: files of the same stem, and those that its kind refers to. Empty for no file."""
+    """Of a file and its companions. Empty for no file."""
     try:
         if not path.is_file():
             return ""
-        patterns = COMPANIONS.get(path.suffix.lower(), ())
-        beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
-        if names_an_encoder(str(path)):
-            beside |= {other for other in (twin_of(path), *_included(path)) if other.is_file()}
-        digests = [_digest(one) for one in (path, *sorted(beside))]
+        digests = [file_digest(one) for one in (path, *companions(path))]
         return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
     except (OSError, ValueError):
         return ""
 
 
+def companions(path: Path) -> list[Path]:
+    """The files that are read with a file: those of the same stem, and those that its kind refers to."""
+    patterns = COMPANIONS.get(path.suffix.lower(), ())
+    beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
+    if path.suffix.lower() == ".gltf":
+        beside |= set(_buffers(path))
+    if names_an_encoder(str(path)):
+        beside |= {other for other in (twin_of(path), *_included(path)) if other.is_file()}
+    return sorted(beside)
+
+
+def _buffers(path: Path) -> list[Path]:
+    """The files that a glTF file's buffers are in; none of a file that cannot be read."""
+    # It imports NumPy, which start-up does without.
+    from ...gbuffer.scenes.files.source import SceneFileError, checked_address
+
+    try:
+        found = [buffer["uri"] for buffer in json.loads(path.read_bytes()).get("buffers", ()) if "uri" in buffer]
+        named = [checked_address(path, address, "buffers") for address in found]
+    except (ValueError, TypeError, AttributeError, KeyError, RecursionError, SceneFileError):
+        return []
+    return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
+
+
 def _included(path: Path) -> list[Path]:
     """The files that a user's encoder includes; none of one that cannot be read."""
     try:
-        return list(Source(path).files.values()) if is_translated(path) else []
+        return list(Source(path).files.values())
     except UsageError:
         return []
 
 
-def _digest(path: Path) -> bytes:
+def file_digest(path: Path) -> bytes:
+    """The SHA-256 of a file's content. Raises OSError."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").digest()
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -161,6 +161,16 @@ class Run:
             self._journal.add({"table": table, "key": plain([step.key])[0], "rows": kept})
             self._kept[text] = kept
         return kept
+
+    def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
+        """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
+        earlier requests stay in front. Raises UsageError."""
+        place = {key_text(table, step.key): at for at, (table, step) in enumerate(steps)}
+        # Read again: whoever finished the rows may have written into those that were kept.
+        before = read_lines(self.folder / ROWS)
+        lines = sorted(before, key=lambda line: place.get(key_text(line["table"], line["key"]), -1))
+        if lines != before:
+            self._journal.replace(lines)
 
     def finish(self) -> None:
         """Every step has its rows."""

@@ -6,7 +6,7 @@ import itertools
 import sys
 import time
 from collections import deque
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,12 @@ from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
-from ..results.measuring import Asked, asked, measured
+from ..results.measuring import HERE, Asked, Place, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
-from ..tables.table import Measured, Role, Table
-from .second import is_worth_it, second_process
+from ..tables.table import Measured, Table
+from ..workers.places import keep_times, place
+from .second import Second, is_worth_it, second_process
 from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
 
@@ -96,11 +97,14 @@ def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
     outputs = in_folder(table, table.outputs(), folder)
     asks = [asked(table, options, outputs) for options in options_of(table, said)]
     steps = {repr(step.key): step for ask in asks for step in ask.steps}
-    return replace(asks[0], steps=list(steps.values()))
+    return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
 
 
-def run_command(request: Any, output: Path | None) -> int:
+def run_command(request: Any, output: Path | None, on: str | None = None) -> int:
     """Measure tables into a results folder, their summaries to standard output. What was stopped goes on.
+
+    Args:
+        on: where they are measured; None for this process.
 
     Returns:
         the exit status: 1 where a row fails.
@@ -117,15 +121,18 @@ def run_command(request: Any, output: Path | None) -> int:
     facts |= {"left_out": left_out}
     keep_what_is_imported()
     total = sum(len(ask.steps) for ask in asks)
-    with opened(folder, facts) as run:
+    with place(on) as where, opened(folder, facts) as run:
         if run.kept:
             tell(f"{folder} goes on: {_there(run, asks)} of {total} steps are there")
         try:
-            failed = _measure_all(run, asks, given(request))
+            shown = _measure_all(run, asks, given(request), where)
+            run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
+            keep_times(where, folder)
+            _complete(run, shown)
         except (KeyboardInterrupt, SystemExit):
             tell(f"{run.kept} of {total} steps are kept; the same command goes on")
             raise
-    return int(failed)
+    return int(shown.failed)
 
 
 def _there(run: Run, asks: Iterable[Asked]) -> int:
@@ -138,22 +145,24 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure_all(run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> bool:
-    """Every table measured, shown and written, and the page; whether a row fails."""
+def _measure_all(run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place) -> Shown:
+    """Every table measured and shown."""
     # The answer first: nothing else runs while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
     for ask in first:
-        shown.add(ask, measured(ask, run))
-    if is_worth_it(rest):
-        return _complete(run, shown, _measure_beside(run, rest, shown, said))
+        shown.add(ask, measured(ask, run, where))
+    if where is HERE and is_worth_it(rest):
+        _measure_beside(run, rest, shown, said)
     for ask in rest:
-        shown.add(ask, measured(ask, run))
-    return _complete(run, shown, ())
+        if ask.table.name not in shown.done:
+            shown.add(ask, measured(ask, run, where))
+    return shown
 
 
-def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any]) -> Collection[str]:
-    """Tables measured by two processes at the same time; those whose files are written."""
+def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any]) -> None:
+    """Tables measured by two processes at the same time, but for those that the second did not get to because something
+    killed it."""
     beside = [ask for ask in asks if ask.table.is_measured_beside]
     with second_process(run, beside, _taken(said, beside)) as second:
         # What takes times is measured when nothing else runs.
@@ -161,14 +170,17 @@ def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping
             if _takes_times(ask):
                 second.wait()
             shown.add(ask, measured(ask, run))
-            for other in beside:
-                if other.table.name in second.written:
-                    shown.add(other, measured(other, run))
+            _add_written(run, beside, shown, second)
         second.wait()
-    # What the process did not get to, because something killed it, is measured here.
-    for ask in beside:
-        shown.add(ask, measured(ask, run))
-    return second.written
+    _add_written(run, beside, shown, second)
+
+
+def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process has finished meanwhile."""
+    for ask in asks:
+        if ask.table.name in second.written - shown.written:
+            shown.written.add(ask.table.name)
+            shown.add(ask, measured(ask, run))
 
 
 def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
@@ -177,8 +189,8 @@ def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
 
 
 def _takes_times(ask: Asked) -> bool:
-    """Whether a table's rows have times; some have them only where frames are repeated."""
-    return bool(ask.table.of_role(Role.TIME)) and getattr(ask.options, "repeats", 1) > 0
+    """Whether a clock is read for any of a table's rows."""
+    return any(ask.table.work.is_timed(step) for step in ask.steps)
 
 
 class Shown:
@@ -187,11 +199,13 @@ class Shown:
     Attributes:
         failed: whether a row fails.
         done: what was measured, by table.
+        written: the tables whose files are written.
     """
 
     def __init__(self, asks: Sequence[Asked]):
         self.failed, self.asks = False, asks
         self.done: dict[str, Measured] = {}
+        self.written: set[str] = set()
         self._left = deque(asks)
 
     def add(self, ask: Asked, done: Measured) -> None:
@@ -212,22 +226,21 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
     return failed
 
 
-def _complete(run: Run, shown: Shown, written: Collection[str]) -> bool:
-    """Tables for others, the pictures and the page; then the run is finished. Whether a row fails."""
+def _complete(run: Run, shown: Shown) -> None:
+    """Tables for others, the pictures and the page; then the run is finished."""
     from .report import write_report
 
     for name, rows in read_run(run.folder).tables.items():
         table = TABLES.get(name)
         _write_table(run.folder / name, table.work.finish(rows) if table else rows)
     for ask in shown.asks:
-        if ask.table.name not in written:
+        if ask.table.name not in shown.written:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
     whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
     page = write_report(run.folder, whole, run.folder / PAGE)
     run.finish()
     say(f"All of it on one page: {page}\n")
-    return shown.failed
 
 
 def _write_table(path: Path, rows: list[Row]) -> None:

@@ -15,17 +15,27 @@ from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, tell
 from ..output.sources import sources
 from ..output.writing import check_writable, say
-from ..results.measuring import Asked, Beside, Nothing, asked, beside, measured
+from ..results.measuring import Asked, Beside, Nothing, Place, asked, beside, measured
 from ..results.plain import plain
 from ..results.runs import Done, facts_of
 from ..tables.table import Measured, Row, Table
+from ..workers.places import place
 from .showing import say_lines, say_skipped, show
 
 
 def table_command(
-    table: Table, options: Any, outputs: Any, format: str, output: Path | None, report: Path | None
+    table: Table,
+    options: Any,
+    outputs: Any,
+    format: str,
+    output: Path | None,
+    report: Path | None,
+    on: str | None = None,
 ) -> int:
     """Measure a table and write it. With -o a command that was stopped goes on where it was.
+
+    Args:
+        on: where it is measured; None for this process.
 
     Returns:
         the exit status: 1 where a row fails.
@@ -36,16 +46,17 @@ def table_command(
     for path in filter(None, (output, report)):
         check_writable(path)
         _check_not_read(path, options)
-    with tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("") as folder:
+    scratch = tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("")
+    with scratch as folder, place(on) as where:
         ask = asked(table, options, in_folder(table, outputs, Path(folder)) if report else outputs)
         table.work.check(outputs, ask.steps)
         # Kept rows go once everything is written.
         with beside(output, _work(table) if output else {}) as kept:
-            done = _measured(ask, kept)
+            done = _measured(ask, kept, where)
             failed = _show(table, done, format, output)
             if report:
                 _write_page(table, done, Path(folder), report)
-    if lacking := list(table.work.lacking(done)):
+    if lacking := table.lacking(done):
         raise MissingError("; ".join(lacking))
     return int(failed)
 
@@ -74,7 +85,7 @@ def _work(table: Table) -> Row:
     return {"table": table.name, "sources": sources(), "machine": platform.platform()}
 
 
-def _measured(ask: Asked, kept: Beside | None) -> Measured:
+def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
     if kept:
         found = sum(kept.find(ask.table.name, step) is not None for step in ask.steps)
         if found < len(kept):
@@ -82,7 +93,7 @@ def _measured(ask: Asked, kept: Beside | None) -> Measured:
             raise UsageError(f"{other}; run that one, delete it, or name another file")
         tell(f"{found} of {len(ask.steps)} steps were measured before")
     try:
-        return measured(ask, Nothing() if kept is None else kept)
+        return measured(ask, Nothing() if kept is None else kept, where)
     except (KeyboardInterrupt, SystemExit):
         _say_how_to_go_on(kept, len(ask.steps))
         raise
@@ -98,7 +109,7 @@ def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
 def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:
     """Write the rows and what goes with them; whether a row fails."""
     work = table.work
-    say_skipped(table, done.rows, work.lacking(done))
+    say_skipped(table, done.rows, table.lacking(done))
     say_lines(work.warnings(done.rows))
     failed = say_lines(work.failures(done.rows))
     show(table, done, format, output)

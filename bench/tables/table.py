@@ -14,9 +14,16 @@ from enum import StrEnum
 from fnmatch import fnmatchcase
 from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 Row = dict[str, Any]
+# What a step may be measured with, besides JAX: see `Work.needs`.
+GL, VULKAN, COMPILERS = "GL device", "Vulkan device", "compilers"
+# By the back end of a step. Codes in half precision are computed on a Vulkan device in place of GL.
+BACKENDS_NEED: Mapping[str, frozenset[str]] = MappingProxyType(
+    {"jax": frozenset(), "glsl": frozenset({GL, VULKAN}), "wgsl": frozenset({VULKAN})}
+)
 # Called once for each part of a step that is done.
 Tick = Callable[[str], None]
 
@@ -137,12 +144,14 @@ class Measured:
         options, outputs: what was asked for.
         steps: what was measured.
         rows: the finished rows.
+        lacks: what workers turned out to lack.
     """
 
     options: Any
     outputs: Any
     steps: Sequence[Step]
     rows: Sequence[Row]
+    lacks: Sequence[str] = ()
 
 
 def _same(rows: Sequence[Row]) -> list[Row]:
@@ -155,6 +164,15 @@ def _nothing(*_: Any) -> Iterator[Any]:
 
 def _none(*_: Any) -> None:
     return None
+
+
+def _by_backend(step: Step) -> frozenset[str]:
+    """A step without a back end draws."""
+    return BACKENDS_NEED[step.key.get("backend", "glsl")]
+
+
+def _by_repeats(step: Step) -> bool:
+    return bool(step.key.get("repeats"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,6 +196,10 @@ class Work:
         listing: the instructions that a step's row was counted in, as text; None where there are none.
         lacking: what this machine turned out to lack; makes the exit status 3.
         missing: why `run` leaves the table out on this machine; empty where it does not.
+        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS. Workers that have another one, or none,
+            do not measure it.
+        is_timed: whether a clock is read for a step's rows: then nothing else is measured on its machine meanwhile.
+        stays: whether measuring leaves behind what `write` takes, so that no other process can do it.
     """
 
     steps: Callable[[Any, Any], Sequence[Step]]
@@ -196,6 +218,9 @@ class Work:
     listing: Callable[[Step, Row], str | None] = _none
     lacking: Callable[[Measured], Iterable[str]] = _nothing
     missing: Callable[[], str] = str
+    needs: Callable[[Step], frozenset[str]] = _by_backend
+    is_timed: Callable[[Step], bool] = _by_repeats
+    stays: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -268,6 +293,10 @@ class Table:
     def name_of(self, row: Mapping[str, Any]) -> str:
         """What a row is called: its key columns' values."""
         return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
+
+    def lacking(self, done: Measured) -> list[str]:
+        """What the machine, or a worker, turned out to lack; each once."""
+        return list(dict.fromkeys((*self.work.lacking(done), *done.lacks)))
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
         """The columns of rows that a narrow terminal leaves out, the first first."""

@@ -26,7 +26,7 @@ from ...options import listing
 from ...options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...output.errors import MissingError, UsageError, pick
 from ...output.writing import check_folder, check_plot, whole_file
-from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .measure import file_name
 from .table import TABLE, CostOptions, CostOutputs
@@ -317,6 +317,13 @@ def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
         yield Drawing(f"cost-{at}", title, said, *draws)
 
 
+NEEDS = {"isa": frozenset({COMPILERS}), "time": frozenset({GL})}
+
+
+def _needs(step: Step) -> frozenset[str]:
+    return NEEDS.get(step.case.name, frozenset())
+
+
 def _missing() -> str:
     """Why `run` leaves the table out on this machine; empty where it does not."""
     return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
@@ -333,4 +340,5 @@ WORK = Work(
     listing=_listing,
     lacking=_lacking,
     missing=_missing,
+    needs=_needs,
 )

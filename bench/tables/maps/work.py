@@ -190,4 +190,5 @@ WORK = Work(
     write=_write,
     drawings=_drawings,
     missing=_missing,
+    is_timed=lambda _: True,
 )

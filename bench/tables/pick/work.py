@@ -23,7 +23,7 @@ from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...output.writing import check_folder
 from ..mix.table import USES
-from ..table import Measured, Row, Sheet, Step, Tick, Work
+from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, groups
 from .sentences import sentences
@@ -188,5 +188,6 @@ WORK = Work(
     summary=_sheets,
     failures=_failures,
     write=_write,
+    needs=lambda _: frozenset({COMPILERS, GL}),
     subjects=pictures.subjects,
 )

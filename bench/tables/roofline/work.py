@@ -14,7 +14,7 @@ from ...options.targets import that_fit
 from ...output.errors import UsageError
 from ...output.writing import check_plot, save_plot
 from ..charts import drawing, having
-from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from ..table import COMPILERS, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
 from .measure import Case, Frame
 from .rates import RANGES, gpus_named
@@ -163,4 +163,5 @@ WORK = Work(
     drawings=_drawings,
     lacking=_lacking,
     missing=_missing,
+    needs=lambda _: frozenset({COMPILERS}),
 )

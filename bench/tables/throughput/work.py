@@ -88,4 +88,6 @@ WORK = Work(
     shown=_shown,
     write=_write,
     drawings=_drawings,
+    needs=lambda _: frozenset(),
+    is_timed=lambda _: True,
 )

@@ -244,4 +244,4 @@ def _summary(found: Sequence[Row]) -> Iterator[Sheet]:
     yield Sheet("tuned to one half, measured on the other", [{name: row[name] for name in names} for row in found])
 
 
-WORK = Work(steps=_steps, measure=each(lambda tuning: tuning.measured()), summary=_summary, write=_write)
+WORK = Work(steps=_steps, measure=each(lambda tuning: tuning.measured()), summary=_summary, write=_write, stays=True)

@@ -1,0 +1,74 @@
+"""Where a command measures: in its own process, or by workers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..output.writing import whole_file
+from ..results.measuring import HERE, Here
+from .words import Local, place_named, require_dask
+
+if TYPE_CHECKING:
+    from .pool import Pool
+
+# A run that workers measured keeps how long each step took them: `simulate` reads it.
+TIMES = "step_times.json"
+
+
+@contextmanager
+def place(on: str | None) -> Iterator[Here | Pool]:
+    """What `--on` names, as long as a command runs; this process where it names nothing.
+
+    Raises:
+        UsageError: a word that names no place, or an address where nobody answers.
+        MissingError: dask.distributed is not installed.
+    """
+    if on is None:
+        yield HERE
+        return
+    named = place_named(on)
+    require_dask()
+    if isinstance(named, Local):
+        with _local(named.count) as pool:
+            yield pool
+        return
+    with _crew(named.text) as pool:
+        yield pool
+
+
+@contextmanager
+def _local(count: int) -> Iterator[Pool]:
+    from .local import LocalProcesses
+
+    processes = LocalProcesses(count)
+    try:
+        with _crew(processes.address, processes.look_after) as pool:
+            yield pool
+    finally:
+        processes.close()
+
+
+@contextmanager
+def _crew(address: str, look_after: Callable[[], bool] = lambda: False) -> Iterator[Pool]:
+    # Imported while workers start.
+    from .about import about
+    from .crew import Crew
+    from .pool import Pool
+
+    crew = Crew(address, about(), look_after)
+    try:
+        yield Pool(crew)
+    finally:
+        crew.close()
+
+
+def keep_times(where: object, folder: Path) -> None:
+    """Write how long the steps of a run took workers; nothing where none measured."""
+    times = getattr(where, "times", None)
+    if times:
+        with whole_file(folder / TIMES) as partial:
+            partial.write_text(json.dumps(times, indent=None) + "\n", encoding="utf-8")

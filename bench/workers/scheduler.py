@@ -1,0 +1,34 @@
+"""A scheduler of dask for this machine alone.
+
+python -m normalbench.bench.workers.scheduler [PORT]
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+
+from .worker import end_now, end_with_parent, quiet
+
+HOST = "127.0.0.1"
+
+
+async def _run(port: int) -> None:
+    from distributed import Scheduler
+
+    async with Scheduler(host=HOST, port=port, dashboard=False) as scheduler:
+        print(scheduler.address, flush=True)
+        await scheduler.finished()
+
+
+def main(words: list[str]) -> None:
+    """Serve until standard input ends; the address is the first line of standard output."""
+    signal.signal(signal.SIGTERM, end_now)
+    end_with_parent()
+    quiet()
+    asyncio.run(_run(int(words[0]) if words else 0))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,181 @@
+"""A worker: joins a scheduler of dask, and measures what it is sent, one task at a time in the main thread.
+
+    python -m normalbench.bench.workers.worker tcp://HOST:PORT
+
+Where the scheduler goes away, the worker waits for it to come back. What it compiled stays.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import queue
+import shutil
+import signal
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from contextlib import suppress
+from types import FrameType
+from typing import Any, NoReturn
+
+from ..output.errors import UsageError, tell
+from .words import checked_address, require_dask
+
+# What a scheduler knows normalbench's workers by.
+RESOURCE = "normalbench"
+# How long a worker waits for its scheduler, and how often it asks, in seconds.
+PATIENCE_S, AGAIN_S = 60.0, 0.5
+
+Job = tuple["Future[Any]", Callable[..., Any], tuple[Any, ...], dict[str, Any]]
+
+
+class MainThread(Executor):
+    """Runs what it is given in the thread that calls `serve`: a GL context belongs to one thread for good, and dask
+    makes new ones."""
+
+    def __init__(self) -> None:
+        self._jobs: queue.SimpleQueue[Job | None] = queue.SimpleQueue()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self._jobs.put((future, fn, args, kwargs))
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Nothing: the next connection goes on with the same thread."""
+
+    def serve(self) -> None:
+        """Run jobs until `end`."""
+        while job := self._jobs.get():
+            future, function, arguments, named = job
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                future.set_result(function(*arguments, **named))
+            except Exception as error:
+                future.set_exception(error)
+
+    def end(self) -> None:
+        """No further jobs."""
+        self._jobs.put(None)
+
+
+class Connection(threading.Thread):
+    """Keeps the worker joined to its scheduler; ends the main thread's work where that is gone for good."""
+
+    def __init__(self, address: str, executor: MainThread, patience: float):
+        super().__init__(daemon=True)
+        self._address, self._executor, self._patience = address, executor, patience
+        self.joined, self.said = False, ""
+
+    def run(self) -> None:
+        asyncio.run(self._joined_again_and_again())
+        self._executor.end()
+
+    async def _joined_again_and_again(self) -> None:
+        seen = time.monotonic()
+        while time.monotonic() - seen < self._patience:
+            try:
+                await self._join()
+                seen = time.monotonic()
+            except Exception as error:
+                self.said = str(error).strip() or type(error).__name__
+            await asyncio.sleep(AGAIN_S)
+
+    async def _join(self) -> None:
+        from distributed import Worker
+
+        with tempfile.TemporaryDirectory(prefix="normalbench-dask-") as folder:
+            worker = Worker(
+                self._address,
+                nthreads=1,
+                executor=self._executor,
+                resources={RESOURCE: 1},
+                local_directory=folder,
+                memory_limit=0,
+                dashboard=False,
+                death_timeout=AGAIN_S * 10,
+            )
+            async with worker:
+                self.joined = True
+                await worker.finished()
+
+
+def serve(address: str, patience: float = PATIENCE_S) -> bool:
+    """Join a scheduler and measure until it is gone; whether it was there at all."""
+    from .tasks import own_folder, probe
+
+    # What takes seconds is done before anybody waits for it.
+    probe()
+    executor = MainThread()
+    connection = Connection(address, executor, patience)
+    connection.start()
+    try:
+        executor.serve()
+    finally:
+        shutil.rmtree(own_folder(), ignore_errors=True)
+    return connection.joined
+
+
+def worker_command(address: str) -> int:
+    """`normalbench worker`: measure for whoever asks the scheduler.
+
+    Raises:
+        UsageError: the address is none, or nobody answers.
+        MissingError: dask.distributed is not installed.
+    """
+    checked = checked_address("worker", address)
+    require_dask()
+    quiet()
+    tell(f"joins {checked}; interrupt it to end it")
+    if not serve(checked):
+        raise UsageError(f"{checked}: nobody answers; start a scheduler there: dask scheduler")
+    tell(f"{checked} is gone")
+    return 0
+
+
+def quiet() -> None:
+    """Dask says nothing of lost connections: they are seen to."""
+    # Its import sets levels of its own.
+    import distributed  # noqa: F401
+
+    for name in ("distributed", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+
+
+def end_with_parent() -> None:
+    """End this process once its standard input ends, which it does when the process that started it ends."""
+
+    def wait() -> None:
+        with suppress(OSError):
+            while os.read(0, 1):
+                pass
+        end_now()
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def end_now(*_: int | FrameType | None) -> NoReturn:
+    """End this process at once, whatever it computes."""
+    tasks = sys.modules.get(f"{__package__}.tasks")
+    if tasks:
+        shutil.rmtree(tasks.own_folder(), ignore_errors=True)
+    os._exit(0)
+
+
+def main(words: list[str]) -> None:
+    """A worker that another process of normalbench started."""
+    signal.signal(signal.SIGTERM, end_now)
+    end_with_parent()
+    quiet()
+    serve(words[0], patience=float("inf"))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

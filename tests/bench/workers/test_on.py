@@ -1,0 +1,149 @@
+"""What `--on` takes and refuses, and what is left behind."""
+
+import importlib.util
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.workers import words
+from normalbench.bench.workers.local import LocalProcesses, Process
+
+SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--normals", "axes")
+# EGL finds no driver under it.
+NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
+
+
+@pytest.mark.parametrize(
+    ("word", "says"),
+    [
+        ("local:0", "--on local:0: from 1 to 256 worker processes, such as local:4"),
+        ("local:1000", "--on local:1000: from 1 to 256 worker processes, such as local:4"),
+        ("local:few", "--on local:few: few is not a whole number"),
+        ("here", "--on here: say local:N, such as local:4, or tcp://HOST:PORT"),
+        ("tcp://host", "--on tcp://host: say local:N"),
+        ("tcp://host:99999", "--on tcp://host:99999: say local:N"),
+        ("http://host:80", "--on http://host:80: say local:N"),
+    ],
+)
+@pytest.mark.parametrize("command", [SMALL, ("run",)], ids=["table", "run"])
+def test_a_bad_word_is_refused_at_once(run, tmp_path, monkeypatch, command, word, says):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run(*command, "--on", word)
+    assert status == 2 and says in err and not out and len(err.splitlines()) == 1
+    assert not list(tmp_path.iterdir()), "nothing is written"
+
+
+def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    began = time.monotonic()
+    status, _, err = run(*SMALL, "--on", address)
+    assert status == 2 and f"--on {address}: nobody answers; start a scheduler there: dask scheduler" in err
+    assert time.monotonic() - began < 20
+
+
+def test_without_dask_it_says_what_to_install(run, monkeypatch):
+    monkeypatch.setattr(
+        words, "find_spec", lambda name: None if name == "distributed" else importlib.util.find_spec(name)
+    )
+    status, _, err = run(*SMALL, "--on", "local:2")
+    assert status == 3 and "pip install 'normalbench[workers]'" in err
+    assert run("worker", "tcp://127.0.0.1:1")[0] == 3
+
+
+def test_the_worker_command_refuses_a_bad_address(run):
+    status, _, err = run("worker", "local:2")
+    assert status == 2 and "worker local:2: say tcp://HOST:PORT" in err
+
+
+def test_the_start_imports_neither_dask_nor_jax():
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "normalbench.bench", "quality", "--help"],
+        capture_output=True,
+        text=True,
+    )
+    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
+    assert done.returncode == 0 and "--on" in done.stdout
+    assert not loaded & {"dask", "distributed", "tornado", "jax", "moderngl"}
+
+
+@pytest.mark.usefixtures("gl")
+def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
+    """One worker of two has no GL: rows by both back ends are those of one process, and it is said who is left out."""
+    monkeypatch.setattr("normalbench.bench.workers.pool.WAIT_S", 60.0)
+    assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
+    processes = LocalProcesses(1)
+    own = os.environ | NO_GL
+    monkeypatch.setattr("normalbench.bench.workers.local.environment", lambda: own)
+    blind = Process("worker", processes.address)
+    try:
+        status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", processes.address)
+    finally:
+        blind.end()
+        blind.wait()
+        processes.close()
+    assert status == 0 and "measured by this process" not in err
+    assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
+    # The worker without GL may join when all is done.
+    assert "left out: steps that need the GL device" in err or err == ""
+
+
+def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
+    """Only workers without GL: rows by GLSL are there all the same, and a line says who measured them."""
+    monkeypatch.setattr("normalbench.bench.workers.pool.WAIT_S", 0.5)
+    assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
+    own = os.environ | NO_GL
+    monkeypatch.setattr("normalbench.bench.workers.local.environment", lambda: own)
+    status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", "local:1")
+    assert status == 0 and "quality: 2 steps are measured by this process: no worker has this GL device" in err
+    assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process started, and theirs."""
+    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True).stdout.split()
+    return [int(one) for one in found] + [other for one in found for other in children(int(one))]
+
+
+def is_there(pid: int) -> bool:
+    try:
+        return "Z" not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_interruption_leaves_rows_and_no_process(tmp_path, number):
+    """What is kept stays, the workers end, and the same command ends with the rows of one that nobody disturbed."""
+    command = [sys.executable, "-m", "normalbench.bench", "quality", "--encoding", "all", "--storage", "rgba8"]
+    command += ["--normals", "sphere", "--count", "65536", "--on", "local:2", "-o"]
+    rows = tmp_path / ".rows.json.rows"
+    process = subprocess.Popen([*command, str(tmp_path / "rows.json")], stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 120
+    while time.monotonic() < until and not (rows.exists() and len(rows.read_text().splitlines()) > 3):
+        time.sleep(0.05)
+    workers = children(process.pid)
+    assert len(workers) >= 3, "two workers and a scheduler"
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode in ({130, 143} if number != signal.SIGKILL else {-9}) and "Traceback" not in err
+    until = time.monotonic() + 10
+    while any(map(is_there, workers)) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not [pid for pid in workers if is_there(pid)], "a process is left"
+    kept = len(rows.read_text().splitlines())
+    assert kept > 3
+    again = subprocess.run([*command, str(tmp_path / "rows.json")], capture_output=True, text=True)
+    assert again.returncode == 0 and "steps were measured before" in again.stderr
+    alone = subprocess.run([*command[:-3], "-o", str(tmp_path / "alone.json")], capture_output=True, text=True)
+    assert alone.returncode == 0, alone.stderr
+    assert (tmp_path / "rows.json").read_bytes() == (tmp_path / "alone.json").read_bytes()

@@ -1,0 +1,136 @@
+"""What workers measure is what one process measures, to the digit, with the same pictures."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from written import as_document
+
+import normalbench as nb
+from normalbench.bench.output.errors import UsageError
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Role
+from normalbench.bench.workers import orders
+from normalbench.bench.workers.local import LocalProcesses
+from normalbench.gbuffer.scenes.mesh import sphere
+
+OCTAHEDRAL = """
+vec2 wrap(vec2 v) { return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }
+vec2 mine_encode(vec3 n) {
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    return n.z >= 0.0 ? n.xy : wrap(n.xy);
+}
+vec3 mine_decode(vec2 e) {
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    if (n.z < 0.0) n.xy = wrap(n.xy);
+    return normalize(n);
+}
+"""
+# Of every kind: several back ends, frames with pictures, steps that are functions, and what compilers say.
+COMMANDS = {
+    "quality": "--encoding xyz,octahedral,spheremap --storage rgba8,rg8 --normals sphere,axes --count 4096",
+    "depth": "--count 512 --storage depth16,depth24",
+    "lights": "--experiment equal,banding,image --light-buffer linear,rgba16f --counts 4 --size 64x36",
+    "render": "--encoding octahedral,spheremap --scene gloss --size 64x36 --repeats 0",
+    "cost": "--isa --encoding octahedral,spheremap --storage rg8 --family rdna2 --operation encode,decode",
+    "motion": "--encoding octahedral --storage rg8 --frames 4 --count 256 --size 64x36",
+}
+PICTURED = ("lights", "render")
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """Two workers, and their scheduler's address."""
+    processes = LocalProcesses(2)
+    yield processes.address
+    processes.close()
+
+
+def rows_of(path: Path, table: str) -> list[dict]:
+    times = {column.name for column in TABLES[table].of_role(Role.TIME)}
+    return [{k: v for k, v in row.items() if k not in times} for row in json.loads(path.read_text())]
+
+
+def pictures(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[dict], dict[str, bytes]]:
+    pictured = ("--images", str(folder / "images")) if table in PICTURED else ()
+    said = run(table, *words.split(), *pictured, "-o", str(folder / "rows.json"), *on)
+    assert said[0] == 0, said[2]
+    assert "are measured here" not in said[2], said[2]
+    return rows_of(folder / "rows.json", table), pictures(folder / "images")
+
+
+@pytest.mark.parametrize("table", COMMANDS)
+def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, scheduler, tmp_path, table):  # noqa: ARG001
+    """Every figure to the last digit, in the same order; every picture to the last byte."""
+    (tmp_path / "one").mkdir()
+    (tmp_path / "two").mkdir()
+    here = measured(run, tmp_path / "one", table, COMMANDS[table])
+    there = measured(run, tmp_path / "two", table, COMMANDS[table], "--on", scheduler)
+    assert here[0] and here == there
+    assert bool(here[1]) == (table in PICTURED), f"{len(here[1])} pictures"
+
+
+@pytest.mark.parametrize("is_absolute", [False, True], ids=["relative", "absolute"])
+def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolute):  # noqa: ARG001
+    """An encoder with what it includes, a look-up, a scene and a set of normals, named in any way: the same rows."""
+    typed = tmp_path / "typed" / "here"
+    (typed / "own").mkdir(parents=True)
+    monkeypatch.chdir(typed)
+    wrap, rest = OCTAHEDRAL.strip().split("\n", 1)
+    (typed / "own" / "wrap.glsl").write_text(wrap)
+    (typed / "own" / "mine.glsl").write_text('#include "wrap.glsl"\n' + rest)
+    (typed.parent / "other.glsl").write_text(OCTAHEDRAL.replace("mine", "other"))
+    as_document([sphere(1.0, 16, 8)]).write(typed / "scene.glb")
+    n = np.random.default_rng(1).normal(size=(500, 3))
+    np.save(typed / "list.npy", (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32))
+    at = f"{typed}/" if is_absolute else ""
+    encoders = f"{at}own/mine.glsl,{typed.parent}/other.glsl,../other.glsl" if is_absolute else "own/mine.glsl"
+    encoders = encoders.removesuffix(",../other.glsl") if is_absolute else f"{encoders},../other.glsl"
+    for table, words in {
+        "quality": f"--encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl",
+        "render": f"--encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0",
+    }.items():
+        if is_absolute and table == "quality":
+            continue  # to look at encoders first takes seconds, and paths are the same everywhere
+        for name in ("one", "two"):
+            (tmp_path / f"{table}-{name}").mkdir()
+        here = measured(run, tmp_path / f"{table}-one", table, words)
+        there = measured(run, tmp_path / f"{table}-two", table, words, "--on", scheduler)
+        assert len(here[0]) >= 2 and here == there, table
+
+
+def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp_path, monkeypatch):  # noqa: ARG001
+    """Three scenes and one of the catalogue: four parcels, each with one file or none, and the rows of one process."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(orders, "APART", 0)
+    sent: list[orders.Order] = []
+    packed = orders.Parcel.order
+    monkeypatch.setattr(orders.Parcel, "order", lambda self: sent.append(packed(self)) or sent[-1])
+    for number in range(3):
+        as_document([sphere(1.0 + number, 16, 8)]).write(tmp_path / f"scene{number}.glb")
+    words = "--encoding octahedral,spheremap --storage rg8 --scene scene0.glb,gloss,scene1.glb,scene2.glb"
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+    here = measured(run, tmp_path / "one", "render", f"{words} --size 64x36 --repeats 0")
+    there = measured(run, tmp_path / "two", "render", f"{words} --size 64x36 --repeats 0", "--on", scheduler)
+    assert len(here[0]) == 8 and here == there
+    files = {order.id: sorted(order.files) for order in sent}
+    assert sorted(files.values()) == [[], ["scene0.glb"], ["scene1.glb"], ["scene2.glb"]]
+
+
+def test_python_takes_workers_as_well(scheduler):
+    found, same = (nb.quality(encoding="octahedral", storage="rg8", normals="axes", on=on) for on in (scheduler, None))
+    pd.testing.assert_frame_equal(found, same)
+
+
+def test_a_value_of_pythons_own_is_refused(scheduler):
+    """Workers measure what has a name or is a file."""
+    normals = {"own": np.eye(3)}
+    with pytest.raises(UsageError, match="normals: own is a value of this process; workers measure names and files"):
+        nb.quality(encoding="octahedral", storage="rg8", normals=normals, on=scheduler)
