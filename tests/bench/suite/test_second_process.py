@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.machine.children import environment
-from normalbench.bench.results.measuring import Asked
+from normalbench.bench.results.measuring import HERE, Asked
 from normalbench.bench.results.runs import read_run
 from normalbench.bench.suite import report, second
 from normalbench.bench.suite import run as run_of
@@ -103,12 +103,11 @@ def test_the_answer_comes_first(cores, monkeypatch):
     cores(1)
     seen = []
     monkeypatch.setattr(
-        run_of, "measured", lambda ask, _: seen.append(ask.table.name) or Measured(ask.options, None, (), ())
+        run_of, "measured", lambda ask, *_: seen.append(ask.table.name) or Measured(ask.options, None, (), ())
     )
     monkeypatch.setattr(run_of, "show_summary", lambda table, _: seen.append(f"{table.name} is shown"))
-    monkeypatch.setattr(run_of, "_complete", lambda *_: False)
     tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
-    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {})
+    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE)
     assert seen[:2] == ["pick", "pick is shown"], seen
 
 
