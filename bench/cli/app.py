@@ -22,6 +22,7 @@ from typer.exceptions import Abort, TyperException
 from ...encodings.codecs.files import CatalogueError
 from ...reports.charts.plots import PlotError
 from ..options.code import CodeOptions
+from ..output import cache
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
 from ..output.writing import abandon_output, check_is_folder, write
@@ -40,6 +41,7 @@ app = typer.Typer(
 # What `list` leaves out where the terminal is narrow.
 SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "engine")
 INTERRUPTED, TERMINATED = 130, 143
+NO_CACHE = "--no-cache"
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02
 # A part of the paths of moderngl's own files.
@@ -57,9 +59,16 @@ def _version(is_asked: bool) -> None:
 
 @app.callback()
 def every_command(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")] = False,
+    _is_asked: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")
+    ] = False,
+    no_cache: Annotated[
+        bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
+    ] = False,
 ) -> None:
     """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
+    if no_cache:
+        cache.switch_off()
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
@@ -340,9 +349,11 @@ def _hint(said: str) -> str:
 def _words(words: list[str], group: Any) -> list[str]:
     """What was typed, with each option once. Raises UsageError."""
     own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
+    # It may stand anywhere.
+    no_cache, words = [NO_CACHE] * (NO_CACHE in words), [word for word in words if word != NO_CACHE]
     check_begins_with_command(words, group.commands, own)
     is_known = bool(words) and words[0] in group.commands
-    return [words[0], *added_up(words[1:], group.commands[words[0]].params)] if is_known else words
+    return no_cache + ([words[0], *added_up(words[1:], group.commands[words[0]].params)] if is_known else words)
 
 
 def _without_output(words: list[str]) -> None:

@@ -32,7 +32,7 @@ def keep_programs() -> None:
     Whoever has chosen a folder for JAX, or none (JAX_ENABLE_COMPILATION_CACHE=0), is not overruled.
     """
     chosen: Any = jax.config
-    if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache:
+    if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache and not cache.is_off():
         jax.config.update("jax_compilation_cache_dir", str(programs_folder()))
         # An entry that was damaged, or cannot be written, is no more than one that is not there.
         warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache entry")

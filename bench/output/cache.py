@@ -10,6 +10,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+# Set for this process and its children where nothing is to be read from the cache, or kept in it.
+OFF = "NORMALBENCH_NO_CACHE"
+
+
+def switch_off() -> None:
+    """Do without the cache from here on, in this process and in those that it starts."""
+    os.environ[OFF] = "1"
+
+
+def is_off() -> bool:
+    """Whether the cache is not to be used."""
+    return bool(os.environ.get(OFF))
+
 
 def folder() -> Path:
     """Where the cache lies: under XDG_CACHE_HOME, or ~/.cache."""
@@ -29,6 +42,8 @@ def key_of(*parts: str | bytes) -> str:
 
 def read(key: str) -> dict[str, Any] | None:
     """The value of a key, or None where there is none, or it is not what was written."""
+    if is_off():
+        return None
     try:
         kept = json.loads(_path(key).read_text(encoding="utf-8"))
         value = kept["value"]
@@ -54,6 +69,8 @@ def _digest(value: Any) -> str:
 
 def write(key: str, value: dict[str, Any]) -> None:
     """Keep a value. Readers see the old file or the new one; a folder that cannot be written is no error."""
+    if is_off():
+        return
     path = _path(key)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -120,11 +120,11 @@ def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
     assert sorted(drawn) == sorted({path.stem for path in (tmp_path / "run/charts").iterdir()})
 
 
-def measured(folder: Path, **variables: str) -> str:
+def measured(folder: Path, *more: str, **variables: str) -> str:
     """What a process says of one code whose caches lie in a folder."""
     words = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     own = {name: value for name, value in environment().items() if not name.startswith("JAX_")}
-    command = [sys.executable, "-m", "normalbench.bench", *words, "--format", "json"]
+    command = [sys.executable, "-m", "normalbench.bench", *words, *more, "--format", "json"]
     done = subprocess.run(
         command, env=own | {"XDG_CACHE_HOME": str(folder)} | variables, capture_output=True, text=True
     )
@@ -147,8 +147,10 @@ def test_a_second_process_compiles_nothing(tmp_path):
 
 
 def test_compiled_programs_need_not_be_kept(tmp_path):
-    assert measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
+    found = measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
     assert not programs(tmp_path)
+    assert measured(tmp_path, "--no-cache") == found
+    assert not [*tmp_path.iterdir()], "without the cache nothing is kept"
 
 
 def test_a_cache_that_cannot_be_written_is_no_error():
