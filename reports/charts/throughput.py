@@ -7,7 +7,7 @@ from typing import Any
 
 from .charts import Row
 from .plots import COLOURS, MARKERS, drawn_off_screen
-from .specs import PALETTE, Spec, if_lit, rounded, spec, tips
+from .specs import INK, PALETTE, Spec, if_lit, rounded, spec, tips
 
 # What is drawn of a row: the column, what it is called, and how its line is dashed.
 LINES = (("rate", "normalbench", "-"), ("c", "C", "--"), ("reading", "reading", ":"))
@@ -91,15 +91,18 @@ def _spec(rows: Sequence[Row], statistics: str) -> Spec:
         "x": {"field": "count", "type": "quantitative", "scale": {"type": "log"}, "title": "normals"},
         "y": {"field": "rate", "type": "quantitative", "scale": {"type": "log"}, "title": "million normals a second"},
         "color": {"field": "codec", "type": "nominal", "scale": colours, "title": None},
-        "strokeDash": {
-            "field": "by",
-            "type": "nominal",
-            "scale": {"domain": [*DASHES], "range": [*DASHES.values()]},
-            "title": None,
-        },
+        "detail": {"field": "by"},
         "opacity": if_lit(1, 0.15),
         "tooltip": tips(codec="encoding", by="by", count="normals", rate="million normals a second"),
     }
-    mark = {"type": "line", "point": {"size": 40}}
+    dash = {
+        "field": "by",
+        "type": "nominal",
+        "scale": {"domain": [*DASHES], "range": [*DASHES.values()]},
+        "title": None,
+    }
+    lines: Spec = {"mark": {"type": "line"}, "encoding": {"strokeDash": dash}}
+    layers = [lines, {"mark": {"type": "point", "filled": True, "size": 40}}]
+    title = {"text": TITLE.get(statistics, statistics), "color": INK, "fontSize": 13}
     said = f"Million normals a second over their number: {TITLE.get(statistics, statistics)}."
-    return spec(points, said, mark=mark, encoding=encoding, height=300, title=TITLE.get(statistics, statistics))
+    return spec(points, said, layer=layers, encoding=encoding, height=300, title=title)
