@@ -73,6 +73,6 @@ def checked_numbers(option: str, text: str, kind: Callable[[str], N], least: N, 
     except ValueError:
         found = ()
     if not found or not all(least <= number <= most for number in found):
-        what = "whole numbers" if kind is int else "numbers"
-        raise UsageError(f"{option} {text}: {what} from {least:g} to {most:g}, comma-separated")
+        between = f"whole numbers from {least} to {most}" if kind is int else f"numbers from {least:g} to {most:g}"
+        raise UsageError(f"{option} {text}: {between}, comma-separated")
     return found

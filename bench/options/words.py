@@ -20,6 +20,10 @@ class Words(str):
         made.given = given
         return made
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A text's own way has no values.
+        return Words, ([str(self)], self.given)
+
 
 def given_in(names: str) -> Mapping[str, Any]:
     """The caller's own values among names; none in plain text."""

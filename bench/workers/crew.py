@@ -82,7 +82,10 @@ class Crew:
         del self._flights[flight.address]
         if flight.what is not PROBING:
             return flight.address, flight.what, answer
-        if answer is not LOST and not self.admission.take(flight.address, answer):
+        if isinstance(answer, Exception):
+            leave_out(f"worker {flight.address}: it does not say what it has: {str(answer).splitlines()[0]}")
+            self._refused.add(flight.address)
+        elif answer is not LOST and not self.admission.take(flight.address, answer):
             self._refused.add(flight.address)
         return None
 

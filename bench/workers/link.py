@@ -21,6 +21,8 @@ from ..output.errors import UsageError
 from .worker import RESOURCE, quiet
 
 CONNECT_S, ANSWER_S, LOOK_S = 5.0, 120.0, 1.0
+# Whose exceptions say that something was lost.
+DASK = ("distributed", "asyncio", "concurrent", "tornado")
 
 
 @dataclass(eq=False)
@@ -101,7 +103,8 @@ class Link:
         return None
 
     def answer(self, flight: Flight) -> Any:
-        """What a flight brings; LOST where that was lost on the way, as with the worker that has it."""
+        """What a flight brings; LOST where that was lost on the way, as with the worker that has it; an exception where
+        it was none of the connection's, and would come again."""
         future, flight.future = flight.future, None
         until = time.monotonic() + ANSWER_S
         while future is not None and time.monotonic() < until:
@@ -110,8 +113,10 @@ class Link:
             except TimeoutError:
                 if flight.address not in (self.workers() or ()):
                     break
-            except (Exception, asyncio.CancelledError):
+            except asyncio.CancelledError:
                 break
+            except Exception as error:
+                return LOST if isinstance(error, OSError) or type(error).__module__.startswith(DASK) else error
         return LOST
 
     def forget(self, flight: Flight) -> None:

@@ -71,6 +71,8 @@ class Pool:
 
     def _taken(self, queue: _Queue, address: str, chunk: Chunk, answer: tasks.Answer | object) -> Found:
         """What an answer brings; the steps that it does not bring wait again."""
+        if isinstance(answer, Exception):
+            raise answer
         if not isinstance(answer, tasks.Answer):
             assert answer is LOST
             yield from queue.lose(chunk, False)

@@ -38,8 +38,8 @@ def place_named(word: str) -> Local | Address:
     if match := _LOCAL.fullmatch(word.strip()):
         try:
             count = whole_number(match["count"])
-        except ValueError as error:
-            raise UsageError(f"--on {word}: {error}") from error
+        except ValueError:
+            count = 0
         if not 1 <= count <= MOST_LOCAL:
             raise UsageError(f"--on {word}: from 1 to {MOST_LOCAL} worker processes, such as local:4")
         return Local(count)
@@ -58,7 +58,7 @@ def checked_address(option: str, word: str) -> str:
     match = _ADDRESS.fullmatch(word.strip())
     if not match or not 0 < int(match["port"]) < 2**16:
         local = "local:N, such as local:4, or " if option == "--on" else ""
-        raise UsageError(f"{option} {word}: say {local}tcp://HOST:PORT, such as tcp://10.0.0.5:8786")
+        raise UsageError(f"{option} {word or repr(word)}: say {local}tcp://HOST:PORT, such as tcp://10.0.0.5:8786")
     return word.strip()
 
 

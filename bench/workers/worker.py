@@ -17,6 +17,7 @@ import sys
 import tempfile
 import threading
 import time
+import warnings
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from contextlib import suppress
@@ -132,6 +133,7 @@ def worker_command(address: str) -> int:
     checked = checked_address("worker", address)
     require_dask()
     quiet()
+    warnings.simplefilter("ignore")
     tell(f"joins {checked}; interrupt it to end it")
     if not serve(checked):
         raise UsageError(f"{checked}: nobody answers; start a scheduler there: dask scheduler")

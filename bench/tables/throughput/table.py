@@ -51,7 +51,7 @@ COLUMNS = (
     Column("times_numpy", "The rate divided by that of NumPy over whole arrays.", TIME, better="more"),
     Column("numpy_blocked", "The same of NumPy over blocks that fit into a core's cache.", TIME, RATE, drops=6),
     Column("times_numpy_blocked", "The rate divided by that of NumPy over blocks.", TIME, better="more", drops=4),
-    Column("reading", "How many normals a second are read and added up, the limit.", TIME, RATE, drops=7),
+    Column("reading", "How many normals a second are read and added up by C: the limit.", TIME, RATE, drops=7),
     Column("share_of_reading", "The rate divided by that of reading.", TIME, better="more", drops=2),
     Column("no_c", "Why there is no rate of C.", HOW, drops=1),
     Column("compiler", "The C compiler.", HOW, drops=8),

@@ -66,13 +66,17 @@ def _shown(done: Measured) -> Iterator[Sheet]:
         yield Sheet("", (), notes=notes)
 
 
+def _warnings(rows: Sequence[Row]) -> Iterator[str]:
+    yield from dict.fromkeys(f"no rate of C: {row['no_c']}" for row in rows if row["no_c"])
+
+
 def _write(done: Measured, _: Tick) -> None:
     if done.outputs.plot:
-        save_plot(done.outputs.plot, charts.throughput_chart(having(done.rows, "rate", "reading")))
+        save_plot(done.outputs.plot, charts.throughput_chart(having(done.rows, "rate")))
 
 
 def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = having(rows, "rate", "reading")
+    usable = having(rows, "rate")
     if usable:
         said = (
             "Million normals a second over the number of normals, both on logarithmic scales: normalbench as lines, C "
@@ -86,6 +90,7 @@ WORK = Work(
     steps=_steps,
     measure=each(lambda case: [measure.measure(case)]),
     shown=_shown,
+    warnings=_warnings,
     write=_write,
     drawings=_drawings,
     needs=lambda _: frozenset(),

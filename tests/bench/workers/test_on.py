@@ -25,7 +25,7 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
     [
         ("local:0", "--on local:0: from 1 to 256 worker processes, such as local:4"),
         ("local:1000", "--on local:1000: from 1 to 256 worker processes, such as local:4"),
-        ("local:few", "--on local:few: few is not a whole number"),
+        ("local:few", "--on local:few: from 1 to 256 worker processes, such as local:4"),
         ("here", "--on here: say local:N, such as local:4, or tcp://HOST:PORT"),
         ("tcp://host", "--on tcp://host: say local:N"),
         ("tcp://host:99999", "--on tcp://host:99999: say local:N"),

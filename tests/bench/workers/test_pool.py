@@ -1,11 +1,13 @@
 """Steps and workers that come and go, without any process: every step has its rows once, or a reason."""
 
+import pickle
 import random
 from collections import Counter
 from dataclasses import dataclass, field
 
 import pytest
 
+from normalbench.bench.options.words import Words, given_in
 from normalbench.bench.results.measuring import Asked
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
@@ -198,6 +200,19 @@ def test_every_table_whose_rows_have_times_says_so_in_its_keys():
 )
 def test_chunks_shrink_towards_the_end(waiting, workers, size):
     assert chunk_size(waiting, workers) == size
+
+
+def test_what_no_worker_can_read_ends_the_command():
+    """It would come back again and again: an order that cannot be unpacked is no worker's fault."""
+    crew = FakeCrew({"a": {}}, lambda _, names: TypeError("cannot be unpacked"))  # noqa: ARG005
+    with pytest.raises(TypeError, match="cannot be unpacked"):
+        measured(crew, asked("quality", JAX))
+
+
+def test_lists_of_names_travel():
+    """With the caller's own values, which a text would lose."""
+    words = pickle.loads(pickle.dumps(Words(["octahedral", "mine"], {"mine": 1})))
+    assert words == "octahedral,mine" and given_in(words) == {"mine": 1}
 
 
 def test_an_answer_that_is_wrong_ends_the_command():

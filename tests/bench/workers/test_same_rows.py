@@ -125,7 +125,9 @@ def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp
 
 
 def test_python_takes_workers_as_well(scheduler):
-    found, same = (nb.quality(encoding="octahedral", storage="rg8", normals="axes", on=on) for on in (scheduler, None))
+    found, same = (
+        nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (scheduler, None)
+    )
     pd.testing.assert_frame_equal(found, same)
 
 
