@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import gc
 
@@ -27,3 +28,5 @@ def keep_what_is_imported() -> None:
     again for nothing."""
     gc.collect()
     gc.freeze()
+    # At the end it is let go like all else, or libraries in C++ complain of leaks.
+    atexit.register(gc.unfreeze)
