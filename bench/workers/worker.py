@@ -146,8 +146,9 @@ def quiet() -> None:
     # Its import sets levels of its own.
     import distributed  # noqa: F401
 
-    for name in ("distributed", *logging.root.manager.loggerDict):
-        if name.partition(".")[0] == "distributed":
+    # asyncio's complaints are of dask's own tasks, which end with a lost scheduler.
+    for name in ("asyncio", "distributed", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("asyncio", "distributed"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
