@@ -21,10 +21,10 @@ import numpy as np
 
 from ...encodings.codecs.frame_codec import FrameCodec
 from ...encodings.rotation import Frame, frame_of, frame_of_quaternion
-from ...encodings.vec import Vec3, Vec4, cross, dot
+from ...encodings.vec import Vec4, cross, dot, normalize
 from ..machine.cores import on_all_cores
 from .cells import column_peaks
-from .exact_codec import BLOCK, WAYS
+from .exact_codec import BLOCK, WAYS, degrees
 
 LANES, STEPS, ROUNDS = BLOCK // WAYS, 80, 12
 SPREAD, KEPT = 2**20, 2**8
@@ -104,12 +104,8 @@ def _moves(codec: FrameCodec, quaternions, hands):
 
 def _at_right_angles(frame: Frame) -> Frame:
     """A frame's axes at length 1, the tangent across the normal."""
-    n = _unit(frame.normal)
-    return Frame(n, _unit(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
-
-
-def _unit(v: Vec3) -> Vec3:
-    return v * (1.0 / jnp.sqrt(dot(v, v)))
+    n = normalize(frame.normal)
+    return Frame(n, normalize(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
 
 
 def _worst_of(moves: Callable) -> _Frames:
@@ -173,4 +169,5 @@ def _radians(moves):
 
 
 def _degrees(moves: float) -> float:
-    return float(np.degrees(_radians(moves)))
+    # The chord of the same angle has 4 sin^2(theta / 2).
+    return degrees(moves / 2)
