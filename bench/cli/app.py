@@ -22,7 +22,6 @@ from typer.exceptions import Abort, TyperException
 from ...encodings.codecs.files import CatalogueError
 from ...reports.charts.plots import PlotError
 from ..options.code import CodeOptions
-from ..output import cache
 from ..output.errors import MissingError, UsageError, tell, told
 from ..output.progress import ending
 from ..output.writing import abandon_output, check_is_folder, write
@@ -68,6 +67,8 @@ def every_command(
 ) -> None:
     """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
     if no_cache:
+        from ..output import cache
+
         cache.switch_off()
 
 
