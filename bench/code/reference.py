@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -64,21 +66,35 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
 @cache
 def reference(codec: Codec) -> Reference:
     """What the catalogue makes of the normals of a codec's domain."""
-    n, view = normals(codec.encoding.domain)
+    return reference_of(codec, *normals(codec.encoding.domain))
+
+
+def reference_of(codec: Codec, n: np.ndarray, view: np.ndarray, compiled: bool = True) -> Reference:
+    """What the catalogue makes of normals and views, float32 of shape (count, 3).
+
+    Args:
+        compiled: whether XLA compiles the codec as a whole; else it goes step by step, which takes less time where it is
+            needed once. XLA may round a sum of products once, so the last bits of codes may be others.
+    """
+    made = jax.jit if compiled else _step_by_step
     planes = (Vec3(*(jnp.asarray(a[:, i]) for i in range(3))) for a in (n, view))
     by_device = None if has_twin(codec.encoding) else _by_device(codec, n, view)
     n_planes, view_planes = planes
-    code = _array(jax.jit(codec.stored)(n_planes, view_planes)) if by_device is None else by_device[0]
+    code = _array(made(codec.stored)(n_planes, view_planes)) if by_device is None else by_device[0]
     channels = Channels(codec)
     integers = np.stack([_integers(c, code[:, at]) for at, c in enumerate(channels.channels)], axis=1)
     words = _words(channels, integers)
     stored = _stored(codec, channels, integers, code)
     if by_device is None:
         read = VECTORS[stored.shape[1]](*(jnp.asarray(number) for number in stored.T))
-        decoded = _array(jax.jit(codec.encoding.decode)(read, view_planes))
+        decoded = _array(made(codec.encoding.decode)(read, view_planes))
     else:
         decoded = by_device[1]
     return Reference(n, view, stored, integers, words, _texels(codec, channels, integers, words), decoded)
+
+
+def _step_by_step(function: Callable[..., Any]) -> Callable[..., Any]:
+    return function
 
 
 def _by_device(codec: Codec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
