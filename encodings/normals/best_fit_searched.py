@@ -27,7 +27,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
     def tried(step, carry):
         best, least = carry
-        k = (LEVELS - 1.0) - 2.0 * step.astype(n.x.dtype)
+        k = (LEVELS - 1.0) - 2.0 * jnp.asarray(step, n.x.dtype)
         c = _code(n, k)
         # the squared sine of the angle between: |n - c (c . n) / (c . c)|^2
         aside = n - c * (dot(c, n) / dot(c, c))
