@@ -2,6 +2,9 @@
 
 // The normals that this device encodes, bit for bit those of bench/live/normals.py, and checksums of the run's codes.
 
+// How many differing normals are kept to be shown.
+const SHOWN = 8;
+
 // An integer of 32 bits, well mixed.
 function hashed(word, { shifts, factors }) {
   let mixed = word >>> 0;
@@ -134,37 +137,87 @@ class Checks {
     return null;
   }
 
-  // Codes are integers in the order of their numbers, `size` for each normal.
-  compare(expected, codes, size) {
-    const { group, count } = this.common, asked = new Uint32Array(bytesOf(expected.groups)), given = this.sums(codes, size);
-    const found = { equal: count, oneStep: 0, further: 0, steps: [], groups: [] };
+  // The run's codes, as far as checksums tell them. `given` are codes of this device, as integers in the order of their
+  // numbers, `size` for each normal; of several, those that come first are asked first. Of a group whose steps none of
+  // them tells, nothing is known: `isKnown` is 0 there.
+  runs(expected, given, size) {
+    const { group } = this.common, asked = new Uint32Array(bytesOf(expected.groups)), sums = given.map((codes) => this.sums(codes, size));
+    const codes = new Int32Array(given[0].length), isKnown = new Uint8Array(asked.length);
     for (let g = 0; g < asked.length; g++) {
-      const difference = (given[g] - asked[g]) >>> 0;
-      const told = difference ? this.told(difference, size) : [];
-      if (!told) {
-        found.groups.push(g);
-        found.further += group;
-      } else if (told.length === 2 && told[0].k === told[1].k) found.further++;
-      else found.oneStep += told.length;
-      for (const { k, c, step } of told ?? []) found.steps.push({ normal: g * group + k, number: c, step });
+      const [from, to] = [g * group * size, (g + 1) * group * size];
+      for (let i = 0; i < given.length && !isKnown[g]; i++) {
+        const difference = (sums[i][g] - asked[g]) >>> 0, told = difference ? this.told(difference, size) : [];
+        if (!told) continue;
+        isKnown[g] = 1;
+        codes.set(given[i].subarray(from, to), from);
+        for (const { k, c, step } of told) codes[from + k * size + c] -= step;
+      }
     }
-    found.equal -= found.oneStep + found.further;
-    return { ...found, ...this.samples(expected, codes, size) };
+    return { codes, isKnown };
   }
 
-  // Which numbers differ at all, and the normals whose codes travel with the page and differ.
-  samples(expected, codes, size) {
-    const { stride, count } = this.common, sample = new Int32Array(bytesOf(expected.sample));
-    const sums = new Uint32Array(bytesOf(expected.numbers)), normals = new Normals(this.common), differing = [];
-    const numbers = Array.from({ length: size }, (_, c) => c).filter((c) => {
-      const one = Int32Array.from({ length: count }, (_, i) => codes[size * i + c]);
-      return normals.checksum(one, 1, 1) !== sums[c];
-    });
-    for (let i = 0; i < count / stride; i++) {
-      const run = Array.from(sample.subarray(size * i, size * (i + 1)));
-      const here = Array.from(codes.subarray(size * stride * i, size * (stride * i + 1)));
-      if (run.some((code, c) => code !== here[c])) differing.push({ normal: stride * i, run, here });
+  // How a device's codes differ from the run's. The last of `given` is what is judged; codes that the shader packed
+  // by itself come before it: they tell the run's codes where a target rounds in its own way.
+  compare(expected, given, size) {
+    const { group, count } = this.common, run = this.runs(expected, given, size), here = given.at(-1);
+    const found = { equal: 0, oneStep: 0, further: 0, untold: 0, numbers: [], differing: [], checked: this.numbers(expected, here, size) };
+    for (let c = 0; c < size; c++) found.numbers.push({ normals: 0, most: 0 });
+    for (let i = 0; i < count; i++) {
+      if (run.isKnown[Math.floor(i / group)]) this.judge(found, i, run.codes.subarray(size * i, size * i + size), here.subarray(size * i, size * i + size));
+      else found.untold++;
     }
-    return { numbers, differing, sampled: count / stride };
+    found.further += found.untold;
+    if (found.untold) this.addSamples(found, expected, run, here, size);
+    return found;
   }
+
+  judge(found, normal, run, here) {
+    let wrong = 0, most = 0;
+    for (let c = 0; c < run.length; c++) {
+      const steps = Math.abs(here[c] - run[c]);
+      if (!steps) continue;
+      wrong++;
+      most = Math.max(most, steps);
+      found.numbers[c].normals++;
+      found.numbers[c].most = Math.max(found.numbers[c].most, steps);
+    }
+    if (wrong) this.keep(found, normal, run, here);
+    if (!wrong) found.equal++;
+    else if (wrong === 1 && most === 1) found.oneStep++;
+    else found.further++;
+  }
+
+  keep(found, normal, run, here) {
+    if (found.differing.length < SHOWN) found.differing.push({ normal, run: Array.from(run), here: Array.from(here) });
+  }
+
+  // Of groups that nothing is known of: those normals whose codes travel with the page.
+  addSamples(found, expected, run, here, size) {
+    const { stride, group, count } = this.common, sample = new Int32Array(bytesOf(expected.sample));
+    for (let i = 0; i < count / stride; i++) {
+      const codes = sample.subarray(size * i, size * (i + 1)), own = here.subarray(size * stride * i, size * (stride * i + 1));
+      const differs = codes.some((code, c) => code !== own[c]);
+      if (differs && !run.isKnown[Math.floor((stride * i) / group)]) this.keep(found, stride * i, codes, own);
+    }
+  }
+
+  // Which numbers differ anywhere.
+  numbers(expected, codes, size) {
+    const { count } = this.common, sums = new Uint32Array(bytesOf(expected.numbers)), normals = new Normals(this.common);
+    const one = (c) => Int32Array.from({ length: count }, (_, i) => codes[size * i + c]);
+    return Array.from({ length: size }, (_, c) => c).filter((c) => normals.checksum(one(c), 1, 1) !== sums[c]);
+  }
+}
+
+// What a comparison found, in words. `n` are the normals, four numbers each.
+function saysDifference(found, n) {
+  if (!found.further && !found.oneStep) return "all codes are equal, bit for bit";
+  const said = found.numbers.map(({ normals, most }, c) => normals && `${"xyzw"[c]} differs for ${normals} normals, by ${most === 1 ? "1 step" : `up to ${most} steps`}`);
+  if (found.untold) {
+    const numbers = found.checked.map((c) => "xyzw"[c]).join(", ");
+    said.push(`${found.untold} normals are in groups with more differences than a checksum tells apart; ${numbers} ${found.checked.length > 1 ? "differ" : "differs"} there or elsewhere`);
+  }
+  const shown = found.differing[0], at = shown && 4 * shown.normal;
+  if (shown) said.push(`for example normal ${shown.normal} (${[0, 1, 2].map((c) => n[at + c].toFixed(4)).join(", ")}): here ${shown.here.join(", ")}, in the run ${shown.run.join(", ")}`);
+  return said.filter(Boolean).join("; ");
 }

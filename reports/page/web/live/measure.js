@@ -92,7 +92,7 @@ class Inputs {
 // One codec on a device: its passes at `side` by `side` texels.
 class CodecOnDevice {
   constructor(inputs, codec) {
-    Object.assign(this, { inputs, codec, device: inputs.device, side: inputs.side, made: [] });
+    Object.assign(this, { inputs, codec, device: inputs.device, side: inputs.side, made: [], programs: [] });
     this.target = codec.target ? this.own(codec.target, this.side) : null;
     this.packs = !this.target;
     this.format = this.packs ? WORD_TARGETS[codec.words] : codec.target;
@@ -107,16 +107,16 @@ class CodecOnDevice {
     return target;
   }
 
-  get macros() {
+  macros(packs) {
     const { codec } = this, { names, channels } = codec, hasSign = codec.components > channels.length;
-    const scale = (at) => (codec.channels[0].is_across ? 255 : (channels[at]?.integer ?? 1)).toFixed(1);
+    const scale = (at) => (channels[0].is_across ? 255 : (channels[at]?.integer ?? 1)).toFixed(1);
     return {
       SIDE: this.side,
       CODE: `vec${codec.components}`,
       HAS_SIGN: Number(hasSign),
       SIGN: "xyzw"[codec.components - 1],
       STORED_SIGN: hasSign ? ", sign" : "",
-      PACKS: Number(this.packs),
+      PACKS: Number(packs),
       PACKED: "xyzw".slice(0, codec.words),
       FLOATS: Number(channels[0].kind === "float"),
       SCALES: `vec4(${[0, 1, 2, 3].map(scale).join(", ")})`,
@@ -127,9 +127,12 @@ class CodecOnDevice {
   }
 
   // A pass of this codec; one that needs none of its functions is given its macros alone.
-  program(name, more = {}, needsCodec = true) {
-    const { shaders } = this.inputs.data, macros = defined({ ...this.macros, HAS_CODEC: Number(needsCodec), TIMED: 0, ...more });
-    return this.device.program(macros + (needsCodec ? this.codec.source : "") + shaders["measure_given.glsl"] + shaders[name]);
+  program(name, { needsCodec = true, packs = this.packs, ...more } = {}) {
+    const { shaders } = this.inputs.data, macros = { ...this.macros(packs), HAS_CODEC: Number(needsCodec), TIMED: 0, ...more };
+    const source = needsCodec ? this.codec.source : "";
+    const made = this.device.program(defined(macros) + source + shaders["measure_given.glsl"] + shaders[name]);
+    this.programs.push(made);
+    return made;
   }
 
   draw(program, target, textures = {}) {
@@ -145,18 +148,24 @@ class CodecOnDevice {
     return found;
   }
 
-  // Codes as integers in the order of their numbers, as many for each normal as are stored.
-  codes() {
-    this.draw(this.program("measure_encode.frag"), this.target);
-    if (this.packs) return this.unpacked(this.words(this.target));
-    this.bits ??= this.own("RGBA32UI", this.side);
-    this.draw(this.program("measure_read.frag", {}, false), this.bits, { codes: this.target.texture });
-    return this.unpacked(this.words(this.bits));
+  // Codes as integers in the order of their numbers, as many for each normal as are stored: as the shader packs them.
+  packedCodes() {
+    const target = this.packs ? this.target : this.own(WORD_TARGETS[this.codec.words], this.side);
+    this.draw(this.program("measure_encode.frag", { packs: true }), target);
+    return this.unpacked(this.words(target), true);
   }
 
-  unpacked(words) {
+  // The same as the codec's own render target has them.
+  targetCodes() {
+    this.draw(this.program("measure_encode.frag"), this.target);
+    this.bits ??= this.own("RGBA32UI", this.side);
+    this.draw(this.program("measure_read.frag", { needsCodec: false }), this.bits, { codes: this.target.texture });
+    return this.unpacked(this.words(this.bits), false);
+  }
+
+  unpacked(words, packs) {
     const { channels } = this.codec, size = channels.length, found = new Int32Array((words.length / 4) * size);
-    const read = channels[0].is_across ? acrossBytes(channels, this.packs) : this.packs ? fromWords(channels) : fromTarget(channels);
+    const read = channels[0].is_across ? acrossBytes(channels, packs) : packs ? fromWords(channels) : fromTarget(channels);
     for (let i = 0; i < words.length / 4; i++) for (let c = 0; c < size; c++) found[size * i + c] = read(words, 4 * i, c);
     return found;
   }
@@ -176,6 +185,7 @@ class CodecOnDevice {
   }
 
   release() {
+    for (const program of this.programs) this.device.gl.deleteProgram(program);
     for (const { framebuffer, texture } of this.made) {
       this.device.gl.deleteFramebuffer(framebuffer);
       this.device.gl.deleteTexture(texture);
@@ -197,7 +207,7 @@ function fromWords(channels) {
 
 // Numbers laid across bytes: the bytes read as one number, the first byte the highest.
 function acrossBytes(channels, packs) {
-  const count = Math.ceil(channels.reduce((sum, { bits }) => sum + bits, 0) / 8);
+  const count = (channels[0].first + channels[0].bits) / 8;
   const byte = (words, at, b) => (packs ? (words[at] >>> (8 * b)) & 255 : words[at + b] & 255);
   return (words, at, c) => {
     let joined = 0;
