@@ -1,0 +1,228 @@
+"use strict";
+
+// "Measure it": every codec of the run on this device, in slices that leave the page alive.
+
+const COLUMNS = [
+  ["codec", "The encoding and its storage."],
+  ["target", "The WebGL format that was rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
+  ["equal", "How many of the codes are the run's, bit for bit, in per cent."],
+  ["one step", "Codes with one number one step away from the run's."],
+  ["further", "Codes that differ by more, and those of groups whose differences a checksum does not tell apart."],
+  ["mean", "The mean angle between normals and what this device decodes, in degrees."],
+  ["run", "The same angle of the run's own codes."],
+  ["max", "The largest angle on this device, in degrees."],
+  ["encode", "Milliseconds to encode a megapixel, less a pass that only reads and writes."],
+  ["decode", "Milliseconds to decode a megapixel, less a pass that only reads and writes."],
+  ["difference", "Which numbers of which normals differ."],
+];
+
+class CancelledError extends Error {}
+
+class Measuring {
+  // Fills `root`. `data` is live.data.
+  constructor(root, device, data) {
+    Object.assign(this, { root, device, data, rows: [], facts: {}, normals: new Normals(data.checks), checks: new Checks(data.checks) });
+    this.build();
+    device.gl.canvas.addEventListener("webglcontextlost", (event) => {
+      // Without this the browser does not bring the context back.
+      event.preventDefault();
+      this.wasLost = true;
+    });
+  }
+
+  build() {
+    const start = () => this.start();
+    this.button = element("button", { type: "button", "data-measure": "", onclick: start }, "Measure this device");
+    this.cancelling = element("button", { type: "button", "data-cancel": "", onclick: () => this.cancel(), hidden: "" }, "Cancel");
+    this.timed = element("input", { type: "checkbox", id: "measure-times", checked: "" });
+    this.progress = element("progress", { max: this.data.codecs.length, value: 0, hidden: "", "aria-label": "Codecs measured" });
+    this.said = element("p", { role: "status", class: "note", "data-measured": "" });
+    const times = element("label", { for: "measure-times" }, this.timed, " with times");
+    this.results = element("div", { "data-results": "" });
+    this.factList = element("div", { "data-facts": "" });
+    this.keeping = element("div", { "data-keep": "" });
+    this.root.append(element("p", { class: "tools" }, this.button, times, this.cancelling), this.progress, this.said, this.results, this.factList, this.keeping);
+  }
+
+  say(text) {
+    this.said.textContent = text;
+  }
+
+  cancel() {
+    this.isCancelled = true;
+    this.cancelling.disabled = true;
+  }
+
+  check() {
+    if (this.isCancelled) throw new CancelledError();
+  }
+
+  get isBusy() {
+    return !this.progress.hidden;
+  }
+
+  setBusy(is) {
+    this.progress.hidden = !is;
+    this.cancelling.hidden = !is;
+    this.cancelling.disabled = false;
+    this.button.disabled = is;
+  }
+
+  async start() {
+    Object.assign(this, { isCancelled: false, wasLost: false, rows: [], facts: {} });
+    for (const place of [this.results, this.factList, this.keeping]) place.replaceChildren();
+    this.setBusy(true);
+    try {
+      this.say("The normals are being made.");
+      await paused();
+      this.checkNormals();
+      await this.surviving(() => this.probe());
+      await this.all();
+      this.say(`${this.rows.length} of ${this.data.codecs.length} codecs measured. ${this.agreement}`);
+    } catch (error) {
+      const kept = this.rows.length ? ` ${this.rows.length} codecs that were measured before are kept.` : "";
+      this.say(`${error instanceof CancelledError ? "Cancelled." : `Not finished: ${error.message}.`}${kept}`);
+    } finally {
+      this.inputs?.release();
+      this.inputs = null;
+      this.setBusy(false);
+      this.show();
+    }
+  }
+
+  checkNormals() {
+    const wrong = Object.keys(this.data.checks.sums).filter((domain) => !this.normals.areRuns(domain));
+    if (wrong.length) throw new Error(`this browser makes other normals of the ${wrong.join(", ")} than the run has`);
+  }
+
+  get agreement() {
+    const all = this.rows.filter((row) => row.equal === row.normals).length;
+    return `${all} of them give the run's codes, bit for bit.`;
+  }
+
+  async probe() {
+    this.say("The device's formats are being looked at.");
+    this.facts = await new Probe(this.device, this.data).facts(() => this.check());
+    this.showFacts();
+  }
+
+  async all() {
+    const { codecs } = this.data;
+    for (const [at, codec] of codecs.entries()) {
+      this.progress.value = at;
+      this.say(`${at + 1} of ${codecs.length}, ${nameOf(codec)}`);
+      await paused();
+      this.check();
+      this.rows.push(await this.surviving(() => this.measured(codec)));
+      this.show();
+    }
+    this.progress.value = codecs.length;
+  }
+
+  // What a step makes; where the context is lost on the way the step is made again when it is back.
+  async surviving(step) {
+    for (;;) {
+      let made, failed = null;
+      try {
+        made = await step();
+      } catch (error) {
+        if (error instanceof CancelledError) throw error;
+        failed = error;
+      }
+      if (!this.device.gl.isContextLost() && !this.wasLost) {
+        if (failed) throw failed;
+        return made;
+      }
+      await this.restored();
+    }
+  }
+
+  // Until the context is back.
+  async restored() {
+    const before = this.said.textContent;
+    this.say("The GPU's context was lost. What is measured is kept; the rest follows when the browser brings it back.");
+    while (this.device.gl.isContextLost()) {
+      await paused(50);
+      this.check();
+    }
+    await paused(50);
+    this.inputs = null;
+    this.wasLost = false;
+    this.say(before);
+  }
+
+  async measured(codec) {
+    this.inputs ??= new Inputs(this.device, this.data, this.normals);
+    const row = { encoding: codec.encoding, storage: codec.storage, rounding: codec.rounding, target: "", normals: this.data.checks.count };
+    const { domain, channels, checks } = codec, on = new CodecOnDevice(this.inputs, codec);
+    try {
+      const codes = [on.packedCodes()];
+      await paused();
+      if (!on.packs) codes.push(on.targetCodes());
+      await paused();
+      const found = this.checks.compare(checks, codes, channels.length), { mean, most } = on.angles();
+      const { equal, oneStep, further } = found, times = { encode_ms: null, decode_ms: null, timer: "" };
+      const difference = saysDifference(found, this.normals.of(domain).n);
+      Object.assign(row, { target: on.format, equal, one_step: oneStep, further, mean_deg: mean, max_deg: most, run_mean_deg: checks.mean_deg }, times);
+      if (this.timed.checked) await this.time(on, row);
+      return Object.defineProperty(row, "difference", { value: difference });
+    } finally {
+      on.release();
+    }
+  }
+
+  async time(on, row) {
+    const timer = new Timer(this.device), timed = new TimedCodec(on, timer);
+    await seen();
+    row.encode_ms = await timed.encode();
+    this.check();
+    row.decode_ms = await timed.decode();
+    row.timer = timer.says;
+  }
+
+  show() {
+    if (!this.rows.length) return;
+    this.results.replaceChildren(sheetOf("This device's codes against the run's", COLUMNS, this.rows.map(cellsOfRow), "measured-codes"));
+    if (!this.isBusy) keepDevice(this.keeping, this);
+  }
+
+  showFacts() {
+    const list = element("dl", { class: "facts" });
+    for (const [name, value] of Object.entries(this.facts)) list.append(element("dt", {}, name), element("dd", {}, String(value)));
+    this.factList.replaceChildren(element("details", {}, element("summary", {}, "What this device does with formats and numbers"), list));
+  }
+}
+
+function nameOf({ encoding, storage, rounding }) {
+  return [encoding, storage, ...(rounding === "nearest" ? [] : [rounding])].join(" ");
+}
+
+function cellsOfRow(row) {
+  const ms = (value) => (value === null ? "" : value.toPrecision(3)), degrees = (value) => value.toPrecision(4);
+  const figures = [((100 * row.equal) / row.normals).toFixed(3), row.one_step, row.further];
+  const angles = [row.mean_deg, row.run_mean_deg, row.max_deg].map(degrees);
+  return { codec: nameOf(row), isWhole: row.equal === row.normals, cells: [nameOf(row), row.target, ...figures, ...angles, ms(row.encode_ms), ms(row.decode_ms), row.difference] };
+}
+
+// A table as the page's others are: sorted by its headers, filtered by none.
+function sheetOf(title, columns, rows, id) {
+  const isNumber = (at) => at > 1 && at < columns.length - 1;
+  const head = columns.map(([name, says], at) => {
+    const button = element("button", { type: "button", title: says }, name);
+    const header = element("th", { scope: "col", "aria-sort": "none", class: isNumber(at) ? "n" : "" }, button);
+    button.addEventListener("click", () => sortBy(header));
+    return header;
+  });
+  const body = rows.map(({ codec, isWhole, cells }) => {
+    const made = cells.map((text, at) => element(at ? "td" : "th", at ? { class: isNumber(at) ? "n" : at === cells.length - 1 ? "long" : "" } : { scope: "row" }, String(text)));
+    return element("tr", { "data-codec": codec, class: isWhole ? "" : "differs" }, ...made);
+  });
+  const caption = element("caption", { id: `${id}-caption` }, element("span", {}, title));
+  const table = element("table", {}, caption, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body));
+  const says = columns.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)]);
+  const columnsSay = element("details", { class: "columns" }, element("summary", {}, "What the columns say"), element("dl", {}, ...says));
+  const scroll = element("div", { class: "scroll", role: "region", "aria-labelledby": `${id}-caption`, tabindex: "0" }, table);
+  const sheet = element("div", { class: "sheet" }, scroll, columnsSay);
+  addTools(sheet);
+  return sheet;
+}

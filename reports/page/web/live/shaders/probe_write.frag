@@ -1,0 +1,7 @@
+// Numbers of a texture written to a render target as they are.
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D given;
+layout(location = 0) out vec4 texel;
+
+void main() { texel = texelFetch(given, ivec2(gl_FragCoord.xy), 0); }
