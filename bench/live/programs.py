@@ -11,7 +11,8 @@ import numpy as np
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
-from ...gbuffer.gl.shader import ShaderError
+from ...encodings.vec import CONSTANTS
+from ...gbuffer.gl.shader import ShaderError, Source
 from ..code.channels import Channels
 from ..code.files import Code, code_of, is_catalogues
 from ..output.errors import UsageError
@@ -23,6 +24,7 @@ MOST_TABLES = 2**16
 # Of each number of numbers, an encoding whose storage functions serve all others: a code is as many numbers in [-1, 1].
 STAND_INS = {2: "octahedral", 3: "xyz"}
 USUAL = ("rgba8", "rgb10a2", "rg8", "rg16", "rg16f", "rgb8_12_12", "r11g11b10f")
+HELPERS = "vec.glsl"
 TABLES_TOO_LARGE = "its look-up tables are too large for a page"
 
 
@@ -93,6 +95,11 @@ def storage_functions(names: list[str]) -> list[Record]:
     """
     chosen = [STORAGES[name] for name in dict.fromkeys((*USUAL, *names)) if name in STORAGES]
     return [program(codec) for storage in chosen for codec in _stand_ins(storage)]
+
+
+def helpers() -> str:
+    """GLSL ES of the functions that users' encoders may call."""
+    return Source(HELPERS, CONSTANTS).text
 
 
 def _stand_ins(storage: Storage) -> list[Codec]:

@@ -25,7 +25,7 @@ from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..live.kept import read_live
-from ..live.programs import storage_functions
+from ..live.programs import helpers, storage_functions
 from ..options.gpu_families import FAMILIES, usual_stage
 from ..output import cache
 from ..output.errors import UsageError, tell
@@ -329,7 +329,7 @@ def _live(folder: Path) -> Live | None:
     if not codecs:
         return None
     cleaned = {str(plain_text(name)): str(plain_text(reason)) for name, reason in left_out.items()}
-    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned)
+    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned, helpers())
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:

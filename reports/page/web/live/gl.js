@@ -79,12 +79,21 @@ class LiveDevice {
   //   parts: names of shaders, in order; `screen.vert` is the vertex shader.
   //   options.defines: names that are defined; options.precision: of the codec's own arithmetic.
   // Kept until the context is lost. Raises an Error with the compiler's log.
-  program(codec, parts, { defines = [], precision = "highp", keep = true } = {}) {
+  program(codec, parts, { defines = [], precision = "highp" } = {}) {
     const key = [codec?.label, codec?.source, precision, ...defines, ...parts].join("\0");
     if (this.programs.has(key)) return this.programs.get(key);
     const made = this.link(this.text(codec, parts, defines, precision));
-    if (keep) this.programs.set(key, made);
+    this.programs.set(key, made);
     return made;
+  }
+
+  // Forgets the programs of a codec.
+  drop({ source }) {
+    for (const [key, { program }] of this.programs) {
+      if (!key.includes(source)) continue;
+      this.gl.deleteProgram(program);
+      this.programs.delete(key);
+    }
   }
 
   text(codec, parts, defines, precision) {
@@ -228,14 +237,14 @@ class LiveDevice {
 }
 
 // The names by which shaders call a codec's functions.
-function macros({ size, sign_bits: signs, takes_view: view, words, names }) {
-  const code = VECTORS[size], called = Object.fromEntries(FUNCTIONS.map((name) => [name, `${names}_${name}`]));
+function macros({ size, sign_bits: signs, takes_view: view, words, names, calls = {}, views = { encode: view, decode: view } }) {
+  const code = VECTORS[size], called = { ...Object.fromEntries(FUNCTIONS.map((name) => [name, `${names}_${name}`])), ...calls };
   const lanes = "xyzw".slice(0, words), sign = signs ? ", s" : "";
   const padding = (count, zero) => Array(count).fill(zero).map((text) => `, ${text}`).join("");
   return [
     `#define CODE ${code}`, `#define SIZE ${size}`, ...(signs ? ["#define HAS_SIGN"] : []),
-    `#define ENCODE(n, view) ${called.encode}(n${view ? ", view" : ""})`,
-    `#define DECODE(e, view) ${called.decode}(e${view ? ", view" : ""})`,
+    `#define ENCODE(n, view) ${called.encode}(n${views.encode ? ", view" : ""})`,
+    `#define DECODE(e, view) ${called.decode}(e${views.decode ? ", view" : ""})`,
     `#define TO_TARGET(e) ${called.to_target}(e)`, `#define FROM_TARGET(t, s) ${called.from_target}(t${sign})`,
     `#define PACK(e) uvec4(${called.pack}(e)${padding(4 - words, "0u")})`,
     `#define UNPACK(w, s) ${called.unpack}((w).${lanes}${sign})`,
