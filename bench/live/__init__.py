@@ -1,1 +1,1 @@
-"""What the page's live section is given: every codec's code, and what its results must be."""
+"""What a page's laboratory is given of a run: each codec's code in GLSL ES."""

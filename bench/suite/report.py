@@ -19,10 +19,13 @@ from ...reports.charts.pareto import Panel, Point, decibels
 from ...reports.page import embedded, library, markdown, page, several
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
+from ...reports.page.live import Live
 from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
+from ..live.kept import read_live
+from ..live.programs import helpers, storage_functions
 from ..options.gpu_families import FAMILIES, usual_stage
 from ..output import cache
 from ..output.errors import UsageError, tell
@@ -40,6 +43,7 @@ from ..tables.table import Role, Table
 
 SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES, MAPS, LISTINGS = "report.html", "charts", "pictures", "sphere", "disassembly"
+LIVE = "live"
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
 # Rows that another version wrote, or somebody's hand.
@@ -208,6 +212,7 @@ def gathered(folder: Path, done: Done) -> Found:
         listings=_listings(folder / LISTINGS, family),
         order=_order(folder / LISTINGS, family, tables.get("cost", [])),
         family=family,
+        live=_live(folder / LIVE),
         remarks=remarks,
     )
     asked = _asked(facts)
@@ -316,6 +321,15 @@ def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
         kept = sphere_maps.read_map(path) if path else None
         if kept:
             yield SphereMap(key, count, kept.mean_deg, kept.max_deg, kept.directions)
+
+
+def _live(folder: Path) -> Live | None:
+    """What the page's laboratory runs; None where the run keeps nothing of it."""
+    codecs, left_out = read_live(folder)
+    if not codecs:
+        return None
+    cleaned = {str(plain_text(name)): str(plain_text(reason)) for name, reason in left_out.items()}
+    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned, helpers())
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..charts.pareto import Error, Panel
 from .codec_key import CodecKey
+from .live import Live
 from .pixels import Subject
 from .sections import Section
 
@@ -61,6 +62,7 @@ class Found:
         listings: disassemblies by name.
         order: where costs are in another order than the article's, and why, in lines.
         family: the GPU family whose instructions the page names where it names one.
+        live: what its laboratory runs; None where the run keeps none.
         remarks: what does not fit, in sentences.
     """
 
@@ -77,6 +79,7 @@ class Found:
     listings: Mapping[str, Listing] = field(default_factory=dict)
     order: Sequence[str] = ()
     family: str = ""
+    live: Live | None = None
     remarks: Sequence[str] = ()
 
     def with_remarks(self, more: Sequence[str]) -> Found:

@@ -13,14 +13,14 @@ from typing import Any
 from .. import tables
 from ..charts import spheres
 from ..charts.drawings import Drawing
-from . import embedded, library
+from . import embedded, library, live
 from .codec_key import CodecKey
 from .found import Found, Row
 from .sections import Section, Sheet, whole
 from .verdict import Contest, contests, is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "pictures.js", "charts.js")
+SCRIPTS = ("tables.js", "pictures.js", "charts.js", "opener.js")
 # What a contest's cheapest codec is counted by.
 STAGE = "fragment"
 # Text of more letters than this may break into lines.
@@ -199,6 +199,7 @@ def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
             continue
         made.append((section.key, section.short))
         made += [(extra, EXTRAS[extra]) for extra in section.extras if extra in EXTRAS]
+    made += [("live", "Your GPU")] if found.live else []
     return [*made, ("measured", "Measured")]
 
 
@@ -246,6 +247,7 @@ def html(
         library_script: what draws them.
     """
     scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
+    laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
     return template("page.html.j2").render(
@@ -265,10 +267,18 @@ def html(
         codecs=codecs(found, specs),
         library=library.packed(library_script) if specs else "",
         specs=library.packed(json.dumps(specs)) if specs else "",
+        live=found.live,
+        live_script=library.packed(laboratory) if found.live else "",
+        live_data=library.packed(found.live.data(about(found))) if found.live else "",
         scripts=scripts,
         style=(WEB / "page.css").read_text(encoding="utf-8"),
-        script_sources=sources_of([*scripts, library_script], is_beside=bool(gallery.files)),
+        script_sources=sources_of([*scripts, library_script, laboratory], is_beside=bool(gallery.files)),
     )
+
+
+def about(found: Found) -> dict[str, str]:
+    """What the laboratory says of the page that it is in."""
+    return {"run": found.name, "sources": found.sources, "program": str(found.machine.get("normalbench", ""))}
 
 
 def data_block(data: Any) -> str:

@@ -55,6 +55,12 @@ class QualityOutputs:
     maps: Annotated[
         Path | None, Option("--maps", "Write the angle in each direction, an array for each codec, into this folder.")
     ] = None
+    live: Annotated[
+        Path | None,
+        Option(
+            "--live", "Write the GLSL ES of each codec, which a page runs in the reader's browser, into this folder."
+        ),
+    ] = None
 
 
 def _supremum(name: str, says: str, role: Role = Role.FIGURE, unit: str = "", drops: int = 0) -> Column:
@@ -217,7 +223,7 @@ TABLE = Table(
         {"encoding": ",".join(WIDE), "normals": SETS, "storage": "rgb10a2,rg16,rgb8_12_12"},
     ),
     single={"encoding": "octahedral", "backend": "jax"},
-    files={"images": "images", "maps": "sphere"},
+    files={"images": "images", "maps": "sphere", "live": "live"},
     renamed={"psnr_seed_db": "psnr_article_db"},
     is_measured_beside=True,
     section=Section(

@@ -10,6 +10,7 @@ from ....reports.charts.drawings import Drawing
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...codecs.names import check_twin, codecs_named, fitting
+from ...live.kept import write_live
 from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
@@ -61,7 +62,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
     """A step for each row."""
     made = [Step(_key(case, options), case, case.name, len(case.normal_set.starts)) for case in cases(options)]
-    for folder in filter(None, (outputs.images, outputs.maps)):
+    for folder in filter(None, (outputs.images, outputs.maps, outputs.live)):
         check_folder(folder)
     return made
 
@@ -168,6 +169,8 @@ def _write(done: Measured, _: Tick) -> None:
         pictures.write([step.case for step in done.steps], done.outputs.images)
     if done.outputs.maps:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
+    if done.outputs.live:
+        write_live((step.case.codec for step in done.steps), done.outputs.live)
 
 
 def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:

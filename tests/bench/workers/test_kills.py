@@ -14,9 +14,9 @@ from normalbench.bench.workers.places import TIMES
 # A part of the default run that takes a minute or two on two cores: JAX, GL and pictures.
 PART = "quality,mix,frames,vectors"
 WORKER_KILLS, SCHEDULER_KILLS = 20, 2
-# Seconds between two kills, and how many there must have been before the run was over: how fast it is depends on what
-# else the machine does.
-PAUSES_S, FEWEST = (2.0, 4.0), 8
+# Steps that are measured between two kills, not seconds, because machines differ in how long a step takes; and how many
+# kills there must have been before the run was over: after each, some steps come at once.
+PAUSES, FEWEST = (6, 12), 8
 # The command, but that no step is given up: these workers are lost by chance, and the same step may be hit often.
 COMMAND = """
 import sys
@@ -38,9 +38,15 @@ def running(pid: int, module: str) -> list[int]:
     return sorted(int(line.split()[0]) for line in found.splitlines() if f"bench.workers.{module}" in line)
 
 
-def has_rows(folder: Path) -> bool:
+def steps_done(folder: Path) -> int:
     path = folder / "rows.jsonl"
-    return path.exists() and b"\n" in path.read_bytes()
+    return path.read_bytes().count(b"\n") if path.exists() else 0
+
+
+def wait_for(steps: int, process: subprocess.Popen[str], folder: Path) -> None:
+    """Until a run has measured so many steps, or is over."""
+    while process.poll() is None and steps_done(folder) < steps:
+        time.sleep(0.02)
 
 
 def kill_one(process: subprocess.Popen[str], module: str, rng: random.Random) -> bool:
@@ -62,14 +68,12 @@ def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path):
     rng = random.Random(20260801)
     process = started(tmp_path / "killed", "--on", "local:4")
     began = time.monotonic()
-    while process.poll() is None and not has_rows(tmp_path / "killed"):
-        time.sleep(0.2)
     victims = ["worker"] * WORKER_KILLS
     for at in range(SCHEDULER_KILLS):
         victims.insert(3 + 4 * at, "scheduler")
     killed = []
     for victim in victims:
-        time.sleep(rng.uniform(*PAUSES_S))
+        wait_for(steps_done(tmp_path / "killed") + rng.randint(*PAUSES), process, tmp_path / "killed")
         if process.poll() is not None:
             break
         while process.poll() is None and not kill_one(process, victim, rng):

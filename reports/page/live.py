@@ -1,0 +1,61 @@
+"""The laboratory of a page: codecs as GLSL ES that the reader's browser runs, unpacked when it is opened."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .codec_key import CodecKey
+from .embedded import colour_map
+
+FOLDER = Path(__file__).parent / "web" / "live"
+# In the order in which the page runs them, as one script.
+SCRIPTS = ("gl.js", "view.js", "see.js", "inspect.js", "own.js", "live.js")
+# What the names of every codec's functions begin with.
+NAMES = "codec"
+
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Live:
+    """What the laboratory is given of a run.
+
+    Attributes:
+        codecs: as `bench.live.programs` makes them.
+        storages: the functions of storages, in the same form, for an encoder that the reader types.
+        left_out: by codec, why a browser cannot be given it.
+        helpers: GLSL ES of the functions that users' encoders may call.
+    """
+
+    codecs: Sequence[Record]
+    storages: Sequence[Record]
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    helpers: str = ""
+
+    def data(self, about: Mapping[str, str]) -> str:
+        """All of it as text; `about` says what the page is of, by name."""
+        shaders = {path.name: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("shaders/**/*.*"))}
+        made = {
+            **about,
+            "codecs": [_named(codec) for codec in self.codecs],
+            "storages": [_named(one) for one in self.storages],
+            "left_out": dict(self.left_out),
+            "helpers": self.helpers,
+            "shaders": shaders,
+            "colours": colour_map(),
+        }
+        return json.dumps(made, sort_keys=True)
+
+
+def _named(codec: Record) -> Record:
+    key = CodecKey(codec["encoding"], codec["storage"], codec["rounding"])
+    return {**codec, "label": key.label, "names": NAMES}
+
+
+def script() -> str:
+    """The laboratory's scripts as one."""
+    return "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in SCRIPTS)
