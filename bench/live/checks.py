@@ -9,6 +9,8 @@ step away. Codes are counted in the order of the numbers that they stand for, so
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,7 +19,7 @@ from ...encodings.codecs.codec import Codec
 from ..code.channels import Channels
 from ..code.reference import Reference, reference_of, signed
 from ..metrics.angles import angles_deg
-from ..output import cache
+from ..output import cache as kept
 from ..output.sources import sources
 from . import normals
 from .normals import COUNT, checksum, hashed
@@ -41,15 +43,31 @@ def common() -> dict[str, Any]:
         "stride": STRIDE,
         "hash": {"shifts": normals.SHIFTS, "factors": normals.FACTORS, "starts": starts},
         "hard": {"count": len(given), "data": _text(given, "<f4")},
-        "sums": {domain: [checksum(made) for made in normals.normals(domain)] for domain in DOMAINS},
+        "sums": {domain: sums(domain) for domain in DOMAINS},
     }
+
+
+@cache
+def sums(domain: str) -> list[int]:
+    """The checksums of a domain's normals and views, by which a browser knows that it makes the same."""
+    return [checksum(made) for made in normals.normals(domain)]
+
+
+def is_whole(found: Mapping[str, Any], domain: str, size: int) -> bool:
+    """Whether checks are of the normals that this version makes, and as many as codes of `size` numbers have."""
+    counts = {"groups": COUNT // GROUP, "numbers": size, "sample": COUNT // STRIDE * size}
+    try:
+        is_there = all(len(base64.b64decode(found[name], validate=True)) == 4 * count for name, count in counts.items())
+    except ValueError:
+        return False
+    return is_there and found["normals"] == sums(domain)[0]
 
 
 def checks(codec: Codec) -> dict[str, Any]:
     """What a codec's codes of its domain's normals must be; kept in the cache.
 
     Returns:
-        `groups`: a checksum of each group; `numbers`: one of each number of the codes; `sample`: codes in the order of
+        `normals`: the checksum of the normals; `groups`: one of each group; `numbers`: one of each number of the codes; `sample`: codes in the order of
         their numbers, of every STRIDE-th normal; each as base64 of integers of 32 bits. `mean_deg`, `max_deg`: of the
         angle between the normals and what these codes are decoded to, in degrees.
 
@@ -57,8 +75,8 @@ def checks(codec: Codec) -> dict[str, Any]:
         ShaderError, NoDeviceError: of an encoding without a Python twin, which OpenGL is asked about.
         OSError: the encoding's files cannot be read.
     """
-    key = cache.key_of("live", codec.name, codec.encoding.fingerprint, repr(codec.storage), sources())
-    return cache.kept(key, lambda: _made(codec))
+    key = kept.key_of("live", codec.name, codec.encoding.fingerprint, repr(codec.storage), sources())
+    return kept.kept(key, lambda: _made(codec))
 
 
 def _made(codec: Codec) -> dict[str, Any]:
@@ -69,6 +87,7 @@ def _made(codec: Codec) -> dict[str, Any]:
     # What is not a number is as far as can be.
     angles = np.where(np.isfinite(angles), angles, 180.0)
     return {
+        "normals": sums(codec.encoding.domain)[0],
         "groups": _text(group_sums(codes), "<u4"),
         "numbers": _text(np.array([checksum(number) for number in codes.T], np.uint32), "<u4"),
         "sample": _text(codes[::STRIDE], "<i4"),

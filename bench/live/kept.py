@@ -12,7 +12,10 @@ from typing_extensions import TypedDict
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.files import file_bytes
+from ...gbuffer.gl.device import NoDeviceError
+from ...gbuffer.gl.shader import ShaderError
 from ..output.writing import files_of, whole_file
+from . import checks
 from .programs import MOST_TABLES, NotLiveError, Record, program
 
 # Of a file: GLSL, and look-up tables as base64.
@@ -21,6 +24,8 @@ STRICT = ConfigDict(strict=True, extra="forbid")
 Text = Annotated[str, Field(max_length=MOST_BYTES)]
 Name = Annotated[str, Field(max_length=200)]
 Number = Annotated[int, Field(ge=0, lt=2**32)]
+Base64 = Annotated[str, Field(max_length=2**14, pattern=r"^[A-Za-z0-9+/]*=*$")]
+Degrees = Annotated[float, Field(ge=0, le=180)]
 
 
 @with_config(STRICT)
@@ -41,6 +46,18 @@ class Table(TypedDict):
     height: Annotated[int, Field(ge=1, le=4096)]
     channels: Literal[1, 2, 4]
     data: Annotated[str, Field(max_length=2 * MOST_TABLES, pattern=r"^[A-Za-z0-9+/]*=*$")]
+
+
+@with_config(STRICT)
+class Checks(TypedDict):
+    """What the codec's codes must be, as `checks.checks` makes it."""
+
+    normals: Number
+    groups: Base64
+    numbers: Base64
+    sample: Base64
+    mean_deg: Degrees
+    max_deg: Degrees
 
 
 @with_config(STRICT)
@@ -65,6 +82,7 @@ class Kept(TypedDict):
     is_biased: bool
     channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
     tables: dict[Name, Table]
+    checks: Checks | None
 
 
 KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
@@ -80,11 +98,25 @@ def write_live(codecs: Iterable[Codec], folder: Path) -> None:
     written."""
     for codec in dict.fromkeys(codecs):
         try:
-            made = program(codec)
+            made = {**program(codec), "checks": _checks(codec)}
         except NotLiveError as error:
             made = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
         with whole_file(folder / file_name(codec)) as partial:
             partial.write_text(json.dumps(made), encoding="utf-8")
+
+
+def _checks(codec: Codec) -> Record | None:
+    """What its codes must be; None where the emulation cannot say it."""
+    try:
+        return checks.checks(codec)
+    except (NoDeviceError, ShaderError):
+        return None
+
+
+def _current(record: Record) -> Record:
+    """A record whose checks are of the normals that the page makes; without them where they are of others."""
+    is_whole = record["checks"] and checks.is_whole(record["checks"], record["domain"], len(record["channels"]))
+    return record if is_whole else {**record, "checks": None}
 
 
 def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
@@ -96,7 +128,7 @@ def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
             if isinstance(record, dict) and isinstance(record.get("left_out"), str):
                 left_out[f"{record.get('encoding')} {record.get('storage')}"] = record["left_out"]
             else:
-                found.append(KEPT.validate_python(record))
+                found.append(_current(KEPT.validate_python(record)))
         except (OSError, ValueError, RecursionError, ValidationError):
             left_out[name] = "its file is damaged"
     return found, left_out

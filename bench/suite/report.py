@@ -24,6 +24,7 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
+from ..live import checks
 from ..live.kept import read_live
 from ..live.programs import helpers, storage_functions
 from ..options.gpu_families import FAMILIES, usual_stage
@@ -329,7 +330,7 @@ def _live(folder: Path) -> Live | None:
     if not codecs:
         return None
     cleaned = {str(plain_text(name)): str(plain_text(reason)) for name, reason in left_out.items()}
-    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned, helpers())
+    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned, helpers(), checks.common())
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:

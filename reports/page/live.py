@@ -13,7 +13,8 @@ from .embedded import colour_map
 
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.
-SCRIPTS = ("gl.js", "view.js", "see.js", "inspect.js", "own.js", "live.js")
+MEASURING = ("checks.js", "probe.js", "measure.js", "timing.js", "measuring.js", "keep.js")
+SCRIPTS = ("gl.js", "view.js", "see.js", "inspect.js", "own.js", *MEASURING, "live.js")
 # What the names of every codec's functions begin with.
 NAMES = "codec"
 
@@ -29,12 +30,14 @@ class Live:
         storages: the functions of storages, in the same form, for an encoder that the reader types.
         left_out: by codec, why a browser cannot be given it.
         helpers: GLSL ES of the functions that users' encoders may call.
+        checks: what browsers need to make the normals that `checks` of each codec are of.
     """
 
     codecs: Sequence[Record]
     storages: Sequence[Record]
     left_out: Mapping[str, str] = field(default_factory=dict)
     helpers: str = ""
+    checks: Mapping[str, Any] = field(default_factory=dict)
 
     def data(self, about: Mapping[str, str]) -> str:
         """All of it as text; `about` says what the page is of, by name."""
@@ -45,6 +48,7 @@ class Live:
             "storages": [_named(one) for one in self.storages],
             "left_out": dict(self.left_out),
             "helpers": self.helpers,
+            "checks": dict(self.checks),
             "shaders": shaders,
             "colours": colour_map(),
         }

@@ -3,7 +3,7 @@
 // The normals that this device encodes, bit for bit those of bench/live/normals.py, and checksums of the run's codes.
 
 // How many differing normals are kept to be shown.
-const SHOWN = 8;
+const EXAMPLES = 8;
 
 // An integer of 32 bits, well mixed.
 function hashed(word, { shifts, factors }) {
@@ -188,7 +188,7 @@ class Checks {
   }
 
   keep(found, normal, run, here) {
-    if (found.differing.length < SHOWN) found.differing.push({ normal, run: Array.from(run), here: Array.from(here) });
+    if (found.differing.length < EXAMPLES) found.differing.push({ normal, run: Array.from(run), here: Array.from(here) });
   }
 
   // Of groups that nothing is known of: those normals whose codes travel with the page.

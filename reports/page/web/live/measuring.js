@@ -22,12 +22,9 @@ class Measuring {
   // Fills `root`. `data` is live.data.
   constructor(root, device, data) {
     Object.assign(this, { root, device, data, rows: [], facts: {}, normals: new Normals(data.checks), checks: new Checks(data.checks) });
+    this.codecs = data.codecs.filter((codec) => codec.checks);
     this.build();
-    device.gl.canvas.addEventListener("webglcontextlost", (event) => {
-      // Without this the browser does not bring the context back.
-      event.preventDefault();
-      this.wasLost = true;
-    });
+    device.on("lost", () => (this.wasLost = true));
   }
 
   build() {
@@ -35,7 +32,7 @@ class Measuring {
     this.button = element("button", { type: "button", "data-measure": "", onclick: start }, "Measure this device");
     this.cancelling = element("button", { type: "button", "data-cancel": "", onclick: () => this.cancel(), hidden: "" }, "Cancel");
     this.timed = element("input", { type: "checkbox", id: "measure-times", checked: "" });
-    this.progress = element("progress", { max: this.data.codecs.length, value: 0, hidden: "", "aria-label": "Codecs measured" });
+    this.progress = element("progress", { max: this.codecs.length, value: 0, hidden: "", "aria-label": "Codecs measured" });
     this.said = element("p", { role: "status", class: "note", "data-measured": "" });
     const times = element("label", { for: "measure-times" }, this.timed, " with times");
     this.results = element("div", { "data-results": "" });
@@ -78,7 +75,7 @@ class Measuring {
       this.checkNormals();
       await this.surviving(() => this.probe());
       await this.all();
-      this.say(`${this.rows.length} of ${this.data.codecs.length} codecs measured. ${this.agreement}`);
+      this.say(`${this.rows.length} of ${this.codecs.length} codecs measured. ${this.agreement}`);
     } catch (error) {
       const kept = this.rows.length ? ` ${this.rows.length} codecs that were measured before are kept.` : "";
       this.say(`${error instanceof CancelledError ? "Cancelled." : `Not finished: ${error.message}.`}${kept}`);
@@ -102,12 +99,12 @@ class Measuring {
 
   async probe() {
     this.say("The device's formats are being looked at.");
-    this.facts = await new Probe(this.device, this.data).facts(() => this.check());
+    this.facts = await new Probe(this.device).facts(() => this.check());
     this.showFacts();
   }
 
   async all() {
-    const { codecs } = this.data;
+    const { codecs } = this;
     for (const [at, codec] of codecs.entries()) {
       this.progress.value = at;
       this.say(`${at + 1} of ${codecs.length}, ${nameOf(codec)}`);
@@ -152,7 +149,7 @@ class Measuring {
   }
 
   async measured(codec) {
-    this.inputs ??= new Inputs(this.device, this.data, this.normals);
+    this.inputs ??= new Inputs(this.device, this.normals);
     const row = { encoding: codec.encoding, storage: codec.storage, rounding: codec.rounding, target: "", normals: this.data.checks.count };
     const { domain, channels, checks } = codec, on = new CodecOnDevice(this.inputs, codec);
     try {
@@ -226,3 +223,7 @@ function sheetOf(title, columns, rows, id) {
   addTools(sheet);
   return sheet;
 }
+
+live.parts.push((root) => {
+  live.measuring = new Measuring(root.querySelector("[data-live=measure]"), live.device, live.data);
+});

@@ -15,8 +15,16 @@ const BETWEEN = [0.25, 0.49, 0.5, 0.51, 0.75], STEPS = 8;
 const POSITIONS = 4096, SAMPLES = 4;
 
 class Probe {
-  constructor(device, data) {
-    Object.assign(this, { device, gl: device.gl, shaders: data.shaders, made: [], programs: new Map() });
+  constructor(device) {
+    Object.assign(this, { device, gl: device.gl, textures: [], targets: [], buffers: [], programs: new Map() });
+    // What is stored is to be what was written.
+    this.gl.disable(this.gl.DITHER);
+    for (const name of Object.keys(PROBED)) if (this.gl[name] !== undefined) device.formats[this.gl[name]] ??= name;
+  }
+
+  // The number of a format; undefined where neither WebGL2 nor an extension has it.
+  number(format) {
+    return Object.keys(this.device.formats).map(Number).find((number) => this.device.formats[number] === format);
   }
 
   // Every fact by its name: texts and numbers. `check` is called between slices, and may throw.
@@ -35,35 +43,34 @@ class Probe {
     }
   }
 
-  program(name, macros = {}) {
-    const text = defined(macros) + this.shaders[name];
-    if (!this.programs.has(text)) this.programs.set(text, this.device.program(text));
-    return this.programs.get(text);
+  program(name, defines = []) {
+    const key = [name, ...defines].join();
+    if (!this.programs.has(key)) this.programs.set(key, this.device.link(this.device.text(null, [name], defines, "highp")));
+    return this.programs.get(key);
   }
 
-  target(format, width, height = 1) {
-    const target = this.device.target(format, width, height);
-    if (target) this.made.push(target);
+  // A target of a format by its name, one texel high; null where the device cannot render to it.
+  target(format, width) {
+    const number = this.number(format), target = number === undefined ? null : this.device.target(number, width, 1);
+    if (target) this.targets.push(target);
     return target;
   }
 
-  texture(values) {
-    const { gl } = this, texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, values.length / 4, 1, 0, gl.RGBA, gl.FLOAT, values);
-    for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"]) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.NEAREST);
-    this.made.push({ texture });
-    return texture;
+  texture(numbers) {
+    const made = this.device.texture("RGBA32F", numbers.length, 1, this.row(numbers));
+    this.textures.push(made.texture);
+    return made;
   }
 
   release() {
-    for (const { texture, framebuffer, renderbuffer } of this.made) {
-      this.gl.deleteTexture(texture ?? null);
-      this.gl.deleteFramebuffer(framebuffer ?? null);
-      this.gl.deleteRenderbuffer(renderbuffer ?? null);
+    const { gl } = this;
+    for (const target of this.targets) this.device.release(target);
+    for (const texture of this.textures) gl.deleteTexture(texture);
+    for (const { renderbuffer, framebuffer } of this.buffers) {
+      gl.deleteRenderbuffer(renderbuffer);
+      gl.deleteFramebuffer(framebuffer);
     }
-    for (const program of this.programs.values()) this.gl.deleteProgram(program);
-    this.made = [];
+    for (const { program } of this.programs.values()) gl.deleteProgram(program);
   }
 
   // One number for each texel, in every channel.
@@ -72,25 +79,22 @@ class Probe {
   }
 
   // What a program writes, as the bits of four numbers for each of `width` texels.
-  read(program, width, textures, uniforms = {}) {
-    const { gl } = this, target = this.target("RGBA32UI", width), found = new Uint32Array(4 * width);
-    this.device.draw(program, target, uniforms, textures);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-    gl.readPixels(0, 0, width, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, found);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    return found;
+  read(program, width, textures) {
+    const target = this.target("RGBA32UI", width);
+    this.device.draw(program, target, {}, textures);
+    return this.device.words(target);
   }
 
   // Numbers as the first channel of a format gives them back, and the target that holds them; null where it holds none.
   stored(format, numbers) {
     const target = this.target(format, numbers.length);
     if (!target) return null;
-    this.device.draw(this.program("probe_write.frag"), target, {}, { given: this.texture(this.row(numbers)) });
-    return { target, numbers: this.first(target.texture, numbers.length) };
+    this.device.draw(this.program("probe_write.frag"), target, {}, { given: this.texture(numbers) });
+    return { target, numbers: this.first(target) };
   }
 
-  first(texture, width) {
-    const words = this.read(this.program("probe_read.frag", { FILTERS: 0, COUNT: 1 }), width, { codes: texture });
+  first(texture) {
+    const words = this.read(this.program("probe_read.frag"), texture.width, { codes: texture });
     return new Float32Array(words.buffer).filter((_, at) => at % 4 === 0);
   }
 
@@ -110,8 +114,7 @@ class Probe {
     const { gl } = this, { target } = this.stored(format, [0, 1]);
     gl.bindTexture(gl.TEXTURE_2D, target.texture);
     for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"]) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.LINEAR);
-    for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"]) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
-    const words = this.read(this.program("probe_read.frag", { FILTERS: 1, COUNT: POSITIONS }), POSITIONS, { codes: target.texture });
+    const words = this.read(this.program("probe_read.frag", ["FILTERS", `POSITIONS ${POSITIONS}`]), POSITIONS, { codes: target });
     const levels = new Set(words.filter((_, at) => at % 4 === 0)).size;
     if (levels < 3) return "no";
     const fraction = Math.round(Math.log2(levels));
@@ -124,7 +127,7 @@ class Probe {
     for (let i = 1; i <= STEPS; i++) for (const apart of [1, 2, 3]) low.push(base + i * step), high.push(base + (i + apart) * step);
     const several = this.multisampled(format, low.length), single = this.target(format, low.length);
     if (!several) return "no";
-    const draw = (numbers) => this.device.draw(this.program("probe_write.frag"), several, {}, { given: this.texture(this.row(numbers)) });
+    const draw = (numbers) => this.device.draw(this.program("probe_write.frag"), several, {}, { given: this.texture(numbers) });
     draw(low);
     gl.enable(gl.SAMPLE_COVERAGE);
     gl.sampleCoverage(0.5, false);
@@ -135,14 +138,14 @@ class Probe {
     gl.blitFramebuffer(0, 0, low.length, 1, 0, 0, low.length, 1, gl.COLOR_BUFFER_BIT, gl.NEAREST);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     if (gl.getError()) return "no";
-    const found = this.first(single.texture, low.length), apart = low.map((value, at) => Math.abs(found[at] - (value + high[at]) / 2) / step);
+    const found = this.first(single), apart = low.map((value, at) => Math.abs(found[at] - (value + high[at]) / 2) / step);
     const most = Math.max(...apart), isMean = most <= 0.5 + 1e-3;
     return `${isMean ? "the mean of the codes" : "not the mean of the codes"}, at most ${Number(most.toFixed(2))} steps from it`;
   }
 
   multisampled(format, width) {
-    const { gl } = this, internal = gl[format];
-    const most = internal === undefined ? [] : (gl.getInternalformatParameter(gl.RENDERBUFFER, internal, gl.SAMPLES) ?? []);
+    const { gl } = this, internal = this.number(format);
+    const most = (gl.getInternalformatParameter(gl.RENDERBUFFER, internal, gl.SAMPLES) ?? []);
     if (!Array.from(most).includes(SAMPLES)) return null;
     const renderbuffer = gl.createRenderbuffer(), framebuffer = gl.createFramebuffer();
     gl.bindRenderbuffer(gl.RENDERBUFFER, renderbuffer);
@@ -151,19 +154,19 @@ class Probe {
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, renderbuffer);
     const isWhole = gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this.made.push({ renderbuffer, framebuffer });
-    return isWhole ? { framebuffer, texture: null, format, width, height: 1 } : null;
+    this.buffers.push({ renderbuffer, framebuffer });
+    return isWhole ? { framebuffer, width, height: 1 } : null;
   }
 
   ofPrecision(precision) {
     const { gl } = this, asked = { highp: gl.HIGH_FLOAT, mediump: gl.MEDIUM_FLOAT }[precision];
-    const [bits] = this.read(this.program("probe_precision.frag", { PRECISION: precision }), 1, {}, { one: 1 });
+    const bits = this.device.mantissa(precision);
     const promised = gl.getShaderPrecisionFormat(gl.FRAGMENT_SHADER, asked)?.precision ?? 0;
     return { [`${precision} mantissa bits`]: bits, [`${precision} mantissa bits, as the driver says`]: promised };
   }
 
   ofNaN() {
-    const given = this.texture(this.row([NaN])), words = this.read(this.program("probe_nan.frag"), 1, { given });
+    const given = this.texture([NaN]), words = this.read(this.program("probe_nan.frag"), 1, { given });
     const [least, most, clamped] = new Float32Array(words.buffer), seen = words[3];
     const said = [`isnan ${seen & 1 ? "sees it" : "does not see it"}`, `NaN != NaN is ${seen & 2 ? "true" : "false"}`];
     said.push(`min(NaN, 1) is ${least}`, `max(NaN, 0) is ${most}`, `clamp(NaN, 0, 1) is ${clamped}`);

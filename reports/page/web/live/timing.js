@@ -79,13 +79,12 @@ class Timer {
 }
 
 // A pixel of a target, so that the passes before it are done.
-function readPixel(gl, { framebuffer, format }) {
-  const [parts, type, Numbers] = format.endsWith("UI")
+function readPixel(gl, { framebuffer, name }) {
+  const [parts, type, Numbers] = name.endsWith("UI")
     ? [gl.RGBA_INTEGER, gl.UNSIGNED_INT, Uint32Array]
-    : format.endsWith("F") ? [gl.RGBA, gl.FLOAT, Float32Array] : [gl.RGBA, gl.UNSIGNED_BYTE, Uint8Array];
+    : name.endsWith("F") ? [gl.RGBA, gl.FLOAT, Float32Array] : [gl.RGBA, gl.UNSIGNED_BYTE, Uint8Array];
   gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
   gl.readPixels(0, 0, 1, 1, parts, type, new Numbers(4));
-  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
 }
 
 // The times of one codec's passes at TIMED_SIDE by TIMED_SIDE texels.
@@ -96,24 +95,24 @@ class TimedCodec {
   }
 
   // Milliseconds for a megapixel of a pass into `target`, less its empty pass; null where the device does not tell.
-  async pass(name, target, more, textures) {
-    const { on } = this, { gl } = on.device, isInteger = target.format.endsWith("UI");
-    const empty = { needsCodec: false, WRITES_INTEGERS: Number(isInteger), READS_CODES: Number("codes" in textures) };
-    const read = () => readPixel(gl, target), times = [];
-    for (const program of [on.program(name, { TIMED: 1, ...more }), on.program("measure_empty.frag", empty)]) {
+  async pass(name, target, textures) {
+    const { on } = this, isInteger = target.name.endsWith("UI"), times = [];
+    const empty = [...(isInteger ? ["WRITES_INTEGERS"] : []), ...("codes" in textures ? ["READS_CODES"] : [])];
+    const programs = [on.program(name, { defines: ["TIMED"] }), on.program("measure_empty.frag", { needsCodec: false, defines: empty })];
+    for (const program of programs) {
       await seen();
-      times.push(await this.timer.of(() => on.draw(program, target, textures), read));
+      times.push(await this.timer.of(() => on.draw(program, target, textures), () => readPixel(on.device.gl, target)));
     }
     return times.includes(null) ? null : Math.max(0, times[0] - times[1]) / this.megapixels;
   }
 
   async encode() {
-    const target = this.on.own(this.on.format, TIMED_SIDE);
-    return target && this.pass("measure_encode.frag", target, {}, {});
+    const target = this.on.own(this.on.target.format, TIMED_SIDE);
+    return target && this.pass("measure_encode.frag", target, {});
   }
 
   async decode() {
-    const target = this.on.own("RGBA8", TIMED_SIDE);
-    return target && this.pass("measure_decode.frag", target, {}, { codes: this.on.target.texture });
+    const target = this.on.own(this.on.device.gl.RGBA8, TIMED_SIDE);
+    return target && this.pass("measure_decode.frag", target, { codes: this.on.target });
   }
 }

@@ -2,7 +2,7 @@
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D given;
-layout(location = 0) out uvec4 bits;
+out uvec4 bits;
 
 void main() {
     float nan = texelFetch(given, ivec2(0), 0).x;

@@ -2,6 +2,6 @@
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D given;
-layout(location = 0) out vec4 texel;
+out vec4 texel;
 
 void main() { texel = texelFetch(given, ivec2(gl_FragCoord.xy), 0); }

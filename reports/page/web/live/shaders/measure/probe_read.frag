@@ -2,12 +2,12 @@
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D codes;
-layout(location = 0) out uvec4 bits;
+out uvec4 bits;
 
 void main() {
-#if FILTERS
+#ifdef FILTERS
     // from the middle of the first texel of two to the middle of the second
-    vec2 at = vec2(0.25 + 0.5 * floor(gl_FragCoord.x) / float(COUNT), 0.5);
+    vec2 at = vec2(0.25 + 0.5 * floor(gl_FragCoord.x) / float(POSITIONS), 0.5);
     bits = floatBitsToUint(texture(codes, at));
 #else
     bits = floatBitsToUint(texelFetch(codes, ivec2(gl_FragCoord.xy), 0));
