@@ -32,6 +32,28 @@ function degreesBack(n, at, back, from) {
   return Number.isFinite(degrees) ? degrees : 180;
 }
 
+// A moment for the page: what waits for it is done, and the browser draws.
+const paused = (ms = 0) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// The texels of a target of RGBA32UI or fewer, four words each, once the GPU is done: the page does not wait for it.
+async function wordsLater({ gl }, { framebuffer, width, height }) {
+  const found = new Uint32Array(4 * width * height), buffer = gl.createBuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+  gl.bufferData(gl.PIXEL_PACK_BUFFER, found.byteLength, gl.STREAM_READ);
+  gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, 0);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  do await paused(); while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
+  gl.deleteSync(fence);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+  gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, found);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  gl.deleteBuffer(buffer);
+  return found;
+}
+
 // What every codec is given on a device: normals and views of its domain as textures. Of one context: when that is lost,
 // new ones are made.
 class Inputs {
@@ -95,19 +117,22 @@ class CodecOnDevice {
   }
 
   // Codes as integers in the order of their numbers, as many for each normal as are stored: as the shader packs them.
-  packedCodes() {
-    const target = this.packs ? this.target : this.own(this.words, this.side);
-    this.draw(this.program("measure_encode.frag", { packs: true }), target);
-    return this.places(this.device.words(target), true);
+  async packedCodes() {
+    const target = this.packs ? this.target : this.own(this.words, this.side), program = this.program("measure_encode.frag", { packs: true });
+    await paused();
+    this.draw(program, target);
+    return this.places(await wordsLater(this.device, target), true);
   }
 
   // The same as the codec's own render target has them.
-  targetCodes() {
+  async targetCodes() {
     const { channels, bytes } = this.codec, scale = (at) => (bytes ? 255 : (channels[at]?.integer ?? 1)).toFixed(1);
     const kind = channels[0].kind === "float" ? "FLOATS" : `SCALES vec4(${[0, 1, 2, 3].map(scale).join(", ")})`;
-    this.draw(this.program("measure_encode.frag"), this.target);
-    this.draw(this.program("measure_read.frag", { needsCodec: false, defines: [kind] }), this.bits(), { codes: this.target });
-    return this.places(this.device.words(this.bits()), false);
+    const [encode, read] = [this.program("measure_encode.frag"), this.program("measure_read.frag", { needsCodec: false, defines: [kind] })];
+    await paused();
+    this.draw(encode, this.target);
+    this.draw(read, this.bits(), { codes: this.target });
+    return this.places(await wordsLater(this.device, this.bits()), false);
   }
 
   bits() {
@@ -122,9 +147,12 @@ class CodecOnDevice {
   }
 
   // The mean and the largest angle, in degrees, between normals and what this device decodes from its own texels.
-  angles() {
-    this.draw(this.program("measure_decode.frag"), this.bits(), { codes: this.target });
-    const back = new Float32Array(this.device.words(this.bits()).buffer), { n } = this.inputs.normals.of(this.codec.domain);
+  async angles() {
+    const program = this.program("measure_decode.frag"), { n } = this.inputs.normals.of(this.codec.domain);
+    await paused();
+    this.draw(program, this.bits(), { codes: this.target });
+    const back = new Float32Array((await wordsLater(this.device, this.bits())).buffer);
+    await paused();
     let sum = 0, most = 0;
     for (let at = 0; at < n.length; at += 4) {
       const degrees = degreesBack(n, at, back, at);

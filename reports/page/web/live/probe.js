@@ -32,8 +32,7 @@ class Probe {
     const found = {};
     try {
       for (const format of Object.keys(PROBED)) {
-        Object.assign(found, this.ofFormat(format));
-        await paused();
+        Object.assign(found, await this.ofFormat(format));
         check();
       }
       for (const precision of ["highp", "mediump"]) Object.assign(found, this.ofPrecision(precision));
@@ -98,7 +97,7 @@ class Probe {
     return new Float32Array(words.buffer).filter((_, at) => at % 4 === 0);
   }
 
-  ofFormat(format) {
+  async ofFormat(format) {
     const [kind, bits] = PROBED[format], step = stepOf(kind, bits), base = kind === "float" ? 1 : 0;
     const numbers = [];
     for (let i = 1; i <= STEPS; i++) for (const part of BETWEEN) numbers.push(base + (i + part) * step);
@@ -106,7 +105,10 @@ class Probe {
     if (!found) return { [`renders ${format}`]: "no" };
     // A float32 has no numbers between its steps.
     const rounds = bits === 23 ? "as computed" : roundingOf(Array.from(found.numbers, (value) => (value - base) / step));
-    return { [`renders ${format}`]: "yes", [`rounds ${format}`]: rounds, [`filters ${format}`]: this.filtering(format), [`resolves ${format}`]: this.resolving(format, step, base) };
+    await paused();
+    const filters = this.filtering(format);
+    await paused();
+    return { [`renders ${format}`]: "yes", [`rounds ${format}`]: rounds, [`filters ${format}`]: filters, [`resolves ${format}`]: this.resolving(format, step, base) };
   }
 
   // Whether a look-up between 0 and 1 gives what lies between, and how many bits its position has.

@@ -8,8 +8,6 @@ const SLICE_MS = { least: 8, most: 40 };
 // How long a timer query may keep its answer back, and how often one may be disturbed.
 const QUERY_MS = 2000, RETRIES = 3;
 
-const paused = (ms = 0) => new Promise((resolve) => setTimeout(resolve, ms));
-
 // A page that nobody sees is slowed down by the browser: times are measured when it is seen again.
 function seen() {
   if (document.visibilityState === "visible") return Promise.resolve();
