@@ -123,6 +123,8 @@ def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
     """The codecs of a run's folder, and by name why others are left out; damaged files among them."""
     found, left_out = [], {}
     for name, path in sorted(files_of(folder).items()):
+        if path.suffix != ".json":
+            continue
         try:
             record = json.loads(file_bytes(path, MOST_BYTES))
             if isinstance(record, dict) and isinstance(record.get("left_out"), str):

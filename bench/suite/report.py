@@ -27,6 +27,7 @@ from ...reports.tables import LARGEST_WHOLE
 from ..live import checks
 from ..live.kept import read_live
 from ..live.programs import helpers, storage_functions
+from ..live.scenes import read_scenes, unpacking
 from ..options.gpu_families import FAMILIES, usual_stage
 from ..output import cache
 from ..output.errors import UsageError, tell
@@ -330,7 +331,9 @@ def _live(folder: Path) -> Live | None:
     if not codecs:
         return None
     cleaned = {str(plain_text(name)): str(plain_text(reason)) for name, reason in left_out.items()}
-    return Live(codecs, storage_functions([codec["storage"] for codec in codecs]), cleaned, helpers(), checks.common())
+    storages = storage_functions([codec["storage"] for codec in codecs])
+    scenes = [(str(plain_text(name)), pixels, slope) for name, pixels, slope in read_scenes(folder)]
+    return Live(codecs, storages, cleaned, helpers(), scenes, unpacking(), checks.common())
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:

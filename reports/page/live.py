@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .codec_key import CodecKey
-from .embedded import colour_map
+from .embedded import colour_map, small_uri
 
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.
@@ -18,6 +20,8 @@ SCRIPTS = ("gl.js", "view.js", "see.js", "inspect.js", "own.js", *MEASURING, "li
 # What the names of every codec's functions begin with.
 NAMES = "codec"
 
+# What the pictures of scenes may take, in bytes of text.
+SCENES = 200_000
 Record = dict[str, Any]
 
 
@@ -29,6 +33,9 @@ class Live:
         codecs: as `bench.live.programs` makes them.
         storages: the functions of storages, in the same form, for an encoder that the reader types.
         left_out: by codec, why a browser cannot be given it.
+        scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the rays
+            through the right and the upper edge.
+        unpacking: how pixels become normals.
         helpers: GLSL ES of the functions that users' encoders may call.
         checks: what browsers need to make the normals that `checks` of each codec are of.
     """
@@ -37,6 +44,8 @@ class Live:
     storages: Sequence[Record]
     left_out: Mapping[str, str] = field(default_factory=dict)
     helpers: str = ""
+    scenes: Sequence[tuple[str, np.ndarray, np.ndarray]] = ()
+    unpacking: Mapping[str, Any] = field(default_factory=dict)
     checks: Mapping[str, Any] = field(default_factory=dict)
 
     def data(self, about: Mapping[str, str]) -> str:
@@ -48,11 +57,23 @@ class Live:
             "storages": [_named(one) for one in self.storages],
             "left_out": dict(self.left_out),
             "helpers": self.helpers,
+            "scenes": list(self._scenes()),
+            "unpacking": dict(self.unpacking),
             "checks": dict(self.checks),
             "shaders": shaders,
             "colours": colour_map(),
         }
         return json.dumps(made, sort_keys=True)
+
+    def _scenes(self) -> Iterator[Record]:
+        """As many as there is room for."""
+        left = SCENES
+        for name, pixels, slope in self.scenes:
+            uri = small_uri(pixels)
+            left -= len(uri)
+            if left >= 0:
+                height, width = pixels.shape[:2]
+                yield {"title": name, "width": width, "height": height, "slope": slope.tolist(), "pixels": uri}
 
 
 def _named(codec: Record) -> Record:

@@ -9,6 +9,9 @@ ARGUMENTS = [
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
+# The browser's own renderer in place of a GPU, for WebGL.
+SOFTWARE_GPU = ("--use-angle=swiftshader", "--use-gl=angle", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
+GPU_ARGUMENTS = [one for one in ARGUMENTS if one != "--disable-gpu"] + list(SOFTWARE_GPU)
 DESKTOP, PHONE = (1280, 900), (360, 740)
 # Once the viewer shows two codecs.
 VIEWED = "[data-pixel=right]:not(:empty)"

@@ -304,11 +304,18 @@ def planes_of(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *chunks)
 
 
+def seen(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A set that is an image: normals and positions, (height, width, 3), and which pixels are covered."""
+    assert normals.shape
+    n, view, covered = planes_of(normals)
+    images = [np.stack([np.asarray(p) for p in planes], axis=-1).reshape(*normals.shape, 3) for planes in (n, view)]
+    return images[0], images[1], covered.reshape(normals.shape)
+
+
 def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
     """A set that is an image: normals of shape (height, width, 3), and which pixels are covered."""
-    assert normals.shape
-    n, _, covered = planes_of(normals)
-    return np.stack([np.asarray(p) for p in n], axis=-1).reshape(*normals.shape, 3), covered.reshape(normals.shape)
+    n, _, covered = seen(normals)
+    return n, covered
 
 
 def image_round_trip(case: Case) -> RoundTrip:

@@ -16,6 +16,7 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import MAX_PIXELS, NormalPixels, Pictured, Subject, angle_bytes, read_png
 from ....reports.page.verdict import LEADING, is_count, is_number
+from ...live.scenes import write_scene
 from ...metrics import published
 from ...metrics.angles import angles_deg
 from ...output.arrays import DamagedError, read_npz
@@ -101,6 +102,12 @@ def _write_originals(chosen: Sequence[measure.Case], folder: Path) -> None:
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         n, covered = measure.image_of(case.normal_set)
         _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))
+
+
+def write_scenes(chosen: Sequence[measure.Case], folder: Path) -> None:
+    """The normals of each set that is an image, as a page's laboratory takes them."""
+    for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
+        write_scene(case.normal_set.name, *measure.seen(case.normal_set), folder)
 
 
 def _write_sheet(drawn: Drawn, folder: Path) -> None:

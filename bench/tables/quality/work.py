@@ -171,6 +171,7 @@ def _write(done: Measured, _: Tick) -> None:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
     if done.outputs.live:
         write_live((step.case.codec for step in done.steps), done.outputs.live)
+        pictures.write_scenes([step.case for step in done.steps], done.outputs.live)
 
 
 def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:

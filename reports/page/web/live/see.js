@@ -27,7 +27,7 @@ class See {
     const names = [EXACT, ...live.data.codecs.map(({ label }) => label)];
     for (const side of ["left", "right"]) this.control[side].append(...names.map((name) => element("option", {}, name)));
     this.control.subject.append(element("option", { value: SCENE }, "spheres, floor and wall"));
-    for (const [at, { title }] of (live.data.subjects ?? []).entries()) this.control.subject.append(element("option", { value: at }, title));
+    for (const [at, { title }] of live.data.scenes.entries()) this.control.subject.append(element("option", { value: at }, title));
     const first = live.data.codecs.find(({ label }) => label === "octahedral rgba8") ?? live.data.codecs[0];
     this.control.left.value = EXACT;
     this.control.right.value = first?.label ?? EXACT;
@@ -44,6 +44,7 @@ class See {
       if (name === "turn") one.addEventListener("click", () => this.turn(one.getAttribute("aria-pressed") !== "true"));
       else if (one.matches("input, select")) one.addEventListener("input", () => this.change());
     }
+    this.control.subject.addEventListener("input", () => this.resize());
     const { line } = this.control;
     line.addEventListener("pointerdown", (event) => {
       line.setPointerCapture(event.pointerId);
@@ -85,11 +86,14 @@ class See {
       : `this device computes mediump with ${half} bits of a mantissa, as highp`;
   }
 
+  // As many pixels as the screen has there, within limits, in the proportions of what is shown.
   resize() {
     const ratio = Math.min(window.devicePixelRatio || 1, 3), width = Math.max(160, Math.min(960, Math.round(this.stage.clientWidth * ratio)));
-    if (Math.abs(width - this.canvas.width) < 8) return;
+    const scene = live.data.scenes[this.control.subject.value] ?? { width: 4, height: 3 };
+    const height = Math.max(1, Math.min(1280, Math.round((width * scene.height) / scene.width)));
+    if (Math.abs(width - this.canvas.width) < 8 && Math.abs(height - this.canvas.height) < 8) return;
     this.canvas.width = width;
-    this.canvas.height = Math.round((width * 3) / 4);
+    this.canvas.height = height;
     this.change();
   }
 
@@ -157,9 +161,10 @@ class See {
     const back = [Math.sin(around) * Math.cos(over), Math.sin(over), Math.cos(around) * Math.cos(over)];
     const right = unit3(cross3([0, 1, 0], back)), up = cross3(back, right), away = this.value("away") / 10;
     const [side, above] = [this.value("side") * RADIANS, this.value("above") * RADIANS];
+    const scene = live.data.scenes[this.control.subject.value];
     return {
       size: { ints: [this.canvas.width, this.canvas.height] },
-      slope: [SLOPE, (SLOPE * this.canvas.height) / this.canvas.width],
+      slope: scene?.slope ?? [SLOPE, (SLOPE * this.canvas.height) / this.canvas.width],
       // In columns: what each axis of the world is to the camera.
       to_view: [0, 1, 2].flatMap((axis) => [right[axis], up[axis], back[axis]]),
       eye: LOOKED_AT.map((at, axis) => at + back[axis] * away),
@@ -173,7 +178,7 @@ class See {
   get surface() {
     const name = this.control.subject.value;
     if (name === SCENE) return ["scene.frag", {}];
-    if (!this.pictures.has(name)) this.pictures.set(name, pictureOf(this.device, live.data.subjects[name]));
+    if (!this.pictures.has(name)) this.pictures.set(name, pictureOf(this.device, live.data.scenes[name]));
     return ["pixels.frag", { normals: this.pictures.get(name) }];
   }
 
@@ -230,6 +235,23 @@ function pictureOf(device, { width, height, normals }) {
   return device.texture("RGBA32F", width, height, normals);
 }
 
-live.parts.push((root) => {
+// The normals of a scene's pixels: two numbers of 12 bits, an octahedron's, and turned back.
+function unfolded({ width, height }, bytes) {
+  const { levels, back } = live.data.unpacking, normals = new Float32Array(4 * width * height);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const from = 4 * (y * width + x), [a, b, c, there] = bytes.subarray(from, from + 4);
+      if (!there) continue;
+      const e = [(a << 4) | (b >> 4), ((b & 15) << 8) | c].map((number) => (number / levels) * 2 - 1);
+      const z = 1 - Math.abs(e[0]) - Math.abs(e[1]), p = e.map((number) => number - (number < 0 ? -1 : 1) * Math.max(-z, 0));
+      const n = unit3([...p, z]);
+      normals.set([...back.map((row) => dot3(row, n)), 1], 4 * ((height - 1 - y) * width + x));
+    }
+  }
+  return normals;
+}
+
+live.parts.push(async (root) => {
+  for (const scene of live.data.scenes) scene.normals = unfolded(scene, await pixelsOf(scene.pixels, scene.width, scene.height));
   live.see = new See(root);
 });

@@ -1,0 +1,257 @@
+"""Measuring in the page, by a browser's own renderer: codes against the run's, faults, interruptions, and what is kept."""
+
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from browsing import AXE, PHONE, Opened
+
+from normalbench.bench.live import checks, normals
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+MEASURE = "[data-live=measure]"
+OCTAHEDRAL = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
+# The least share of codes that are equal at 8 and 10 bits, which GLSL and JAX keep as well.
+LEAST_SHARE = 0.999
+SECONDS = 120
+KEYS = {
+    *("encoding", "storage", "rounding", "target", "normals", "equal", "one_step", "further"),
+    *("mean_deg", "max_deg", "run_mean_deg", "encode_ms", "decode_ms", "timer"),
+}
+
+
+class Laboratory(Opened):
+    """A page whose laboratory is open, and measures no times unless it is asked to."""
+
+    def __init__(self, browser, path, **more):
+        super().__init__(browser, path, **more)
+        self.page.locator("details.laboratory > summary").click()
+        self.page.wait_for_selector("[data-ready]", timeout=1000 * SECONDS)
+        self.page.locator("#measure-times").uncheck()
+
+    def ask(self, script, *given):
+        return self.page.evaluate(script, *given)
+
+    def only(self, *encodings):
+        """Measure these encodings' codecs alone."""
+        self.ask("names => { live.measuring.codecs = live.data.codecs.filter((c) => names.includes(c.encoding)); }", encodings)
+
+    def start(self):
+        self.page.locator("[data-measure]").click()
+
+    def finish(self) -> list[dict]:
+        self.page.wait_for_selector(f"{MEASURE} progress", state="hidden", timeout=1000 * SECONDS)
+        return self.ask("live.measuring.rows.map((row) => ({ ...row, difference: row.difference }))")
+
+    @property
+    def status(self) -> str:
+        return self.page.locator("[data-measured]").inner_text()
+
+
+@pytest.fixture
+def laboratory(gpu_browser, report):
+    opened = Laboratory(gpu_browser, report)
+    yield opened
+    assert not [line for line in opened.said if "rror" in line], opened.said
+    opened.context.close()
+
+
+def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
+    """Of all codecs of the small run at least 99.9 % of the codes are equal, and the angles are the run's."""
+    laboratory.start()
+    rows = laboratory.finish()
+    assert len(rows) == laboratory.ask("live.data.codecs.length") >= 10, laboratory.status
+    for row in rows:
+        assert row["equal"] >= LEAST_SHARE * row["normals"] and not row["further"], (row["encoding"], row["difference"])
+        assert row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9), row
+        assert row["target"] == "RGBA8", row
+    shown = laboratory.page.locator("[data-results] tbody tr")
+    assert shown.count() == len(rows)
+    with laboratory.page.expect_download() as download:
+        laboratory.page.locator("[data-save]").click()
+    assert re.fullmatch(r"normalbench-[a-z0-9-]+\.json", download.value.suggested_filename)
+    assert download.value.suggested_filename in laboratory.page.locator("[data-keep] code").inner_text()
+    download.value.save_as(tmp_path / "device.json")
+    saved = json.loads((tmp_path / "device.json").read_text())
+    assert saved["normalbench_device"] == 1 and "SwiftShader" in saved["renderer"] and "Chrome" in saved["browser"]
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", saved["made"]) and saved["sources"]
+    assert all(set(row) == KEYS for row in saved["codecs"]), saved["codecs"][0]
+    assert all(row["equal"] + row["one_step"] + row["further"] == row["normals"] for row in saved["codecs"])
+    assert not laboratory.asked[1:], "nothing is asked for"
+
+
+def test_a_device_is_known_by_what_it_does(laboratory):
+    """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
+    laboratory.only("xyz")
+    laboratory.start()
+    laboratory.finish()
+    facts = laboratory.ask("live.measuring.facts")
+    assert facts["rounds RGBA8"] == facts["rounds RGB10_A2"] == facts["rounds RG16F"] == "nearest, ties to even", facts
+    assert facts["rounds R11F_G11F_B10F"] == "truncate"
+    assert facts["renders RGB565"] == facts["renders RGBA32F"] == "yes"
+    assert facts["filters RGBA8"].startswith("yes") and facts["filters RGBA32F"] == "no"
+    assert facts["resolves RGBA8"] == "the mean of the codes, at most 0.5 steps from it"
+    assert facts["highp mantissa bits"] == 23 and facts["mediump mantissa bits"] >= 10
+    assert "RGBA16F stores NaN" in facts["NaN"] and facts["subnormal halves"] == "kept"
+
+
+def test_an_altered_constant_is_found_and_named(laboratory):
+    """Twice 0.5 in the fold of one codec: its row names the numbers and a normal, and no other codec differs."""
+    laboratory.only("octahedral", "stereographic", "xyz")
+    altered = laboratory.ask(
+        """() => {
+          const codec = live.data.codecs.find((c) => c.encoding === "octahedral"), before = codec.source;
+          codec.source = before.replace("(1.0 - abs(p.yx))", "(1.015625 - abs(p.yx))");
+          return codec.source !== before;
+        }"""
+    )
+    assert altered
+    laboratory.start()
+    rows = {row["encoding"]: row for row in laboratory.finish()}
+    wrong = rows.pop("octahedral")
+    assert all(row["equal"] == row["normals"] for row in rows.values())
+    # half of all directions have z < 0, and most of those lie in groups that nothing is known of
+    assert wrong["further"] > 0.5 * wrong["normals"]
+    assert re.search(r"x, y differ", wrong["difference"]) and re.search(r"normal \d+ \(.*\): here ", wrong["difference"])
+    (name,) = laboratory.texts("[data-results] tr.differs th")
+    assert name == "octahedral rgba8"
+
+
+def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
+    laboratory.start()
+    laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
+    laboratory.page.locator("[data-cancel]").click()
+    rows = laboratory.finish()
+    assert 2 <= len(rows) < laboratory.ask("live.data.codecs.length")
+    assert laboratory.status == f"Cancelled. {len(rows)} codecs that were measured before are kept."
+    assert laboratory.page.locator("[data-save]").is_visible()
+
+
+def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
+    laboratory.start()
+    laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
+    laboratory.ask("() => { window.loss = live.device.gl.getExtension('WEBGL_lose_context'); loss.loseContext(); }")
+    laboratory.page.wait_for_selector("[data-measured]:has-text('context was lost')")
+    laboratory.ask("() => loss.restoreContext()")
+    rows = laboratory.finish()
+    assert len(rows) == laboratory.ask("live.data.codecs.length")
+    assert all(row["equal"] == row["normals"] for row in rows), [row["difference"] for row in rows]
+
+
+def test_times_wait_for_a_page_that_is_seen(laboratory):
+    laboratory.only("xyz")
+    laboratory.page.locator("#measure-times").check()
+    hidden = "Object.defineProperty(document, 'visibilityState', { value: '%s', configurable: true })"
+    laboratory.ask(hidden % "hidden")
+    laboratory.start()
+    laboratory.page.wait_for_selector("[data-measured]:has-text('1 of 1')")
+    laboratory.page.wait_for_timeout(1000)
+    assert laboratory.ask("live.measuring.isBusy")
+    laboratory.ask(hidden % "visible")
+    laboratory.ask("() => document.dispatchEvent(new Event('visibilitychange'))")
+    (row,) = laboratory.finish()
+    assert row["timer"] == "EXT_disjoint_timer_query_webgl2"
+    assert 0 <= row["encode_ms"] < 10000 and 0 <= row["decode_ms"] < 10000
+
+
+def test_times_are_measured_without_timer_queries(laboratory):
+    laboratory.only("octahedral")
+    laboratory.page.locator("#measure-times").check()
+    laboratory.ask("() => { Timer.prototype.byQuery = null; const own = live.device.gl.getExtension.bind(live.device.gl); live.device.gl.getExtension = (name) => (name.startsWith('EXT_disjoint') ? null : own(name)); }")
+    laboratory.start()
+    (row,) = laboratory.finish()
+    assert row["timer"].startswith("wall clock") and row["encode_ms"] >= 0, laboratory.status
+
+
+def test_other_normals_than_the_runs_are_not_measured(laboratory):
+    laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
+    laboratory.start()
+    assert not laboratory.finish()
+    assert laboratory.status == "Not finished: this browser makes other normals of the sphere than the run has."
+
+
+def stepped(*changes):
+    """The run's codes of octahedral rgba8 with (normal, number, steps) changed."""
+    n, view = normals.normals("sphere")
+    codes = checks.ordered(OCTAHEDRAL, checks.reference_of(OCTAHEDRAL, n, view, compiled=False))
+    for normal, number, steps in changes:
+        codes[normal, number] += steps
+    return codes
+
+
+COMPARE = """([expected, given, size]) => {
+  const codes = given.map((one) => Int32Array.from(one));
+  return live.measuring.checks.compare(expected, codes, size);
+}"""
+
+
+def compared(laboratory, *given):
+    return laboratory.ask(COMPARE, [checks.checks(OCTAHEDRAL), [codes.ravel().tolist() for codes in given], 2])
+
+
+def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
+    found = compared(laboratory, stepped((5, 1, 1), (300, 0, -1), (310, 1, 1)))
+    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 3, 3, 0)
+    assert [one["normal"] for one in found["differing"]] == [5, 300, 310]
+    # two numbers of one normal
+    found = compared(laboratory, stepped((70, 0, 1), (70, 1, -1)))
+    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 1, 0, 1)
+    # three in a group, or a larger step: the whole group
+    for changes in (((1, 0, 1), (2, 0, 1), (3, 1, -1)), ((0, 1, 5),)):
+        found = compared(laboratory, stepped(*changes))
+        assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 128, 0, 128)
+    assert found["checked"] == [1], "the number that differs is named"
+    assert found["differing"][0]["normal"] == 0, "normal 0 travels with the page"
+
+
+def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
+    """The shader's own packing says what the run's codes are; then every code of the target is compared."""
+    packed = stepped((9, 0, 1))
+    target = stepped()
+    generator = np.random.default_rng(0)
+    down = generator.random(target.shape) < 0.5
+    target[down] -= 1
+    twice, once = down.all(axis=1), down.any(axis=1) & ~down.all(axis=1)
+    found = compared(laboratory, packed, target)
+    assert (found["oneStep"], found["further"]) == (once.sum(), twice.sum())
+    assert [one["normals"] for one in found["numbers"]] == down.sum(axis=0).tolist()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_what_was_measured_is_read_by_everybody(gpu_browser, report, theme):
+    """WCAG 2.1 A and AA, of the table and the facts."""
+    from axe_playwright_python.base import AXE_FILE_PATH
+
+    opened = Laboratory(gpu_browser, report, theme=theme, size=PHONE)
+    opened.only("octahedral", "xyz")
+    opened.start()
+    opened.finish()
+    opened.ask(AXE_FILE_PATH.read_text() + "; 0")
+    found = opened.ask(AXE)
+    opened.context.close()
+    assert found == []
+
+
+@pytest.mark.slow
+def test_every_encoding_gives_the_runs_codes_in_every_format(gpu_browser, tmp_path):
+    """At 8 and 10 bits at least 99.9 % of the codes are equal and none is further than a step; by SwiftShader, which
+    rounds every sum and root as IEEE 754 says, all of them are."""
+    command = (sys.executable, "-m", "normalbench.bench", "run", "--tables", "quality", "--encoding", "all")
+    sets = ("--storage", "rgba8,rgb10a2,rg8,rg16f,rgba16f", "--count", "4096", "--normals", "sphere", "-o", str(tmp_path / "run"))
+    done = subprocess.run([*command, *sets], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    opened = Laboratory(gpu_browser, tmp_path / "run/report.html")
+    opened.start()
+    rows = opened.finish()
+    opened.context.close()
+    assert len(rows) > 100
+    for row in rows:
+        bits = 8 if "8" in row["storage"] else 10
+        least = LEAST_SHARE if bits <= 10 else 0.99
+        assert row["equal"] >= least * row["normals"] and not row["further"], (row["encoding"], row["difference"])
