@@ -73,8 +73,8 @@ def reference_of(codec: Codec, n: np.ndarray, view: np.ndarray, compiled: bool =
     """What the catalogue makes of normals and views, float32 of shape (count, 3).
 
     Args:
-        compiled: whether XLA compiles the codec as a whole; else it goes step by step, which takes less time where it is
-            needed once. XLA may round a sum of products once, so the last bits of codes may be others.
+        compiled: whether XLA compiles the codec as a whole. Else each step is rounded by itself, as GPUs round it: XLA
+            may round a product and a sum once. Step by step takes less time where a codec is needed once.
     """
     made = jax.jit if compiled else _step_by_step
     planes = (Vec3(*(jnp.asarray(a[:, i]) for i in range(3))) for a in (n, view))

@@ -67,9 +67,10 @@ def checks(codec: Codec) -> dict[str, Any]:
     """What a codec's codes of its domain's normals must be; kept in the cache.
 
     Returns:
-        `normals`: the checksum of the normals; `groups`: one of each group; `numbers`: one of each number of the codes; `sample`: codes in the order of
-        their numbers, of every STRIDE-th normal; each as base64 of integers of 32 bits. `mean_deg`, `max_deg`: of the
-        angle between the normals and what these codes are decoded to, in degrees.
+        `normals`: the checksum of the normals. `groups`: one of each group of codes; `numbers`: one of each number of
+        the codes; `sample`: codes in the order of their numbers, of every STRIDE-th normal; each as base64 of integers
+        of 32 bits. `mean_deg`, `max_deg`: of the angle between the normals and what these codes are decoded to, in
+        degrees.
 
     Raises:
         ShaderError, NoDeviceError: of an encoding without a Python twin, which OpenGL is asked about.
