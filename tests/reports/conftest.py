@@ -1,7 +1,7 @@
 """A browser, and the page of the small run in it."""
 
 import pytest
-from browsing import ARGUMENTS, Opened
+from browsing import ARGUMENTS, GL_ARGUMENTS, Laboratory, Opened
 from playwright.sync_api import sync_playwright
 
 
@@ -9,6 +9,15 @@ from playwright.sync_api import sync_playwright
 def browser(chromium):
     with sync_playwright() as play:
         opened = play.chromium.launch(executable_path=chromium, args=ARGUMENTS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="session")
+def gl_browser(chromium):
+    """A browser with WebGL2, by software."""
+    with sync_playwright() as play:
+        opened = play.chromium.launch(executable_path=chromium, args=GL_ARGUMENTS)
         yield opened
         opened.close()
 
@@ -23,3 +32,12 @@ def opened(browser, report):
     page = Opened(browser, report)
     yield page
     page.context.close()
+
+
+@pytest.fixture
+def laboratory(gl_browser, report):
+    page = Laboratory(gl_browser, report)
+    yield page
+    page.context.close()
+    assert not page.said, page.said
+    assert page.asked == [report.as_uri()], "a page that asks for nothing"
