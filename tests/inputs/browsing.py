@@ -70,6 +70,13 @@ GL_ARGUMENTS = [
 ]
 
 
+DRAWN = """async () => {
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  const turns = () => live.see.isTurning || live.device.isLost;
+  for (await frame(), await frame(); !live.see.isDone && !turns(); await frame());
+}"""
+
+
 class Laboratory(Opened):
     """A page with its laboratory open."""
 
@@ -81,8 +88,8 @@ class Laboratory(Opened):
         self.settle()
 
     def settle(self) -> None:
-        """Until two more frames are drawn."""
-        self.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        """Until what was changed is drawn in every pixel."""
+        self.page.evaluate(DRAWN)
 
     def choose(self, **chosen: str) -> None:
         """Options of See it by the names of their controls."""

@@ -55,8 +55,9 @@ class LiveDevice {
   begin() {
     const { gl } = this;
     this.forget();
-    const info = gl.getExtension("WEBGL_debug_renderer_info");
-    this.renderer = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+    // Some browsers name the device only by the extension, which others are about to remove.
+    const plain = String(gl.getParameter(gl.RENDERER)), info = /^WebKit/.test(plain) && gl.getExtension("WEBGL_debug_renderer_info");
+    this.renderer = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : plain;
     this.vendor = String(gl.getParameter(info ? info.UNMASKED_VENDOR_WEBGL : gl.VENDOR));
     gl.getExtension("EXT_color_buffer_float");
     gl.getExtension("EXT_color_buffer_half_float");
