@@ -219,6 +219,13 @@ class LiveDevice {
     else gl[`uniform${value.length}fv`](place, value);
   }
 
+  // Waits until everything is drawn on the canvas.
+  finish() {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
   // Texels of a target of RGBA32UI, four words each.
   words(target, width = target.width, height = target.height) {
     const { gl } = this, found = new Uint32Array(4 * width * height);

@@ -172,7 +172,7 @@ class See {
     // What is said of a pixel waits until the turntable stops, because it is read out.
     if (!this.isTurning) for (const listener of this.listeners) listener();
     // The device is done when a pixel is read back.
-    this.device.gl.readPixels(0, 0, 1, 1, this.device.gl.RGBA, this.device.gl.UNSIGNED_BYTE, new Uint8Array(4));
+    this.device.finish();
     this.isSlow = performance.now() - began > SLOW_MS;
   }
 
