@@ -1,17 +1,16 @@
 """Pages in a browser, for tests."""
 
+import base64
 import io
 
 import numpy as np
 from PIL import Image
+from playwright.sync_api import expect
 
 ARGUMENTS = [
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
-# The browser's own renderer in place of a GPU, for WebGL.
-SOFTWARE_GPU = ("--use-angle=swiftshader", "--use-gl=angle", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
-GPU_ARGUMENTS = [one for one in ARGUMENTS if one != "--disable-gpu"] + list(SOFTWARE_GPU)
 DESKTOP, PHONE = (1280, 900), (360, 740)
 # Once the viewer shows two codecs.
 VIEWED = "[data-pixel=right]:not(:empty)"
@@ -20,23 +19,33 @@ VIEWED = "[data-pixel=right]:not(:empty)"
 class Opened:
     """A page, and everything that it asked for or complained of."""
 
-    def __init__(self, browser, path, size=DESKTOP, theme="light", motion="reduce"):
+    def __init__(self, browser, path, size=DESKTOP, theme="light", motion="reduce", fragment="", scale=1, before=""):
         self.asked, self.said = [], []
         width, height = size
         self.context = browser.new_context(
-            viewport={"width": width, "height": height}, color_scheme=theme, reduced_motion=motion, offline=True
+            viewport={"width": width, "height": height},
+            color_scheme=theme,
+            reduced_motion=motion,
+            offline=True,
+            device_scale_factor=scale,
         )
+        if before:
+            self.context.add_init_script(before)
         self.page = self.context.new_page()
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
-        self.page.goto(path.as_uri())
+        self.page.goto(path.as_uri() + fragment)
         self.page.wait_for_selector("#theme:not([hidden])")
 
     def come_to(self, selector: str, until: str) -> None:
         """Scroll there, and wait for what is drawn when it comes into view."""
         self.page.locator(selector).first.scroll_into_view_if_needed()
         self.page.wait_for_selector(until)
+
+    def says(self, selector: str, text) -> None:
+        """Wait until it says that, a text or a pattern; without `eval`, which the page's policy forbids."""
+        expect(self.page.locator(selector)).to_contain_text(text)
 
     def texts(self, selector: str) -> list[str]:
         return self.page.locator(selector).all_text_contents()
@@ -52,3 +61,50 @@ AXE = """async () => {
   const { violations } = await axe.run(document, { runOnly: tags });
   return violations.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200), nodes[0].failureSummary]);
 }"""
+
+
+# WebGL2 by Chromium's own software rasteriser, as on a machine without a GPU.
+GL_ARGUMENTS = [
+    *(argument for argument in ARGUMENTS if argument != "--disable-gpu"),
+    *("--use-angle=swiftshader", "--use-gl=angle", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"),
+]
+
+
+DRAWN = """async () => {
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  const turns = () => live.see.isTurning || live.device.isLost;
+  for (await frame(), await frame(); !live.see.isDone && !turns(); await frame());
+}"""
+
+
+class Laboratory(Opened):
+    """A page with its laboratory open."""
+
+    def __init__(self, browser, path, size=DESKTOP, fragment="", **more):
+        super().__init__(browser, path, size, fragment=fragment, **more)
+        if not fragment:
+            self.page.locator(".laboratory > summary").click()
+        self.page.wait_for_selector("#live[data-ready]")
+        self.settle()
+
+    def settle(self) -> None:
+        """Until what was changed is drawn in every pixel."""
+        self.page.evaluate(DRAWN)
+
+    def choose(self, **chosen: str) -> None:
+        """Options of See it by the names of their controls."""
+        for name, value in chosen.items():
+            self.page.locator(f"[data-see={name}]").select_option(value)
+        self.settle()
+
+    def press(self, selector: str, *keys: str) -> None:
+        self.page.locator(selector).focus()
+        for key in keys:
+            self.page.keyboard.press(key)
+        self.settle()
+
+    def picture(self) -> np.ndarray:
+        """What is drawn, uint8 of shape (height, width, 3), the upper row first."""
+        uri = self.page.locator("[data-live=canvas]").evaluate("canvas => canvas.toDataURL()")
+        with Image.open(io.BytesIO(base64.b64decode(uri.partition(",")[2]))) as image:
+            return np.asarray(image.convert("RGB")).astype(int)

@@ -1,7 +1,7 @@
 """A browser, and the page of the small run in it."""
 
 import pytest
-from browsing import ARGUMENTS, GPU_ARGUMENTS, Opened
+from browsing import ARGUMENTS, GL_ARGUMENTS, Laboratory, Opened
 from playwright.sync_api import sync_playwright
 
 
@@ -19,9 +19,9 @@ def browser(play, chromium):
 
 
 @pytest.fixture(scope="session")
-def gpu_browser(play, chromium):
-    """A browser with WebGL2, by its own renderer."""
-    opened = play.chromium.launch(executable_path=chromium, args=GPU_ARGUMENTS)
+def gl_browser(play, chromium):
+    """A browser with WebGL2, by software."""
+    opened = play.chromium.launch(executable_path=chromium, args=GL_ARGUMENTS)
     yield opened
     opened.close()
 
@@ -36,3 +36,12 @@ def opened(browser, report):
     page = Opened(browser, report)
     yield page
     page.context.close()
+
+
+@pytest.fixture
+def laboratory(gl_browser, report):
+    page = Laboratory(gl_browser, report)
+    yield page
+    page.context.close()
+    assert not page.said, page.said
+    assert page.asked == [report.as_uri()], "a page that asks for nothing"

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from browsing import AXE, PHONE, Opened
+from browsing import AXE, PHONE, Laboratory
 
 from normalbench.bench.live import checks, normals
 from normalbench.encodings.catalogue import ENCODINGS
@@ -25,13 +25,11 @@ KEYS = {
 }
 
 
-class Laboratory(Opened):
-    """A page whose laboratory is open, and measures no times unless it is asked to."""
+class Measured(Laboratory):
+    """A laboratory that measures no times unless it is asked to."""
 
     def __init__(self, browser, path, **more):
         super().__init__(browser, path, **more)
-        self.page.locator("details.laboratory > summary").click()
-        self.page.wait_for_selector("[data-ready]", timeout=1000 * SECONDS)
         self.page.locator("#measure-times").uncheck()
 
     def ask(self, script, *given):
@@ -57,8 +55,8 @@ class Laboratory(Opened):
 
 
 @pytest.fixture
-def laboratory(gpu_browser, report):
-    opened = Laboratory(gpu_browser, report)
+def laboratory(gl_browser, report):
+    opened = Measured(gl_browser, report)
     yield opened
     assert not [line for line in opened.said if "rror" in line], opened.said
     opened.context.close()
@@ -234,11 +232,11 @@ def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_what_was_measured_is_read_by_everybody(gpu_browser, report, theme):
+def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
     """WCAG 2.1 A and AA, of the table and the facts."""
     from axe_playwright_python.base import AXE_FILE_PATH
 
-    opened = Laboratory(gpu_browser, report, theme=theme, size=PHONE)
+    opened = Measured(gl_browser, report, theme=theme, size=PHONE)
     opened.only("octahedral", "xyz")
     opened.start()
     opened.finish()
@@ -249,7 +247,7 @@ def test_what_was_measured_is_read_by_everybody(gpu_browser, report, theme):
 
 
 @pytest.mark.slow
-def test_every_encoding_gives_the_runs_codes_in_every_format(gpu_browser, tmp_path):
+def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_path):
     """At 8 and 10 bits at least 99.9 % of the codes are equal and none is further than a step; by SwiftShader, which
     rounds every sum and root as IEEE 754 says, all of them are."""
     command = (sys.executable, "-m", "normalbench.bench", "run", "--tables", "quality", "--encoding", "all")
@@ -265,7 +263,7 @@ def test_every_encoding_gives_the_runs_codes_in_every_format(gpu_browser, tmp_pa
     )
     done = subprocess.run([*command, *sets], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    opened = Laboratory(gpu_browser, tmp_path / "run/report.html")
+    opened = Measured(gl_browser, tmp_path / "run/report.html")
     opened.start()
     rows = opened.finish()
     opened.context.close()

@@ -55,8 +55,9 @@ class LiveDevice {
   begin() {
     const { gl } = this;
     this.forget();
-    const info = gl.getExtension("WEBGL_debug_renderer_info");
-    this.renderer = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+    // Some browsers name the device only by the extension, which others are about to remove.
+    const plain = String(gl.getParameter(gl.RENDERER)), info = /^WebKit/.test(plain) && gl.getExtension("WEBGL_debug_renderer_info");
+    this.renderer = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : plain;
     this.vendor = String(gl.getParameter(info ? info.UNMASKED_VENDOR_WEBGL : gl.VENDOR));
     gl.getExtension("EXT_color_buffer_float");
     gl.getExtension("EXT_color_buffer_half_float");
@@ -216,6 +217,13 @@ class LiveDevice {
     else if ("ints" in value) gl[`uniform${value.ints.length}iv`](place, value.ints);
     else if (value.length === 9) gl.uniformMatrix3fv(place, false, value);
     else gl[`uniform${value.length}fv`](place, value);
+  }
+
+  // Waits until everything is drawn on the canvas.
+  finish() {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   // Texels of a target of RGBA32UI, four words each.

@@ -32,23 +32,23 @@ class Inspect {
   }
 
   point(event) {
-    const { canvas } = this.see, box = canvas.getBoundingClientRect();
-    this.go([((event.clientX - box.left) / box.width) * canvas.width, ((event.clientY - box.top) / box.height) * canvas.height].map(Math.floor));
+    const { canvas, size } = this.see, box = canvas.getBoundingClientRect();
+    this.go([((event.clientX - box.left) / box.width) * size[0], ((event.clientY - box.top) / box.height) * size[1]].map(Math.floor));
   }
 
   // From the upper left corner.
   get pixel() {
-    const { width, height } = this.see.canvas;
+    const [width, height] = this.see.size;
     return [Math.min(width - 1, Math.floor(this.at[0] * width)), Math.min(height - 1, Math.floor(this.at[1] * height))];
   }
 
   go([x, y], typed = "") {
-    const { width, height } = this.see.canvas, kept = (value, size) => (Math.min(size - 1, Math.max(0, Math.floor(value) || 0)) + 0.5) / size;
+    const [width, height] = this.see.size, kept = (value, size) => (Math.min(size - 1, Math.max(0, Math.floor(value) || 0)) + 0.5) / size;
     this.at = [kept(x, width), kept(y, height)];
     this.typed = typed;
     this.waiting ||= requestAnimationFrame(() => {
       this.waiting = 0;
-      this.show();
+      if (this.see.isDone) this.show();
     });
   }
 

@@ -6,6 +6,8 @@ const FULL_DEGREES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2
 const SHOWN = { lit: 0, error: 1, normals: 2, code: 3 };
 const SLOPE = 0.62, SCENE = "scene", TURN_S = 24, AS_STORED = 17, RADIANS = Math.PI / 180;
 const LOOKED_AT = [0, 0.75, 0];
+// A picture that takes longer is drawn in a quarter of the pixels while something is moved, and whole after a pause.
+const SLOW_MS = 45, PAUSE_MS = 200;
 
 class See {
   constructor(root) {
@@ -17,6 +19,7 @@ class See {
     this.out = Object.fromEntries(Array.from(root.querySelectorAll("[data-see-out]"), (one) => [one.dataset.seeOut, one]));
     this.sides = { left: {}, right: {} };
     this.listeners = [];
+    this.size = [this.canvas.width, this.canvas.height];
     this.fill();
     this.listen();
     this.device.on("restored", () => this.restore());
@@ -91,16 +94,22 @@ class See {
     const ratio = Math.min(window.devicePixelRatio || 1, 3), width = Math.max(160, Math.min(960, Math.round(this.stage.clientWidth * ratio)));
     const scene = live.data.scenes[this.control.subject.value] ?? { width: 4, height: 3 };
     const height = Math.max(1, Math.min(1280, Math.round((width * scene.height) / scene.width)));
-    if (Math.abs(width - this.canvas.width) < 8 && Math.abs(height - this.canvas.height) < 8) return;
-    this.canvas.width = width;
-    this.canvas.height = height;
+    if (Math.abs(width - this.size[0]) < 8 && Math.abs(height - this.size[1]) < 8) return;
+    this.size = [width, height];
     this.change();
+  }
+
+  // One pixel for `coarse` x `coarse` of them.
+  fit(coarse) {
+    const [width, height] = this.size.map((pixels) => Math.max(1, Math.round(pixels / coarse)));
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
   }
 
   turn(isOn) {
     this.control.turn.setAttribute("aria-pressed", isOn);
     this.since = null;
-    if (isOn) this.change();
+    this.change();
   }
 
   value(name) {
@@ -137,9 +146,38 @@ class See {
     this.waiting ||= requestAnimationFrame((now) => {
       this.waiting = 0;
       this.step(now);
-      if (!this.device.isLost) this.draw();
+      this.answer();
       if (this.isTurning) this.change();
     });
+  }
+
+  answer() {
+    clearTimeout(this.pause);
+    this.pause = 0;
+    if (!this.isSlow) this.whole();
+    else {
+      this.fit(2);
+      this.draw();
+      this.pause = setTimeout(() => this.whole(), PAUSE_MS);
+    }
+  }
+
+  // Every pixel, and what is said of one of them.
+  whole() {
+    this.pause = 0;
+    const began = performance.now();
+    this.fit(1);
+    this.draw();
+    if (this.device.isLost) return;
+    // What is said of a pixel waits until the turntable stops, because it is read out.
+    if (!this.isTurning) for (const listener of this.listeners) listener();
+    // The device is done when a pixel is read back.
+    this.device.finish();
+    this.isSlow = performance.now() - began > SLOW_MS;
+  }
+
+  get isDone() {
+    return !this.pause && !this.waiting;
   }
 
   get isTurning() {
@@ -183,10 +221,10 @@ class See {
   }
 
   draw() {
+    if (this.device.isLost) return;
     const uniforms = this.uniforms(), at = Math.round((this.canvas.width * this.value("divider")) / 100);
     const parts = { left: [0, at], right: [at, this.canvas.width - at] };
     for (const [side, [from, width]] of Object.entries(parts)) if (width > 0) this.drawSide(side, uniforms, [from, 0, width, this.canvas.height]);
-    for (const listener of this.listeners) listener();
   }
 
   drawSide(side, uniforms, scissor) {

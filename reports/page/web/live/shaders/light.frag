@@ -29,7 +29,7 @@ void main() {
 #else
     CODE stored = code_at(pixel);
     vec3 n = DECODE(stored, seen.view);
-    vec3 code = PADDED(stored).xyz * 0.5 + 0.5;
+    vec3 code = PADDED(stored * 0.5 + 0.5).xyz;
 #endif
     float degrees = degrees(angle_between(seen.n, n));
     vec3 made = shown == 0 ? lit(seen, n) : shown == 1 ? false_colour(colours, degrees / full)
