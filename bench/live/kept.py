@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
-from typing_extensions import TypedDict
+from typing_extensions import NotRequired, TypedDict
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.files import file_bytes
@@ -82,7 +82,7 @@ class Kept(TypedDict):
     is_biased: bool
     channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
     tables: dict[Name, Table]
-    checks: Checks | None
+    checks: NotRequired[Checks | None]
 
 
 KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
@@ -115,7 +115,8 @@ def _checks(codec: Codec) -> Record | None:
 
 def _current(record: Record) -> Record:
     """A record whose checks are of the normals that the page makes; without them where they are of others."""
-    is_whole = record["checks"] and checks.is_whole(record["checks"], record["domain"], len(record["channels"]))
+    found = record.get("checks")
+    is_whole = found and checks.is_whole(found, record["domain"], len(record["channels"]))
     return record if is_whole else {**record, "checks": None}
 
 
