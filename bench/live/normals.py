@@ -21,6 +21,7 @@ NORMALS, VIEWS, WEIGHTS, SUMS = 0, 1 << 30, 2 << 30, 3 << 30
 PER_TRY, PER_VIEW = 2, 3
 # Points on each line where maps fold, and how far beside it they lie.
 ON_LINES, BESIDE = 24, (0.0, -0.0, 1e-7, -1e-7)
+NEXT_TO_0 = 1e-30
 PAIRS = ((0, 1), (1, 2), (2, 0))
 
 
@@ -74,12 +75,14 @@ def _lines() -> np.ndarray:
 
 
 def _neighbours(n: np.ndarray) -> np.ndarray:
-    """Normals with one component one float32 up or down."""
+    """Normals with one component one float32 up or down; next to 0 a number that stays normal where it is multiplied,
+    because devices may flush subnormal ones."""
     found = []
     for axis in range(3):
         for toward in (-2.0, 2.0):
+            next_ = np.nextafter(n[:, axis], np.float32(toward))
             found.append(n.copy())
-            found[-1][:, axis] = np.nextafter(n[:, axis], np.float32(toward))
+            found[-1][:, axis] = np.where(n[:, axis] == 0, np.float32(np.sign(toward) * NEXT_TO_0), next_)
     return np.concatenate(found)
 
 

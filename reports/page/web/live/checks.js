@@ -4,6 +4,11 @@
 
 // How many differing normals are kept to be shown.
 const EXAMPLES = 8;
+// Of the numbers of a group so many may have been rounded the other way: those nearest to a tie, in units of the error
+// that float32 makes of numbers of their size, but for what sums of larger numbers leave.
+const NEAR_TIES = 14, SUMS = 2 ** -6;
+// Bits of a float's mantissa, by its size.
+const MANTISSA = { 32: 23, 16: 10, 11: 6, 10: 5 };
 
 // An integer of 32 bits, well mixed.
 function hashed(word, { shifts, factors }) {
@@ -14,6 +19,26 @@ function hashed(word, { shifts, factors }) {
 
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
+}
+
+// How near a number is to where its rounding turns, in units of its own error, and the step from the code on the other
+// side to `place`, the code that it has.
+function tieOf(x, place, { kind, bits, integer }, { rounding, bytes }) {
+  const isCut = rounding !== "nearest";
+  if (kind === "float") return floatTie(bits < 16 ? x * 0.5 + 0.5 : x, bits, isCut);
+  const steps = (kind === "unorm" ? x * 0.5 + 0.5 : x) * (integer + (rounding === "truncate_half" ? 0.5 : 0));
+  const own = kind === "snorm" && bytes ? place - integer : place, error = Math.abs(x) + SUMS;
+  if (!isCut) return { distance: Math.abs(Math.floor(steps) + 0.5 - steps) / error, step: steps < own ? 1 : -1 };
+  // cut off toward zero: from a whole number on, away from zero
+  const size = Math.abs(steps), whole = Math.round(size), up = steps < 0 ? -1 : 1;
+  return { distance: Math.abs(whole - size) / error, step: whole > Math.abs(own) ? -up : up };
+}
+
+// The same of a float, whose steps are as fine as its error but for the smallest.
+function floatTie(value, bits, isCut) {
+  const octave = Math.max(Math.floor(Math.log2(Math.abs(value))), -14), up = value < 0 ? -1 : 1;
+  const steps = Math.abs(value) * 2 ** (MANTISSA[bits] - octave), from = steps - (isCut ? Math.round(steps) : Math.floor(steps) + 0.5);
+  return { distance: Math.abs(from) / (Math.max(steps / 2 ** MANTISSA[bits], SUMS) + SUMS), step: from < 0 ? -up : up };
 }
 
 class Normals {
@@ -137,16 +162,40 @@ class Checks {
     return null;
   }
 
+  // The steps that make a difference of checksums, of numbers that lie near a tie; null where they do not make it. `exact`
+  // are the numbers before they were stored, four for each normal of the group, and `places` their codes.
+  nearTies(difference, exact, places, codec) {
+    const { numbers } = this.common, { channels } = codec, found = [];
+    for (let k = 0; k < exact.length / 4; k++) {
+      for (let c = 0; c < channels.length; c++) found.push({ k, c, ...tieOf(exact[4 * k + c], places[k * channels.length + c], channels[c], codec) });
+    }
+    const near = found.sort((a, b) => a.distance - b.distance).slice(0, NEAR_TIES);
+    const parts = near.map(({ k, c, step }) => Math.imul(step, this.weights[numbers * k + c]));
+    let sum = 0, chosen = 0;
+    // Every set of them in an order in which one joins or leaves at a time (F. Gray, 1953).
+    for (let at = 1; at < 2 ** near.length; at++) {
+      const turned = 31 - Math.clz32(at & -at);
+      chosen ^= 1 << turned;
+      sum = (sum + ((chosen >> turned) & 1 ? parts[turned] : -parts[turned])) | 0;
+      if (sum >>> 0 === difference) return near.filter((_, i) => (chosen >> i) & 1);
+    }
+    return null;
+  }
+
   // The run's codes, as far as checksums tell them. `given` are codes of this device, as integers in the order of their
   // numbers, `size` for each normal; of several, those that come first are asked first. Of a group whose steps none of
-  // them tells, nothing is known: `isKnown` is 0 there.
-  runs(expected, given, size) {
-    const { group } = this.common, asked = new Uint32Array(bytesOf(expected.groups)), sums = given.map((codes) => this.sums(codes, size));
+  // them tells, nothing is known: `isKnown` is 0 there. `exact` are the numbers before the first of them was stored, four
+  // for each normal, or null.
+  runs(expected, given, codec, exact) {
+    const { group } = this.common, size = codec.channels.length, asked = new Uint32Array(bytesOf(expected.groups));
+    const sums = given.map((codes) => this.sums(codes, size));
     const codes = new Int32Array(given[0].length), isKnown = new Uint8Array(asked.length);
     for (let g = 0; g < asked.length; g++) {
       const [from, to] = [g * group * size, (g + 1) * group * size];
       for (let i = 0; i < given.length && !isKnown[g]; i++) {
-        const difference = (sums[i][g] - asked[g]) >>> 0, told = difference ? this.told(difference, size) : [];
+        const difference = (sums[i][g] - asked[g]) >>> 0;
+        let told = difference ? this.told(difference, size) : [];
+        if (!told && exact && !i) told = this.nearTies(difference, exact.subarray(4 * g * group, 4 * (g + 1) * group), given[i].subarray(from, to), codec);
         if (!told) continue;
         isKnown[g] = 1;
         codes.set(given[i].subarray(from, to), from);
@@ -158,8 +207,9 @@ class Checks {
 
   // How a device's codes differ from the run's. The last of `given` is what is judged; codes that the shader packed
   // by itself come before it: they tell the run's codes where a target rounds in its own way.
-  compare(expected, given, size) {
-    const { group, count } = this.common, run = this.runs(expected, given, size), here = given.at(-1);
+  compare(codec, given, exact = null) {
+    const { group, count } = this.common, expected = codec.checks, size = codec.channels.length;
+    const run = this.runs(expected, given, codec, exact), here = given.at(-1);
     const found = { equal: 0, oneStep: 0, further: 0, untold: 0, numbers: [], differing: [], checked: this.numbers(expected, here, size) };
     for (let c = 0; c < size; c++) found.numbers.push({ normals: 0, most: 0 });
     for (let i = 0; i < count; i++) {

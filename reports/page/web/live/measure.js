@@ -20,7 +20,7 @@ function smallFloat(word, mantissa) {
 function placeRead(word, channel) {
   if (channel.kind !== "float") return word | 0;
   if (channel.bits === 32) return placeOf(channel, false, word);
-  const steps = smallFloat(word, { 16: 10, 11: 6, 10: 5 }[channel.bits]);
+  const steps = smallFloat(word, MANTISSA[channel.bits]);
   return word >>> 31 ? -steps : steps;
 }
 
@@ -133,6 +133,14 @@ class CodecOnDevice {
     this.draw(encode, this.target);
     this.draw(read, this.bits(), { codes: this.target });
     return this.places(await wordsLater(this.device, this.bits()), false);
+  }
+
+  // The numbers of codes before they are stored, four for each normal.
+  async exactNumbers() {
+    const program = this.program("measure_exact.frag");
+    await paused();
+    this.draw(program, this.bits());
+    return new Float32Array((await wordsLater(this.device, this.bits())).buffer);
   }
 
   bits() {

@@ -16,6 +16,14 @@ const COLUMNS = [
   ["difference", "Which numbers of which normals differ."],
 ];
 
+const FORMAT_COLUMNS = [
+  ["format", "The WebGL format."],
+  ["renders", "Whether the device renders to it."],
+  ["rounds", "How it rounds a number between two steps of the first channel."],
+  ["filters", "Whether a look-up between two texels gives what lies between, and how many bits its position has."],
+  ["resolves", "What a resolve gives of four samples with two codes, in steps from their mean."],
+];
+
 class CancelledError extends Error {}
 
 class Measuring {
@@ -23,6 +31,7 @@ class Measuring {
   constructor(root, device, data) {
     Object.assign(this, { root, device, data, rows: [], facts: {}, normals: new Normals(data.checks), checks: new Checks(data.checks) });
     this.codecs = data.codecs.filter((codec) => codec.checks);
+    this.without = data.codecs.length - this.codecs.length;
     this.build();
     device.on("lost", () => (this.wasLost = true));
   }
@@ -38,7 +47,8 @@ class Measuring {
     this.results = element("div", { "data-results": "" });
     this.factList = element("div", { "data-facts": "" });
     this.keeping = element("div", { "data-keep": "" });
-    this.root.append(element("p", { class: "tools" }, this.button, times, this.cancelling), this.progress, this.said, this.results, this.factList, this.keeping);
+    const left = this.without ? [element("p", { class: "note" }, `${this.without} of ${this.data.codecs.length} codecs are not measured: the run does not keep what their codes must be.`)] : [];
+    this.root.append(element("h3", {}, "Measure it"), ...left, element("p", { class: "tools" }, this.button, times, this.cancelling), this.progress, this.said, this.results, this.factList, this.keeping);
   }
 
   say(text) {
@@ -153,13 +163,15 @@ class Measuring {
   async measured(codec) {
     this.inputs ??= new Inputs(this.device, this.normals);
     const row = { encoding: codec.encoding, storage: codec.storage, rounding: codec.rounding, target: "", normals: this.data.checks.count };
-    const { domain, channels, checks } = codec, on = new CodecOnDevice(this.inputs, codec);
+    const { domain, checks } = codec, on = new CodecOnDevice(this.inputs, codec);
     try {
       const codes = [await on.packedCodes()];
       if (!on.packs) codes.push(await on.targetCodes());
       this.check();
       await paused();
-      const found = this.checks.compare(checks, codes, channels.length), { mean, most } = await on.angles();
+      let found = this.checks.compare(codec, codes);
+      if (found.untold) found = this.checks.compare(codec, codes, await on.exactNumbers());
+      const { mean, most } = await on.angles();
       const { equal, oneStep, further } = found, times = { encode_ms: null, decode_ms: null, timer: "" };
       const difference = saysDifference(found, this.normals.of(domain).n);
       Object.assign(row, { target: on.format, equal, one_step: oneStep, further, mean_deg: mean, max_deg: most, run_mean_deg: checks.mean_deg }, times);
@@ -186,9 +198,11 @@ class Measuring {
   }
 
   showFacts() {
-    const list = element("dl", { class: "facts" });
-    for (const [name, value] of Object.entries(this.facts)) list.append(element("dt", {}, name), element("dd", {}, String(value)));
-    this.factList.replaceChildren(element("details", {}, element("summary", {}, "What this device does with formats and numbers"), list));
+    const formats = Object.keys(PROBED), rows = formats.map((format) => ({ codec: "", isWhole: true, cells: [format, ...FORMAT_COLUMNS.slice(1).map(([what]) => this.facts[`${what} ${format}`] ?? "")] }));
+    const list = element("dl", { class: "facts" }), others = Object.entries(this.facts).filter(([name]) => !formats.includes(name.split(" ")[1]));
+    for (const [name, value] of others) list.append(element("dt", {}, name), element("dd", {}, String(value)));
+    const table = sheetOf("What this device does with formats", FORMAT_COLUMNS, rows, "measured-formats");
+    this.factList.replaceChildren(element("details", { class: "all" }, element("summary", {}, "What this device does with formats and numbers"), table, list));
   }
 }
 
@@ -205,7 +219,7 @@ function cellsOfRow(row) {
 
 // A table as the page's others are: sorted by its headers, filtered by none.
 function sheetOf(title, columns, rows, id) {
-  const isNumber = (at) => at > 1 && at < columns.length - 1;
+  const isNumber = (at) => rows.length > 0 && rows.every(({ cells }) => cells[at] === "" || Number.isFinite(Number(cells[at])));
   const head = columns.map(([name, says], at) => {
     const button = element("button", { type: "button", title: says }, name);
     const header = element("th", { scope: "col", "aria-sort": "none", class: isNumber(at) ? "n" : "" }, button);
@@ -214,7 +228,7 @@ function sheetOf(title, columns, rows, id) {
   });
   const body = rows.map(({ codec, isWhole, cells }) => {
     const made = cells.map((text, at) => element(at ? "td" : "th", at ? { class: isNumber(at) ? "n" : at === cells.length - 1 ? "long" : "" } : { scope: "row" }, String(text)));
-    return element("tr", { "data-codec": codec, class: isWhole ? "" : "differs" }, ...made);
+    return element("tr", { ...(codec && { "data-codec": codec }), class: isWhole ? "" : "differs" }, ...made);
   });
   const caption = element("caption", { id: `${id}-caption` }, element("span", {}, title));
   const table = element("table", {}, caption, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body));

@@ -28,7 +28,7 @@ class Timer {
   }
 
   get says() {
-    return this.query ? "EXT_disjoint_timer_query_webgl2" : `wall clock, ${TIMES} times as many passes as take ${SLICE_MS.least} ms, and a read-back`;
+    return this.query ? "EXT_disjoint_timer_query_webgl2" : `wall clock, ${this.passes} passes and a read-back`;
   }
 
   // The GPU's own milliseconds for `count` passes; null where it does not say.
@@ -65,6 +65,7 @@ class Timer {
     let count = 1, once = await this.byClock(draw, count, read);
     while (once < SLICE_MS.least && count < 1024) once = await this.byClock(draw, (count *= 2), read);
     const found = [];
+    this.passes = count;
     for (let turn = 0; turn < TIMES; turn++) {
       await seen();
       const time = this.query ? await this.byQuery(draw, count) : await this.byClock(draw, count, read);
