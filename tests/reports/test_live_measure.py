@@ -258,7 +258,7 @@ FINE = [
 def test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
     """Numbers off by up to 3 units in the last place are rounded the other way near ties, several of them in a group.
 
-    Nothing is told of a group where many normals lie next to the same tie: neighbours of diagonals, and where numbers are
+    Nothing is told of a group where many normals lie next to one tie: neighbours of diagonals, and where numbers are
     cut off those of axes as well.
     """
     codec, generator = Codec(ENCODINGS["octahedral"], STORAGES[storage], rounding), np.random.default_rng(1)
