@@ -6,8 +6,8 @@ uniform vec2 slope;  // of the ray at the picture's right and upper edge
 const float ROOM = 4.0;
 const vec3 SMOOTH = vec3(-1.05, 0.75, 0.35), DENTED = vec3(0.85, 0.95, -0.1), SMALL = vec3(0.1, 0.35, 1.25);
 const vec3 RADII = vec3(0.75, 0.95, 0.35);
-const vec2 COLUMN = vec2(-0.35, -1.35);
-const float COLUMN_RADIUS = 0.4, COLUMN_HEIGHT = 2.0;
+const vec2 COLUMN = vec2(-0.25, -0.95);
+const float COLUMN_RADIUS = 0.28, COLUMN_HEIGHT = 1.9;
 
 struct Surface {
     vec3 n;       // unit, view space
