@@ -88,6 +88,29 @@ def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
     assert not laboratory.asked[1:], "nothing is asked for"
 
 
+STORED = """checks => live.measuring.codecs = live.data.storages
+  .filter(({ encoding }) => encoding === "octahedral")
+  .map((codec) => ({ ...codec, checks: checks[codec.storage] }))"""
+
+
+def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
+    """Fixed point, halves, numbers across bytes, packed integers; small floats by SwiftShader, which cuts them off."""
+    given = {name: checks.checks(Codec(ENCODINGS["octahedral"], STORAGES[name])) for name in programs.USUAL}
+    laboratory.ask(STORED, given)
+    laboratory.start()
+    rows = {row["storage"]: row for row in laboratory.finish()}
+    assert set(rows) == set(programs.USUAL)
+    small = rows.pop("r11g11b10f")
+    for row in rows.values():
+        assert row["equal"] == row["normals"] and row["difference"] == "none", (row["storage"], row["difference"])
+    targets = {name: row["target"] for name, row in rows.items() if name != "rg16"}
+    assert targets == {"rgba8": "RGBA8", "rgb10a2": "RGB10_A2", "rg8": "RG8", "rg16f": "RG16F", "rgb8_12_12": "RGBA8"}
+    assert rows["rg16"]["target"] in ("RG16", "R32UI")
+    assert 0.2 < small["equal"] / small["normals"] < 0.4 and small["one_step"] > 0.4 * small["normals"]
+    assert re.match(r"x differs for \d+ normals, by 1 step; y differs for \d+ normals, by 1 step;", small["difference"])
+    assert small["mean_deg"] > 1.5 * small["run_mean_deg"]
+
+
 def test_a_device_is_known_by_what_it_does(laboratory):
     """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
     laboratory.only("xyz")
@@ -101,6 +124,27 @@ def test_a_device_is_known_by_what_it_does(laboratory):
     assert facts["resolves RGBA8"] == "the mean of the codes, at most 0.5 steps from it"
     assert facts["highp mantissa bits"] == 23 and facts["mediump mantissa bits"] >= 10
     assert "RGBA16F stores NaN" in facts["NaN"] and facts["subnormal halves"] == "kept"
+
+
+WITHOUT_FLOATS = """{
+  const own = WebGL2RenderingContext.prototype.getExtension;
+  WebGL2RenderingContext.prototype.getExtension = function (name) {
+    return name.includes("color_buffer") ? null : own.call(this, name);
+  };
+}"""
+
+
+def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
+    """Angles come back as bits of integers, which every device renders to."""
+    opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
+    opened.only("octahedral")
+    opened.start()
+    (row,) = opened.finish()
+    facts = opened.ask("live.measuring.facts")
+    opened.context.close()
+    assert row["equal"] == row["normals"] and row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9)
+    assert facts["renders RGBA16F"] == facts["renders RGBA32F"] == "no" and facts["renders RGBA8"] == "yes"
+    assert facts["subnormal halves"] == "RGBA16F cannot be rendered to"
 
 
 def test_an_altered_constant_is_found_and_named(laboratory):

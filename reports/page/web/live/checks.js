@@ -261,7 +261,7 @@ class Checks {
 
 // What a comparison found, in words. `n` are the normals, four numbers each.
 function saysDifference(found, n) {
-  if (!found.further && !found.oneStep) return "all codes are equal, bit for bit";
+  if (!found.further && !found.oneStep) return "none";
   const said = found.numbers.map(({ normals, most }, c) => normals && `${"xyzw"[c]} differs for ${normals} normals, by ${most === 1 ? "1 step" : `up to ${most} steps`}`);
   if (found.untold) {
     const numbers = found.checked.map((c) => "xyzw"[c]).join(", ");

@@ -2,17 +2,18 @@
 
 // "Measure it": every codec of the run on this device, in slices that leave the page alive.
 
+// Names of columns, what they say, and whether they hold numbers.
 const COLUMNS = [
   ["codec", "The encoding and its storage."],
   ["target", "The WebGL format that was rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
-  ["equal", "How many of the codes are the run's, bit for bit, in per cent."],
-  ["one step", "Codes with one number one step away from the run's."],
-  ["further", "Codes that differ by more, and those of groups whose differences a checksum does not tell apart."],
-  ["mean", "The mean angle between normals and what this device decodes, in degrees."],
-  ["run", "The same angle of the run's own codes."],
-  ["max", "The largest angle on this device, in degrees."],
-  ["encode", "Milliseconds to encode a megapixel, less a pass that only reads and writes."],
-  ["decode", "Milliseconds to decode a megapixel, less a pass that only reads and writes."],
+  ["equal", "How many of the codes are the run's, bit for bit, in per cent.", true],
+  ["one step", "Codes with one number one step away from the run's.", true],
+  ["further", "Codes that differ by more, and those of groups whose differences a checksum does not tell apart.", true],
+  ["mean", "The mean angle between normals and what this device decodes, in degrees.", true],
+  ["run", "The same angle of the run's own codes.", true],
+  ["max", "The largest angle on this device, in degrees.", true],
+  ["encode", "Milliseconds to encode a megapixel, less a pass that only reads and writes.", true],
+  ["decode", "Milliseconds to decode a megapixel, less a pass that only reads and writes.", true],
   ["difference", "Which numbers of which normals differ."],
 ];
 
@@ -93,7 +94,7 @@ class Measuring {
       this.inputs?.release();
       this.inputs = null;
       this.setBusy(false);
-      this.show();
+      if (this.rows.length) keepDevice(this.keeping, this);
     }
   }
 
@@ -122,8 +123,7 @@ class Measuring {
       this.say(`${at + 1} of ${codecs.length}, ${nameOf(codec)}`);
       await paused();
       this.check();
-      this.rows.push(await this.surviving(() => this.measured(codec)));
-      this.show();
+      this.add(await this.surviving(() => this.measured(codec)));
     }
     this.progress.value = codecs.length;
   }
@@ -191,10 +191,11 @@ class Measuring {
     row.timer = timer.says;
   }
 
-  show() {
-    if (!this.rows.length) return;
-    this.results.replaceChildren(sheetOf("This device's codes against the run's", COLUMNS, this.rows.map(cellsOfRow), "measured-codes"));
-    if (!this.isBusy) keepDevice(this.keeping, this);
+  // A row more, without a new table: readers may have scrolled and sorted this one.
+  add(row) {
+    this.rows.push(row);
+    if (this.rows.length === 1) this.results.replaceChildren(sheetOf("This device's codes against the run's", COLUMNS, [], "measured-codes"));
+    this.results.querySelector("tbody").append(lineOf(COLUMNS, cellsOfRow(row)));
   }
 
   showFacts() {
@@ -217,20 +218,21 @@ function cellsOfRow(row) {
   return { codec: nameOf(row), isWhole: row.equal === row.normals, cells: [nameOf(row), row.target, ...figures, ...angles, ms(row.encode_ms), ms(row.decode_ms), row.difference] };
 }
 
+function lineOf(columns, { codec, isWhole, cells }) {
+  const style = (at) => (columns[at][2] ? "n" : at === cells.length - 1 ? "long" : "");
+  const made = cells.map((text, at) => (at ? element("td", { class: style(at) }, String(text)) : element("th", { scope: "row" }, text)));
+  return element("tr", { ...(codec && { "data-codec": codec }), class: isWhole ? "" : "differs" }, ...made);
+}
+
 // A table as the page's others are: sorted by its headers, filtered by none.
 function sheetOf(title, columns, rows, id) {
-  const isNumber = (at) => rows.length > 0 && rows.every(({ cells }) => cells[at] === "" || Number.isFinite(Number(cells[at])));
-  const head = columns.map(([name, says], at) => {
+  const head = columns.map(([name, says, isNumber]) => {
     const button = element("button", { type: "button", title: says }, name);
-    const header = element("th", { scope: "col", "aria-sort": "none", class: isNumber(at) ? "n" : "" }, button);
+    const header = element("th", { scope: "col", "aria-sort": "none", class: isNumber ? "n" : "" }, button);
     button.addEventListener("click", () => sortBy(header));
     return header;
   });
-  const body = rows.map(({ codec, isWhole, cells }) => {
-    const made = cells.map((text, at) => element(at ? "td" : "th", at ? { class: isNumber(at) ? "n" : at === cells.length - 1 ? "long" : "" } : { scope: "row" }, String(text)));
-    return element("tr", { ...(codec && { "data-codec": codec }), class: isWhole ? "" : "differs" }, ...made);
-  });
-  const caption = element("caption", { id: `${id}-caption` }, element("span", {}, title));
+  const caption = element("caption", { id: `${id}-caption` }, element("span", {}, title)), body = rows.map((row) => lineOf(columns, row));
   const table = element("table", {}, caption, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body));
   const says = columns.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)]);
   const columnsSay = element("details", { class: "columns" }, element("summary", {}, "What the columns say"), element("dl", {}, ...says));
