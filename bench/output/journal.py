@@ -57,7 +57,7 @@ class Journal:
 
     def replace(self, lines: Sequence[Line]) -> None:
         """Put other lines in place of all there are, at once or not at all. Raises UsageError."""
-        data = b"".join(json.dumps(line).encode() + b"\n" for line in lines)
+        data = data_of(lines)
         partial = self.path.with_name(f".{self.path.name}.{os.getpid()}.partial")
         try:
             file = partial.open("w+b", buffering=0)
@@ -77,6 +77,11 @@ class Journal:
     def close(self) -> None:
         """Let others write it."""
         self._file.close()
+
+
+def data_of(lines: Sequence[Line]) -> bytes:
+    """Lines as a journal holds them."""
+    return b"".join(json.dumps(line).encode() + b"\n" for line in lines)
 
 
 @contextmanager
