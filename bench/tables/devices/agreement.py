@@ -54,7 +54,15 @@ def sentences(rows: Sequence[Row]) -> list[str]:
     whole = [name for name in parts if name not in off]
     first = [_whole(whole, [row for name in whole for row in parts[name]])] if whole else []
     worst = sorted(off, key=lambda name: min(row["same_percent"] for row in off[name]))
-    return [*first, *(f"{name} {difference(off[name])}." for name in worst)]
+    made = [*first, *(f"{name} {difference(off[name])}." for name in worst)]
+    return [*made, *_other_runs(rows)]
+
+
+def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
+    """That devices were compared with codes of several versions, which may differ themselves."""
+    versions = len({row.get("sources") for row in rows})
+    if versions > 1:
+        yield f"The pages that were measured on came from {versions} versions of the program, whose codes may differ."
 
 
 def _whole(names: Sequence[str], rows: Sequence[Row]) -> str:
