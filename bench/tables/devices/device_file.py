@@ -257,10 +257,10 @@ def _wrong(error: ValidationError) -> str:
     where, context = ", ".join(names), first.get("ctx", {})
     if first["type"] == "missing":
         return f"{where} is missing"
-    if first["type"] in ("too_long", "too_short"):
-        actual = "more" if context["actual_length"] is None else context["actual_length"]
-        limit = f"at most {context['max_length']}" if "max_length" in context else f"at least {context['min_length']}"
-        return f"{where}: it has {actual} entries; {limit} are read"
+    if first["type"] == "too_long":
+        return f"{where}: it has more than {context['max_length']} entries"
+    if first["type"] == "too_short":
+        return f"{where}: it has no entries"
     if "error" in context and isinstance(first["input"], dict):
         return ": ".join(filter(None, (where, str(context["error"]))))
     said = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)
