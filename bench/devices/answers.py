@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -24,15 +24,28 @@ QUESTION = ("storage", "target", "rounding")
 MANY = 1 << 16
 
 
+def is_timed(rows: Sequence[Row]) -> bool:
+    """Whether a device has times, of any codec."""
+    return any(time_of(row) is not None for row in rows)
+
+
 class Instructions:
-    """Instructions of the catalogue's encodings, counted when they are first asked for: that takes seconds."""
+    """Instructions of the encodings of devices without times, counted when they are first asked for.
+
+    Args:
+        rows: of all devices, each device's by itself.
+    """
+
+    def __init__(self, rows: Iterable[Sequence[Row]]):
+        named = (row["encoding"] for part in rows if not is_timed(part) for row in part)
+        self._encodings = [ENCODINGS[name] for name in dict.fromkeys(named) if name in ENCODINGS]
 
     @cached_property
     def _costs(self) -> Any:
-        # It imports JAX and the compilers, which a device with times does without.
+        # It imports JAX and calls compilers, which takes seconds.
         from ..tables.pick.measure import Costs
 
-        return Costs(ENCODINGS.values(), self.family)
+        return Costs(self._encodings, self.family)
 
     @property
     def family(self) -> str:
@@ -51,12 +64,12 @@ def answers(rows: Sequence[Row], instructions: Instructions) -> Iterator[Sheet]:
         rows: the device's, of the table `devices`.
     """
     # One unit for all: instructions do not compare with milliseconds.
-    is_timed = any(time_of(row) is not None for row in rows)
+    has_times = is_timed(rows)
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(tuple(row[name] for name in QUESTION), []).append(row)
     for question in sorted(groups, key=lambda one: (_bytes(one[0]), one)):
-        asked = [_asked(row, None if is_timed else instructions.of(row["encoding"])) for row in groups[question]]
+        asked = [_asked(row, None if has_times else instructions.of(row["encoding"])) for row in groups[question]]
         yield _sheet(question, answered(asked), instructions.family)
 
 

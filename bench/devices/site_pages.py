@@ -64,10 +64,11 @@ class Entry:
 
 def pages(devices: Sequence[Device]) -> dict[str, str]:
     """The pages by their paths in the site's folder."""
-    instructions, paths = Instructions(), _paths(one.called for one in devices)
+    rows, paths = [codec_rows(one) for one in devices], _paths(one.called for one in devices)
+    instructions = Instructions(rows)
     entries = [
-        Entry(d, path, rows := codec_rows(d), list(answers(rows, instructions)))
-        for d, path in zip(devices, paths, strict=True)
+        Entry(one, path, own, list(answers(own, instructions)))
+        for one, path, own in zip(devices, paths, rows, strict=True)
     ]
     made = {entry.path: device_html(_device_page(entry)) for entry in entries}
     return made | {INDEX: _index(entries)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ....reports.page.codec_key import CodecKey
 from ..table import Row, Sheet
 from .reading import called
 
@@ -31,7 +32,7 @@ def differs(row: Row) -> bool:
 
 def codec_name(row: Row) -> str:
     """A codec as sentences call it; the usual rounding is not said."""
-    return " ".join(str(row[name]) for name in ("encoding", "storage"))
+    return CodecKey.of(row).label
 
 
 def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:

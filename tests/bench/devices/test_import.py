@@ -176,6 +176,27 @@ def test_gates_hold_devices(run, tmp_path):
     assert status == 1 and len(failing) == 8 and all("rgb10a2" in name for name in failing), err
 
 
+def test_a_test_holds_devices(pytester):
+    """By the marker, with a file beside the test."""
+    made.write(pytester.path / "a.json")
+    limits = 'further="at most 0", same_percent="at least 99.9"'
+    marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
+    pytester.makepyfile(test_it=f"import pytest\n{marked}")
+    pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:hypothesispytest").assert_outcomes(passed=1)
+
+
+def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
+    from normalbench.bench.tables.devices.work import timed
+
+    rows = []
+    for name, ms in (("A", 0.05), ("B", 0.01), ("C", 0.0)):
+        about = {"device": name, "browser": "Chromium 156"}
+        rows += [about | row for row in made.codec_rows(ms_per_bit=ms)]
+    found = timed([*rows, rows[0] | {"encoding": "below", "encode_ms": -1.0, "decode_ms": 0.5}])
+    assert len(found) == 70 and {row["device"] for row in found} == {"A, Chromium 156", "B, Chromium 156"}
+    assert found[0]["codec"] == "xyz rgba8" and found[-1]["codec"] == "octahedral_precise rg16"
+
+
 def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)
