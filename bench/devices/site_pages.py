@@ -155,7 +155,7 @@ def _codec(rows: Sequence[Row]) -> Row:
 
 def _taken(entries: Sequence[Entry]) -> Searched:
     """The code to take on each device, with a column for each storage."""
-    titles = dict.fromkeys(sheet.keys["storage"] for entry in entries for sheet in entry.answers)
+    titles = dict.fromkeys(_column(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_taken_on(e)} for e in entries]
     intro = "The answer of pick for each storage: the code with the smallest mean angle on the device."
     words, links = [entry.words for entry in entries], [entry.path for entry in entries]
@@ -163,8 +163,13 @@ def _taken(entries: Sequence[Entry]) -> Searched:
     return Searched("take", "What to take", intro, shown, words, links)
 
 
+def _column(sheet: Sheet) -> str:
+    """What the column of a question's storage is called; a storage of a reader's own may be called "device"."""
+    return f"in {sheet.keys['storage']}"
+
+
 def _taken_on(entry: Entry) -> Mapping[str, Any]:
     found: dict[str, Any] = {}
     for sheet in entry.answers:
-        found.setdefault(sheet.keys["storage"], sheet.keys["take"])
+        found.setdefault(_column(sheet), sheet.keys["take"])
     return found

@@ -44,12 +44,20 @@ class Done:
     def tables(self) -> dict[str, list[Row]]:
         """The rows of each table, by this version's names. A row that was measured again replaces the older one."""
         found: dict[str, list[Row]] = {}
-        for step in self.steps:
+        last: dict[tuple[str, str], int] = {}
+        made: list[tuple[int, str, str, Row]] = []
+        for at, step in enumerate(self.steps):
             table = table_of_run(step["table"])
-            rows = found.setdefault(table.name if table else step["table"], [])
-            made = [_renamed(table, row) for row in step["rows"]]
-            new = {_identity(table, row) for row in made} if table else set()
-            rows[:] = [row for row in rows if not new or _identity(table, row) not in new] + made
+            name = table.name if table else step["table"]
+            found.setdefault(name, [])
+            for row in (_renamed(table, row) for row in step["rows"]):
+                # Nobody knows which rows of a table of another version are of the same.
+                identity = _identity(table, row) if table else str(at)
+                last[name, identity] = at
+                made.append((at, name, identity, row))
+        for at, name, identity, row in made:
+            if last[name, identity] == at:
+                found[name].append(row)
         return found
 
     @property

@@ -23,8 +23,8 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
 def side_by_side(rows: Sequence[Row]) -> list[Row]:
     """A row for each fact, with a column for each device; the facts that devices differ in come first."""
     found = {(row["name"], device_of(row)): row["value"] for row in rows}
-    names = dict.fromkeys(row["name"] for row in rows)
-    made = [{"fact": name, **{device: found.get((name, device)) for device in by_device(rows)}} for name in names]
+    names, devices = dict.fromkeys(row["name"] for row in rows), list(by_device(rows))
+    made = [{"fact": name, **{device: found.get((name, device)) for device in devices}} for name in names]
     return sorted(made, key=lambda row: not _is_told_apart(row))
 
 

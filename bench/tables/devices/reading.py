@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...output.errors import UsageError, check_comma, leave_out, names_a_folder
+from ...output.errors import UsageError, check_comma, names_a_folder, tell
 from ..table import Row, Step
 from .device_file import CodecRow, DeviceFile, Read, read_device_file
 from .names import browser_name, told_apart
@@ -77,19 +77,15 @@ def checked_number(paths: list[Path]) -> list[Path]:
     return paths
 
 
-def devices(found: Iterable[Read], leave: Callable[[str], None] = leave_out) -> list[Device]:
-    """The devices of files: of one GPU in one browser the newest file alone.
-
-    Args:
-        leave: is told a line for each file that an other one replaces.
-    """
+def devices(found: Iterable[Read]) -> list[Device]:
+    """The devices of files: of one GPU in one browser the newest file alone; the others are named on standard error."""
     newest: dict[tuple[str, str], Read] = {}
     for read in found:
         other = newest.setdefault(read.file.identity, read)
         if other is not read:
             kept, dropped = (read, other) if read.file.made > other.file.made else (other, read)
             newest[read.file.identity] = kept
-            leave(f"{dropped.path}: {kept.path} is of the same device and browser, and not older")
+            tell(f"left out: {dropped.path}: {kept.path} is of the same device and browser, and not older")
     return named([read.file for read in newest.values()])
 
 

@@ -235,3 +235,21 @@ def test_a_killed_import_keeps_all_or_nothing(tmp_path, folder):
         done = read_run(folder)
         assert done.finished and not done.damage and len(done.tables["quality"]) == 1, at
         assert len(done.tables.get("devices", ())) in (0, 35), at
+
+
+def test_an_older_file_in_a_folder_does_not_stop_a_gate(run, tmp_path):
+    """The newer one is held; nothing that was asked for is missing."""
+    made.write(tmp_path / "files/a.json")
+    made.write(tmp_path / "files/b.json", made="2026-11-24T15:00:00Z")
+    gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/files"\nfurther = "at most 0"\n'
+    (tmp_path / "gates.toml").write_text(gate)
+    status, _, err = run("check", str(tmp_path / "gates.toml"))
+    assert status == 0 and "left out: " in err and "a.json" in err, err
+
+
+def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder):
+    facts = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(facts | {"finished": False}))
+    assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
+    done = read_run(folder)
+    assert not done.finished and len(done.tables["devices"]) == 35
