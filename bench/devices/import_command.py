@@ -43,6 +43,8 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
     names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
     for one in found:
         called = replace(one, name=names[one.file.renderer]).called
+        if one in new and run.sources not in ("", one.file.sources):
+            tell(f"{called}: measured on the page of a run of other sources, whose codes may differ from this run's")
         say(f"{called}: {_said(one.file, there.get(one.file.identity))}\n")
     say(f"The page with them: normalbench report {folder}\n")
     return 0

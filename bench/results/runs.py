@@ -195,10 +195,12 @@ class Amended:
 
     Attributes:
         lines: the finished steps, each `table`, `key` and `rows`.
+        sources: the fingerprint of what computed it; empty if it does not say.
     """
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self._folder, self._facts, self._journal = folder, facts, kept
+        self.sources = str(facts.get("sources") or "")
         _check_steps(folder, kept.lines)
         self.lines: Sequence[Row] = kept.lines
 

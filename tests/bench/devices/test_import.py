@@ -51,7 +51,8 @@ def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
 
 def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):
     """The run's own rows stay, the run stays finished, and the same file again changes no byte."""
-    first, command = made.write(tmp_path / "a.json"), ("import", "-o", str(folder))
+    sources = json.loads((folder / "run.json").read_text())["sources"]
+    first, command = made.write(tmp_path / "a.json", sources=sources), ("import", "-o", str(folder))
     status, out, err = run(*command, str(first))
     assert (status, err) == (0, "") and "SwiftShader, Chromium 156: added 35 codecs, 4 facts" in out
     assert f"normalbench report {folder}" in out
@@ -70,6 +71,13 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
     changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
     assert "with other figures; the run's stay" in run(*command, str(changed))[1] and content_of(folder) == before
+
+
+def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
+    path = made.write(tmp_path / "a.json", sources="another")
+    for said in ("SwiftShader, Chromium 156: measured on the page of a run of other sources", ""):
+        status, _, err = run("import", str(path), "-o", str(folder))
+        assert status == 0 and said in err and err.count("\n") == bool(said), err
 
 
 def test_gpus_that_come_to_share_a_short_name_are_told_apart_whichever_is_first(run, tmp_path, folder):
