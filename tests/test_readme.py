@@ -11,6 +11,7 @@ import tomllib
 from dataclasses import fields
 from pathlib import Path
 
+import devices
 import numpy as np
 import pytest
 from manual import PAGES, README, ROOT, table
@@ -68,6 +69,13 @@ def users_files(folder: Path) -> None:
     (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
     np.savetxt(folder / "view.txt", np.eye(4))
     as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
+
+
+def readers_devices(folder: Path) -> None:
+    """Files of devices, as the commands name them."""
+    devices.write(folder / "phone.json", renderer=devices.MALI, truncated=("RGB10_A2",))
+    devices.write(folder / "desktop.json", renderer=devices.GEFORCE)
+    devices.write_ten(folder / "contributed")
 
 
 def test_the_readme_is_short():
@@ -158,6 +166,8 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, r
         shutil.copytree(request.getfixturevalue("results")[0], tmp_path / name)
     if re.search(r"\.(glb|exr|png|npy)\b", command):
         users_files(tmp_path)
+    if re.search(r"\b(phone\.json|desktop\.json|contributed)\b", command):
+        readers_devices(tmp_path)
     if words[0] == "python":
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr

@@ -29,6 +29,7 @@ from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from ..workers.words import check_place
 from .commands import OnOption, add_tables, command_with
+from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .typed import added_up, check_begins_with_command
 
@@ -269,6 +270,9 @@ def report(
     from ..suite.report import report_command
 
     report_command(runs, markdown, pictures is PicturePlace.beside, output)
+
+
+add_devices(app)
 
 
 def _say(message: str) -> None:

@@ -57,8 +57,9 @@ class Journal:
 
     def replace(self, lines: Sequence[Line]) -> None:
         """Put other lines in place of all there are, at once or not at all. Raises UsageError."""
-        data = b"".join(json.dumps(line).encode() + b"\n" for line in lines)
+        data = data_of(lines)
         partial = self.path.with_name(f".{self.path.name}.{os.getpid()}.partial")
+        file = None
         try:
             file = partial.open("w+b", buffering=0)
             # Another process must not take the new file for one that nobody writes.
@@ -68,6 +69,8 @@ class Journal:
             os.fsync(file.fileno())
             partial.replace(self.path)
         except OSError as error:
+            if file:
+                file.close()
             raise UsageError(f"cannot write {self.path}: {error.strerror or error}") from error
         finally:
             partial.unlink(missing_ok=True)
@@ -77,6 +80,11 @@ class Journal:
     def close(self) -> None:
         """Let others write it."""
         self._file.close()
+
+
+def data_of(lines: Sequence[Line]) -> bytes:
+    """Lines as a journal holds them."""
+    return b"".join(json.dumps(line).encode() + b"\n" for line in lines)
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from threading import Lock
 
 from ...encodings.codecs.files import file_json
 from ..output.errors import UsageError
-from ..output.journal import Journal, journal, read_lines
+from ..output.journal import Journal, data_of, journal, read_lines
 from ..output.sources import sources
 from ..output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
@@ -44,12 +44,20 @@ class Done:
     def tables(self) -> dict[str, list[Row]]:
         """The rows of each table, by this version's names. A row that was measured again replaces the older one."""
         found: dict[str, list[Row]] = {}
-        for step in self.steps:
+        last: dict[tuple[str, str], int] = {}
+        made: list[tuple[int, str, str, Row]] = []
+        for at, step in enumerate(self.steps):
             table = table_of_run(step["table"])
-            rows = found.setdefault(table.name if table else step["table"], [])
-            made = [_renamed(table, row) for row in step["rows"]]
-            new = {_identity(table, row) for row in made} if table else set()
-            rows[:] = [row for row in rows if not new or _identity(table, row) not in new] + made
+            name = table.name if table else step["table"]
+            found.setdefault(name, [])
+            for row in (_renamed(table, row) for row in step["rows"]):
+                # Nobody knows which rows of a table of another version are of the same.
+                identity = _identity(table, row) if table else str(at)
+                last[name, identity] = at
+                made.append((at, name, identity, row))
+        for at, name, identity, row in made:
+            if last[name, identity] == at:
+                found[name].append(row)
         return found
 
     @property
@@ -102,9 +110,8 @@ def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
             raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
 
 
-def _seal(folder: Path) -> Row:
+def _seal(data: bytes) -> Row:
     """What a finished run remembers of its rows."""
-    data = (folder / ROWS).read_bytes()
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
@@ -113,8 +120,8 @@ def _damage(folder: Path, facts: Row) -> str:
         return ""
     if not {"lines", "digest"} <= facts.keys():
         return f"{folder / RUN} does not say how many rows the run had when it finished: some may be missing"
-    now = _seal(folder)
-    if now["digest"] == facts["digest"]:
+    now = _seal((folder / ROWS).read_bytes())
+    if now["digest"] in (facts["digest"], facts.get("next", {}).get("digest")):
         return ""
     if now["lines"] != facts["lines"]:
         return f"{folder / ROWS} has {now['lines']} of the {facts['lines']} lines that it had when the run finished"
@@ -174,13 +181,57 @@ class Run:
 
     def finish(self) -> None:
         """Every step has its rows."""
-        self.facts |= {"finished": True, **_seal(self.folder)}
+        self.facts |= {"finished": True, **_seal((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
 
 
 def _write_facts(folder: Path, facts: Row) -> None:
     with whole_file(folder / RUN) as partial:
         partial.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+
+
+class Amended:
+    """A run whose rows may be put in place of others; make it with `amended`.
+
+    Attributes:
+        lines: the finished steps, each `table`, `key` and `rows`.
+        sources: the fingerprint of what computed it; empty if it does not say.
+    """
+
+    def __init__(self, folder: Path, facts: Row, kept: Journal):
+        self._folder, self._facts, self._journal = folder, facts, kept
+        self.sources = str(facts.get("sources") or "")
+        _check_steps(folder, kept.lines)
+        self.lines: Sequence[Row] = kept.lines
+
+    def replace(self, lines: Sequence[Row]) -> None:
+        """Put other steps in place of all there are, at once or not at all. Raises UsageError."""
+        seal = _seal(data_of(lines)) if self._facts.get("finished") else {}
+        # Whoever is killed between two of these leaves a run that is whole: its rows are the old or the next ones.
+        if seal:
+            _write_facts(self._folder, self._facts | {"next": seal})
+        self._journal.replace(lines)
+        self.lines = lines
+        if seal:
+            self._facts = {name: value for name, value in self._facts.items() if name != "next"} | seal
+            _write_facts(self._folder, self._facts)
+
+
+@contextmanager
+def amended(folder: Path) -> Iterator[Amended]:
+    """A run that is there, whatever its sources and its machine, to put other rows into.
+
+    Raises:
+        UsageError: there is none, another process writes it, or its rows were changed after it finished.
+    """
+    # First, because a journal is made where there is none.
+    _facts(folder)
+    check_folder(folder)
+    with journal(folder / ROWS) as kept:
+        facts = _facts(folder)
+        if damage := _damage(folder, facts):
+            raise UsageError(f"{damage}; nothing is added to it")
+        yield Amended(folder, facts, kept)
 
 
 def same_work(facts: Row, others: Row) -> bool:

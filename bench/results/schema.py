@@ -57,6 +57,7 @@ class RunFacts(TypedDict, total=False):
     finished: bool
     lines: int
     digest: str
+    next: dict[str, Scalar]
     before: list[dict[str, JsonValue]]
 
 

@@ -298,10 +298,12 @@ def _asked(facts: Row) -> set[str]:
     """The tables that a run was asked for, at any time."""
     before = facts.get("before")
     requests = [facts.get("request"), *(one.get("request") for one in before or () if isinstance(one, dict))]
-    named = [str(request.get("tables")) for request in requests if isinstance(request, dict)]
-    words = {word.strip() for text in named for word in text.split(",")}
-    found = {table.name for word in words if (table := table_of_run(word))}
-    return found | ({table.name for table in TABLES.values() if table.in_all} if "all" in words else set())
+    found: set[str] = set()
+    for request in (request for request in requests if isinstance(request, dict)):
+        words = {word.strip() for word in str(request.get("tables")).split(",")}
+        found |= {table.name for word in words if (table := table_of_run(word))}
+        found |= {table.name for table in TABLES.values() if "all" in words and table.is_in_all(request)}
+    return found
 
 
 def _subjects(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Subject]:

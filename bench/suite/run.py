@@ -29,11 +29,12 @@ RESULTS = Path("results")
 PAGE = "report.html"
 
 
-def chosen_tables(names: str) -> list[Table]:
-    """The tables that comma-separated names stand for; of "all" those measured unasked. Raises UsageError."""
+def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
+    """The tables that comma-separated names stand for; of "all" those measured unasked, with the options that were
+    said. Raises UsageError."""
     known = {name: table for table in TABLES.values() for name in (table.name, *table.old_names)}
     if names.strip() == "all":
-        return [table for table in TABLES.values() if table.in_all]
+        return [table for table in TABLES.values() if table.is_in_all(said)]
     return list(dict.fromkeys(pick("table", names, known)))
 
 
@@ -59,7 +60,7 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     """
     made: list[Asked] = []
     reasons: dict[str, list[str]] = {}
-    chosen = chosen_tables(request.tables)
+    chosen = chosen_tables(request.tables, given(request))
     _check_taken(chosen, given(request))
     for table in chosen:
         try:
@@ -230,9 +231,7 @@ def _complete(run: Run, shown: Shown) -> None:
     """Tables for others, the pictures and the page; then the run is finished."""
     from .report import write_report
 
-    for name, rows in read_run(run.folder).tables.items():
-        table = TABLES.get(name)
-        _write_table(run.folder / name, table.work.finish(rows) if table else rows)
+    write_tables(run.folder, read_run(run.folder).tables)
     for ask in shown.asks:
         if ask.table.name not in shown.written:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
@@ -241,6 +240,13 @@ def _complete(run: Run, shown: Shown) -> None:
     page = write_report(run.folder, whole, run.folder / PAGE)
     run.finish()
     say(f"All of it on one page: {page}\n")
+
+
+def write_tables(folder: Path, found: Mapping[str, list[Row]]) -> None:
+    """The rows of tables, by name, as files for others. Raises UsageError."""
+    for name, rows in found.items():
+        table = TABLES.get(name)
+        _write_table(folder / name, table.work.finish(rows) if table else rows)
 
 
 def _write_table(path: Path, rows: list[Row]) -> None:

@@ -26,6 +26,8 @@ FOLDERS = (
     "tune",
     "throughput",
     "published",
+    "devices",
+    "device_facts",
 )
 TABLES: Mapping[str, Table] = MappingProxyType(
     {table.name: table for table in (import_module(f".{folder}.table", __package__).TABLE for folder in FOLDERS)}

@@ -243,6 +243,7 @@ class Table:
         by: a column; for people rows that differ in it are tables of their own.
         partial: whether a row that says why figures are missing may have others.
         in_all: whether `run` measures it without being asked to.
+        asked_by: an option; where it is given, `run` measures the table without being asked to.
         is_measured_beside: whether `run` measures it in its second process: what needs JAX or compilers rather than
             the GL device.
         old_names: what older runs call the table.
@@ -265,10 +266,15 @@ class Table:
     by: str = ""
     partial: bool = False
     in_all: bool = True
+    asked_by: str = ""
     is_measured_beside: bool = False
     old_names: tuple[str, ...] = ()
     renamed: Mapping[str, str] = field(default_factory=dict)
     compilers: tuple[str, ...] = ()
+
+    def is_in_all(self, said: Mapping[str, Any]) -> bool:
+        """Whether `run` with these options, by name, measures it where no table is named."""
+        return self.in_all or said.get(self.asked_by) is not None
 
     @property
     def work(self) -> Work:

@@ -7,6 +7,7 @@ import hashlib
 import json
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -208,6 +209,7 @@ def drawings(found: Found) -> list[Drawing]:
     return [drawing for section in found.sections for drawing in section.drawings] + spheres.drawings(found.maps)
 
 
+@cache
 def template(name: str) -> Any:
     """A template of the folder web."""
     import jinja2

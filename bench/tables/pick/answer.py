@@ -40,13 +40,18 @@ def image_db(row: Row) -> float | None:
     return min(found, default=None)
 
 
+def cost(row: Row) -> float | None:
+    """What a code costs: a device's milliseconds where the row has a place for them, else instructions."""
+    return row["ms"] if "ms" in row else row["instructions"]
+
+
 # By aim: a row's figure, less is better; None where it is not known.
 AIMS: Mapping[str, Any] = MappingProxyType(
     {
         "angle": lambda row: row["angle_mean_deg"],
         "worst": lambda row: largest(row) if row["aim"] == "worst" else row["angle_max_deg"],
         "image": lambda row: None if (found := image_db(row)) is None else -found,
-        "cost": lambda row: row["instructions"],
+        "cost": cost,
     }
 )
 # What decides where the aim does not tell two codes apart.

@@ -21,7 +21,7 @@ def sentences(group: Sequence[Row]) -> list[str]:
     places = {place: row for row in group for place in (row["place"] or "").split(", ") if place}
     where = f"{group[0]['storage']}, on {group[0]['normals']}"
     if BEST not in places:
-        return [f"{where}: no code qualifies{_constraints(group[0])}.", *_left_out(group)]
+        return [f"{where}: no code qualifies{_constraints(group[0])}.", *left_out(group)]
     best = places[BEST]
     made = [f"{where}: take {best['encoding']}.", f"{_figures(best)} {_price(best)}{_loops(best)}{_reservation(best)}"]
     if RUNNER_UP in places:
@@ -30,7 +30,7 @@ def sentences(group: Sequence[Row]) -> list[str]:
     made += _cheaper(places, best)
     made += _picture(places, best)
     made += [_against(row, best) for row in group if row["against"] and row is not best]
-    return [*made, *_left_out(group)]
+    return [*made, *left_out(group)]
 
 
 def _constraints(row: Row) -> str:
@@ -79,7 +79,7 @@ def _loops(row: Row) -> str:
 def _next(row: Row, best: Row) -> str:
     aim = best["aim"]
     one, other = AIMS[aim](row), AIMS[aim](best)
-    by = f" ({_more(one / other)})" if aim in ("angle", "worst") and other else ""
+    by = f" ({more(one / other)})" if aim in ("angle", "worst") and other else ""
     count = "" if row["instructions"] is None else f", {row['instructions']:g} instructions"
     if aim == "cost":
         return f"{_aimed(row, aim)} instructions"
@@ -92,7 +92,8 @@ def _largest(row: Row) -> str:
     return f"largest {'met ' if row['angle_sup_deg'] is None else ''}{degrees(largest(row))}"
 
 
-def _more(ratio: float) -> str:
+def more(ratio: float) -> str:
+    """How much larger a figure is than another one."""
     percent = f"{100 * (ratio - 1):.1f}"
     return "equal" if float(percent) == 0 else f"{percent} % more"
 
@@ -145,7 +146,8 @@ def _against(row: Row, best: Row) -> str:
     return f"{said}. {best['encoding']} beats it in every figure." if beats(best, row) else f"{said}."
 
 
-def _left_out(group: Sequence[Row]) -> Iterator[str]:
+def left_out(group: Sequence[Row]) -> Iterator[str]:
+    """Which codes do not qualify, and why."""
     reasons: dict[str, list[str]] = {}
     for row in group:
         if row["left_out"] and not row["against"]:

@@ -77,6 +77,15 @@ ANSWERS = {
         ],
         "test_plugin": ["test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped"],
     },
+    "damaged, hostile or enormous device file: its place in one line, nothing is added, markup stays text": {
+        "test_device_file": [
+            "test_a_bad_file_is_one_line_with_its_name_and_the_place",
+            "test_an_enormous_file_is_refused_before_it_is_read",
+            "test_whatever_is_damaged_is_read_or_refused_in_one_line",
+        ],
+        "test_import": ["test_one_bad_file_of_several_leaves_the_run_as_it_was"],
+        "test_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
+    },
     "interrupted run, full disk: finished rows are kept, running again resumes": {
         "test_runs": ["test_a_run_killed_again_and_again_ends_as_one_that_was_not"],
         "test_cli": ["test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table"],

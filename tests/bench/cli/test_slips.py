@@ -306,7 +306,9 @@ def test_version_and_short_help(run):
     assert status == 0 and "quality" in out
 
 
-@pytest.mark.parametrize("name", [*TABLES, "run", "check", "compare", "report", "list", "doctor", "columns"])
+@pytest.mark.parametrize(
+    "name", [*TABLES, "run", "check", "compare", "report", "list", "doctor", "columns", "import", "site"]
+)
 def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     monkeypatch.setenv("COLUMNS", "80")
     status, out, _ = run(name, "-h")

@@ -1,0 +1,1 @@
+"""Files of readers' devices: into a run, and as a site."""

@@ -1,0 +1,116 @@
+"""What `import` does: adds device files to a run, all of them or none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..output.errors import UsageError, tell
+from ..output.writing import say
+from ..results.plain import plain
+from ..results.runs import amended, read_run
+from ..suite.run import write_tables
+from ..tables.device_facts.table import TABLE as FACTS
+from ..tables.devices.agreement import many
+from ..tables.devices.device_file import DeviceFile, Read, read_device_file
+from ..tables.devices.names import told_apart
+from ..tables.devices.reading import Device, checked_number, codec_rows, devices, fact_rows
+from ..tables.devices.table import TABLE as DEVICES
+from ..tables.table import Row
+
+OURS = (DEVICES.name, FACTS.name)
+# A GPU as a browser names it, and that browser.
+Identity = tuple[Any, Any]
+
+
+def import_command(files: Sequence[Path], folder: Path | None) -> int:
+    """Add device files to a run. Of one GPU in one browser the newest file stays.
+
+    Raises:
+        UsageError: a file is not a device's, the folder is not a run's, or it cannot be written. Nothing is added then.
+    """
+    if folder is None:
+        raise UsageError("name the run's folder with -o RUN")
+    found = devices(read_all(checked_number(list(files))))
+    with amended(folder) as run:
+        there = {_identity(line): line["key"] for line in run.lines if _is_ours(line)}
+        new = [one for one in found if _is_newer(one.file, there.get(one.file.identity))]
+        if new:
+            run.replace(_with(run.lines, new))
+            write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name in OURS})
+    names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
+    for one in found:
+        called = replace(one, name=names[one.file.renderer]).called
+        if one in new and run.sources not in ("", one.file.sources):
+            tell(f"{called}: measured on the page of a run of other sources, whose codes may differ from this run's")
+        say(f"{called}: {_said(one.file, there.get(one.file.identity))}\n")
+    say(f"The page with them: normalbench report {folder}\n")
+    return 0
+
+
+def read_all(paths: Sequence[Path]) -> list[Read]:
+    """Device files. Raises UsageError where one is wrong, once every one that is wrong was told."""
+    found, wrong = list[Read](), list[UsageError]()
+    for path in paths:
+        try:
+            found.append(read_device_file(path))
+        except UsageError as error:
+            wrong.append(error)
+    for error in wrong[:-1]:
+        tell(str(error))
+    if wrong:
+        raise wrong[-1]
+    return found
+
+
+def _is_ours(line: Row) -> bool:
+    return line["table"] in OURS and "renderer" in line["key"]
+
+
+def _identity(line: Row) -> Identity:
+    return line["key"]["renderer"], line["key"].get("browser")
+
+
+def _is_newer(file: DeviceFile, there: Mapping[str, Any] | None) -> bool:
+    """Whether a file is newer than what a run has of its device and browser, if anything."""
+    return there is None or file.made > str(there.get("made"))
+
+
+def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
+    """What became of a file, against what the run had of its device and browser."""
+    what = f"{many(len(file.codecs), 'codec')}, {many(len(file.facts), 'fact')}"
+    if there is None:
+        return f"added {what}"
+    if _is_newer(file, there):
+        return f"added {what}, in place of those of {there.get('made')}"
+    if file.made < str(there.get("made")):
+        return f"nothing added; the run has a newer file, of {there.get('made')}"
+    other = "" if file.digest == there.get("digest") else ", with other figures; the run's stay"
+    return f"nothing added; the run has the file of {file.made} already{other}"
+
+
+def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
+    """The steps of a run with those of new devices, in place of older ones of the same devices and browsers."""
+    replaced = {one.file.identity for one in new}
+    kept = [line for line in lines if not (_is_ours(line) and _identity(line) in replaced)]
+    return list(_renamed([*kept, *(line for one in new for line in _lines(one))]))
+
+
+def _lines(one: Device) -> Iterator[Row]:
+    for table, rows in ((DEVICES, codec_rows(one)), (FACTS, fact_rows(one))):
+        made = plain([table.empty() | row for row in rows])
+        if made:
+            yield {"table": table.name, "key": one.key, "rows": made}
+
+
+def _renamed(lines: Sequence[Row]) -> Iterator[Row]:
+    """Steps whose devices are told apart: two GPUs may come to share a short name only now."""
+    names = told_apart(str(line["key"]["renderer"]) for line in lines if _is_ours(line))
+    for line in lines:
+        if not _is_ours(line):
+            yield line
+            continue
+        device = {"device": names[str(line["key"]["renderer"])]}
+        yield line | {"key": line["key"] | device, "rows": [row | device for row in line["rows"]]}

@@ -1,0 +1,110 @@
+"""Writing a site into a folder: all of it or nothing, and nothing of anybody else's.
+
+A marker file lists what this program wrote there. Files that it lists are replaced, and removed once they no longer
+belong; any other file stays as it is.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from ...encodings.codecs.files import file_json
+from ..output.errors import UsageError
+from ..output.writing import check_folder
+
+MARKER = ".normalbench-site.json"
+# What a site's own files are called; a marker that lists others was not written by this program.
+OWN = re.compile(r"index\.html|devices/[a-z0-9-]+\.html")
+INDEX, DEVICES = "index.html", "devices"
+
+
+def write_site(folder: Path, made: Mapping[str, str]) -> None:
+    """Put the files of a site, text by path, in place of an earlier site's.
+
+    Raises:
+        UsageError: a file of that name is not this program's, the marker is damaged, or it cannot be written; then the
+            folder is as it was.
+    """
+    before = _before(folder)
+    check_folder(folder)
+    for path in made:
+        if path not in before and (folder / path).exists():
+            raise UsageError(f"{folder / path} is not of an earlier site; take it away, or name another folder")
+    try:
+        with _partial(folder) as partial:
+            _write(partial, made, sorted({*before, *made}))
+            _put(partial, folder, made)
+        _clear(folder, set(before) - set(made), made)
+    except OSError as error:
+        raise UsageError(f"cannot write {folder}: {error.strerror or error}") from error
+
+
+def _before(folder: Path) -> list[str]:
+    """What this program wrote there before. Raises UsageError."""
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"{folder} is not a folder; site writes into one")
+    # Behind a link lies somebody else's folder.
+    if any((folder / name).is_symlink() for name in (MARKER, INDEX, DEVICES)):
+        raise UsageError(f"{folder} has a link in the place of a site's files; name another folder")
+    if not (folder / MARKER).exists():
+        return []
+    try:
+        files = file_json(folder / MARKER)["files"]
+        if not all(isinstance(name, str) and OWN.fullmatch(name) for name in files):
+            raise ValueError("it lists what no site has")
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        said = (
+            error if isinstance(error, OSError | ValueError) and not isinstance(error, KeyError) else "files is missing"
+        )
+        raise UsageError(f"{folder / MARKER}: {said}; delete it, or name another folder") from None
+    return files
+
+
+@contextmanager
+def _partial(folder: Path) -> Iterator[Path]:
+    """A folder beside, on the same disk, that is gone afterwards."""
+    folder = folder.resolve()
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
+    try:
+        partial.mkdir()
+        yield partial
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _write(folder: Path, made: Mapping[str, str], listed: list[str]) -> None:
+    for path, text in {**made, MARKER: _marker(listed)}.items():
+        (folder / path).parent.mkdir(exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+
+
+def _marker(files: list[str]) -> str:
+    return json.dumps({"made_by": "normalbench site", "files": files}, indent=1) + "\n"
+
+
+def _put(partial: Path, folder: Path, made: Mapping[str, str]) -> None:
+    """What was written takes its place: at once where there is nothing, else the marker first and the index last."""
+    if not folder.exists() or not any(folder.iterdir()):
+        partial.replace(folder.resolve())
+        return
+    for path in (MARKER, *(path for path in made if path != INDEX), INDEX):
+        (folder / path).parent.mkdir(exist_ok=True)
+        (partial / path).replace(folder / path)
+
+
+def _clear(folder: Path, stale: set[str], made: Mapping[str, str]) -> None:
+    """Take away the files of an earlier site, then what lists them."""
+    for path in stale:
+        (folder / path).unlink(missing_ok=True)
+    if stale:
+        marker = folder / MARKER
+        partial = marker.with_name(f"{MARKER}.partial")
+        partial.write_text(_marker(sorted(made)), encoding="utf-8")
+        partial.replace(marker)

@@ -1,0 +1,175 @@
+"""The pages of a site of devices, from their files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ...reports.page.page import Table, table
+from ...reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
+from ..tables.device_facts.table import TABLE as FACTS
+from ..tables.devices.agreement import (
+    codec_name,
+    codec_of,
+    device_of,
+    difference,
+    differs,
+    fastest,
+    overview,
+    sentences,
+    time_of,
+)
+from ..tables.devices.reading import Device, codec_rows, fact_rows
+from ..tables.devices.table import TABLE as DEVICES
+from ..tables.table import Row, Sheet
+from ..tables.table import Table as BenchTable
+from .answers import Instructions, answers
+
+INDEX, FOLDER = "index.html", "devices"
+LONGEST = 60
+# What a device's page leaves to its heading and its facts.
+OF_DEVICE = ("device", "browser", "made", "program", "sources", "renderer", "vendor")
+# The columns of the index that no table has.
+INDEXED = {
+    "agree": "Codecs of which every code equals the run's.",
+    "differ": "Codecs of which some code does not.",
+    "further": "Codecs of which some code is further than one step from the run's.",
+    "least_same_percent": "The least share of codes that equal the run's, of all codecs. Unit: %.",
+    "differs_most": "The codec with that share.",
+    "fastest": "The codec with the least time to encode and decode.",
+    "fastest_ms": "Milliseconds per megapixel that it takes.",
+    "devices": "How many devices measured the codec.",
+    "differs_on": "The devices that store some other code.",
+    "fastest_on": "The device that takes the least time to encode and decode it.",
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A device with what its page shows."""
+
+    device: Device
+    path: str
+    rows: Sequence[Row]
+    answers: Sequence[Sheet]
+
+    @property
+    def words(self) -> str:
+        """What the index finds the device by, besides its cells."""
+        known = (str(row[name]) for row in self.rows for name in ("encoding", "storage", "target"))
+        return " ".join(dict.fromkeys([*known, self.device.file.renderer, self.device.file.vendor]))
+
+
+def pages(devices: Sequence[Device]) -> dict[str, str]:
+    """The pages by their paths in the site's folder."""
+    rows, paths = [codec_rows(one) for one in devices], _paths(one.called for one in devices)
+    instructions = Instructions(rows)
+    entries = [
+        Entry(one, path, own, list(answers(own, instructions)))
+        for one, path, own in zip(devices, paths, rows, strict=True)
+    ]
+    made = {entry.path: device_html(_device_page(entry)) for entry in entries}
+    return made | {INDEX: _index(entries)}
+
+
+def _paths(names: Iterable[str]) -> Iterator[str]:
+    """For each name a file of its own, of letters that every file system has."""
+    taken: set[str] = set()
+    for name in names:
+        plain = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:LONGEST] or "device"
+        numbered = (plain, *(f"{plain}-{number}" for number in range(2, len(taken) + 2)))
+        path = next(one for one in numbered if one not in taken)
+        taken.add(path)
+        yield f"{FOLDER}/{path}.html"
+
+
+def _device_page(entry: Entry) -> DevicePage:
+    device, file = entry.device, entry.device.file
+    about = {"GPU": file.renderer, "vendor": file.vendor, "browser": file.browser, "saved": file.made}
+    about |= {"normalbench": file.program, "fingerprint of the run": file.sources}
+    known = {name: text for name, text in about.items() if text}
+    codecs = [_without(row, OF_DEVICE) for row in entry.rows]
+    facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
+    tables = [_shown("Every codec", codecs, DEVICES), *([_shown("Facts", facts, FACTS)] if facts else [])]
+    answered = [Answer(sheet.said, _front(sheet)) for sheet in entry.answers]
+    said = f"{device.called} {difference(entry.rows)}."
+    return DevicePage(device.called, entry.path, said, known, answered, tables)
+
+
+def _front(sheet: Sheet) -> Table:
+    """The codes of an answer; none where no code qualifies."""
+    return table(sheet.title, sheet.rows, lambda _: "") if sheet.rows else Table(sheet.title, [], [], "")
+
+
+def _without(row: Row, names: Sequence[str]) -> Row:
+    return {name: value for name, value in row.items() if name not in names}
+
+
+def _shown(title: str, rows: Sequence[Row], of: BenchTable) -> Table:
+    """Rows as a page shows them, with the definitions of their table."""
+
+    def says(name: str) -> str:
+        column = of.column(name)
+        return "" if not column else f"{column.says} Unit: {column.unit}." if column.unit else column.says
+
+    order = [column.name for column in of.columns if column.name in rows[0]]
+    return table(title, [{name: row[name] for name in order} for row in rows], says)
+
+
+def _index(entries: Sequence[Entry]) -> str:
+    rows = [row for entry in entries for row in entry.rows]
+    return index_html(sentences(rows), [_devices(entries), _codecs(rows), _taken(entries)])
+
+
+def _table(title: str, rows: Sequence[Row]) -> Table:
+    return table(title, rows, lambda name: INDEXED.get(name, ""))
+
+
+def _devices(entries: Sequence[Entry]) -> Searched:
+    rows = [{"device": e.device.called} | _without(overview(e.rows)[0], ("device", "browser")) for e in entries]
+    intro = "A row for each GPU and browser. Its name leads to its page."
+    words, links = [entry.words for entry in entries], [entry.path for entry in entries]
+    return Searched("devices", "Devices", intro, _table("Agreement by device", rows), words, links)
+
+
+def _codecs(rows: Sequence[Row]) -> Searched:
+    groups: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        groups.setdefault(codec_of(row), []).append(row)
+    words = [" ".join([*map(device_of, group), group[0]["storage"], group[0]["target"]]) for group in groups.values()]
+    intro = "A row for each codec and target: on which devices its codes differ from the run's."
+    return Searched(
+        "codecs", "Codecs", intro, _table("Agreement by codec", [_codec(g) for g in groups.values()]), words
+    )
+
+
+def _codec(rows: Sequence[Row]) -> Row:
+    first, off, quick = rows[0], [device_of(row) for row in rows if differs(row)], fastest(rows)
+    about = {"codec": codec_name(first), "rounding": first["rounding"], "target": first["target"]}
+    about |= {"devices": len(rows), "agree": len(rows) - len(off), "differs_on": "; ".join(off) or None}
+    about |= {"least_same_percent": min(row["same_percent"] for row in rows)}
+    return about | {"fastest_on": device_of(quick) if quick else None, "fastest_ms": time_of(quick) if quick else None}
+
+
+def _taken(entries: Sequence[Entry]) -> Searched:
+    """The code to take on each device, with a column for each storage."""
+    titles = dict.fromkeys(_column(sheet) for entry in entries for sheet in entry.answers)
+    rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_taken_on(e)} for e in entries]
+    intro = "The answer of pick for each storage: the code with the smallest mean angle on the device."
+    words, links = [entry.words for entry in entries], [entry.path for entry in entries]
+    shown = words_table("The code to take, by device and storage", rows)
+    return Searched("take", "What to take", intro, shown, words, links)
+
+
+def _column(sheet: Sheet) -> str:
+    """What the column of a question's storage is called; a storage of a reader's own may be called "device"."""
+    return f"in {sheet.keys['storage']}"
+
+
+def _taken_on(entry: Entry) -> Mapping[str, Any]:
+    found: dict[str, Any] = {}
+    for sheet in entry.answers:
+        found.setdefault(_column(sheet), sheet.keys["take"])
+    return found

@@ -1,0 +1,1 @@
+"""What readers' devices are and do."""

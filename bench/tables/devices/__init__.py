@@ -1,0 +1,1 @@
+"""What readers' devices make of the codes."""

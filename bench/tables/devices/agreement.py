@@ -1,0 +1,150 @@
+"""Where devices agree with the run's codes, and where not: sentences and tables, from rows alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.page.codec_key import CodecKey
+from ..table import Row, Sheet
+from .reading import called
+
+CODEC = ("encoding", "storage", "rounding", "target")
+SAME = 100.0
+# Devices that a sentence names; the others are counted.
+MOST_NAMED = 4
+
+
+def device_of(row: Row) -> str:
+    """What sentences and columns call a row's device."""
+    return called(row["device"], row["browser"])
+
+
+def codec_of(row: Row) -> tuple[Any, ...]:
+    """A row's codec, with the target that it was rendered to."""
+    return tuple(row[name] for name in CODEC)
+
+
+def differs(row: Row) -> bool:
+    """Whether any of a row's codes is not the run's."""
+    return bool(row["one_step"] or row["further"])
+
+
+def codec_name(row: Row) -> str:
+    """A codec as sentences call it; the usual rounding is not said."""
+    return CodecKey.of(row).label
+
+
+def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Rows by what their device is called."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(device_of(row), []).append(row)
+    return found
+
+
+def many(count: int, what: str) -> str:
+    """A number of things."""
+    return f"{count} {what}" + ("" if count == 1 else "s")
+
+
+def sentences(rows: Sequence[Row]) -> list[str]:
+    """Which devices agree in every code, then a sentence for each of the others, the worst first."""
+    parts = by_device(rows)
+    off = {name: part for name, part in parts.items() if any(map(differs, part))}
+    whole = [name for name in parts if name not in off]
+    first = [_whole(whole, [row for name in whole for row in parts[name]])] if whole else []
+    worst = sorted(off, key=lambda name: min(row["same_percent"] for row in off[name]))
+    made = [*first, *(f"{name} {difference(off[name])}." for name in worst)]
+    return [*made, *_other_runs(rows)]
+
+
+def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
+    """That devices were compared with codes of several versions, which may differ themselves."""
+    versions = len({row.get("sources") for row in rows})
+    if versions > 1:
+        yield f"The pages that were measured on came from {versions} versions of the program, whose codes may differ."
+
+
+def _whole(names: Sequence[str], rows: Sequence[Row]) -> str:
+    who = _listed(names) if len(names) <= MOST_NAMED else f"{len(names)} devices"
+    verb = "agrees" if len(names) == 1 else "agree"
+    return f"{who} {verb} with the run in every code of {many(len({codec_of(row) for row in rows}), 'codec')}."
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names that have commas themselves."""
+    return "; ".join(names[:-1]) + (" and " if len(names) > 1 else "") + names[-1]
+
+
+def difference(rows: Sequence[Row]) -> str:
+    """How a device's codes differ from the run's: a sentence without its subject."""
+    off = [row for row in rows if differs(row)]
+    if not off:
+        return f"agrees with the run in every code of {many(len(rows), 'codec')}"
+    worst = min(off, key=lambda row: row["same_percent"])
+    share = f"{share_of(worst)} of its codes, {_how_far(worst)}"
+    return f"differs in {len(off)} of {many(len(rows), 'codec')}, most in {codec_name(worst)}: {share}"
+
+
+def share_of(row: Row) -> str:
+    """The share of a row's codes that differ, so that it never reads as none."""
+    share = SAME - row["same_percent"]
+    return f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
+
+
+def _how_far(row: Row) -> str:
+    return f"{row['further']} by more than one step" if row["further"] else "by one step each"
+
+
+def pivot(rows: Sequence[Row]) -> list[Row]:
+    """A row for each codec that a device differs in, with a column for each such device: the share that differs.
+
+    Rounding and target are columns where they tell codecs apart.
+    """
+    shown = [row for row in rows if differs(row)]
+    keys = [name for name in CODEC if name in CODEC[:2] or len({row[name] for row in rows}) > 1]
+    wanted = dict.fromkeys(map(codec_of, shown))
+    found = {(codec_of(row), device_of(row)): SAME - row["same_percent"] for row in rows}
+    about = {codec_of(row): {name: row[name] for name in keys} for row in shown}
+    devices = [name for name, part in by_device(rows).items() if any(map(differs, part))]
+    return [about[one] | {name: found.get((one, name)) for name in devices} for one in wanted]
+
+
+def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """What people look at first."""
+    if not rows:
+        return
+    said = tuple(sentences(rows))
+    table = pivot(rows)
+    if table:
+        yield Sheet("Codes that differ from the run's, in percent, by codec and device", table, said=said)
+    yield Sheet("Devices", overview(rows), said=() if table else said)
+
+
+def overview(rows: Sequence[Row]) -> list[Row]:
+    """A row for each device: in how many codecs it agrees, and where it differs most."""
+    return [_overview(part) for part in by_device(rows).values()]
+
+
+def _overview(rows: Sequence[Row]) -> Row:
+    off = [row for row in rows if differs(row)]
+    worst = min(off, key=lambda row: row["same_percent"], default=None)
+    quick = fastest(rows)
+    about = {"device": rows[0]["device"], "browser": rows[0]["browser"], "codecs": len(rows)}
+    about |= {"agree": len(rows) - len(off), "differ": len(off), "further": sum(bool(row["further"]) for row in rows)}
+    about |= {"least_same_percent": min(row["same_percent"] for row in rows)}
+    about |= {"differs_most": codec_name(worst) if worst else None, "fastest": codec_name(quick) if quick else None}
+    return about | {"fastest_ms": time_of(quick) if quick else None, "made": rows[0]["made"]}
+
+
+def time_of(row: Row) -> float | None:
+    """Milliseconds to encode and decode; None where one of them was not measured."""
+    encode, decode = row["encode_ms"], row["decode_ms"]
+    return None if encode is None or decode is None else encode + decode
+
+
+def fastest(rows: Sequence[Row]) -> Row | None:
+    """The codec with the least time to encode and decode; None where no time was measured."""
+    timed = [(time, at) for at, row in enumerate(rows) if (time := time_of(row)) is not None]
+    return rows[min(timed)[1]] if timed else None

@@ -1,0 +1,276 @@
+"""Files that the page's live section saves on a reader's device. They come from strangers: everything is checked.
+
+A file is one JSON object in UTF-8. `FORMAT` counts its versions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    StringConstraints,
+    ValidationError,
+    model_validator,
+)
+
+from ....encodings.codecs.files import file_bytes, not_json
+from ....reports.page.found import plain_text
+from ...output.errors import UsageError
+from .names import browser_name
+
+FORMAT = 1
+# Bytes of a file, codecs and facts in it, letters of a name and of a longer text, normals and milliseconds.
+MOST_BYTES, MOST_CODECS, MOST_FACTS = 4 << 20, 4096, 512
+NAME, TEXT = 128, 1024
+MOST_NORMALS, MOST_MS, HALF_TURN_DEG = 2**31, 1e6, 180.0
+# Of a fact that is a number.
+LARGEST = 1e300
+BOM = b"\xef\xbb\xbf"
+# What is shown of a value that is wrong.
+SHOWN = 40
+
+
+def _plain(text: str) -> str:
+    return " ".join(str(plain_text(text)).split())
+
+
+def _time(text: str) -> str:
+    """A time as UTC, to the second, so that the order of texts is that of times."""
+    try:
+        made = datetime.fromisoformat(text)
+        return made.replace(tzinfo=made.tzinfo or UTC).astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    except (ValueError, OverflowError):
+        raise ValueError("is not a time such as 2026-11-23T15:00:00Z") from None
+
+
+def _fact(value: Any) -> Any:
+    if isinstance(value, str) and len(value) > TEXT:
+        raise ValueError(f"is longer than {TEXT} letters")
+    if isinstance(value, str):
+        return _plain(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("is neither text nor a number")
+    # A whole number may have more digits than a float holds.
+    if not abs(value) <= LARGEST:
+        raise ValueError("is too large")
+    return value
+
+
+def _facts(facts: dict[str, Any]) -> dict[str, Any]:
+    plain = {_plain(name): value for name, value in facts.items()}
+    if len(plain) < len(facts) or "" in plain:
+        raise ValueError("has two names that read alike, or one without letters")
+    return plain
+
+
+Text = Annotated[str, StringConstraints(max_length=TEXT), AfterValidator(_plain)]
+Plain = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain)]
+Name = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain), StringConstraints(min_length=1)]
+Time = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_time)]
+Count = Annotated[int, Field(ge=0, le=MOST_NORMALS)]
+Degrees = Annotated[FiniteFloat, Field(ge=0, le=HALF_TURN_DEG)]
+# Of a pass that takes less than the clock tells, what is left may be below 0.
+Milliseconds = Annotated[FiniteFloat, Field(ge=-MOST_MS, le=MOST_MS)] | None
+FactName = Annotated[str, StringConstraints(max_length=NAME)]
+FactValue = Annotated[Any, AfterValidator(_fact)]
+# A later version may say more.
+STRICT = ConfigDict(strict=True, extra="ignore", frozen=True)
+
+
+class CodecRow(BaseModel):
+    """What a device made of one codec; see the table's columns."""
+
+    model_config = STRICT
+
+    encoding: Name
+    storage: Name
+    rounding: Name
+    target: Name
+    normals: Annotated[int, Field(ge=1, le=MOST_NORMALS)]
+    equal: Count
+    one_step: Count
+    further: Count
+    mean_deg: Degrees
+    max_deg: Degrees
+    run_mean_deg: Degrees
+    encode_ms: Milliseconds
+    decode_ms: Milliseconds
+    timer: Text | None
+
+    @model_validator(mode="after")
+    def adds_up(self) -> CodecRow:
+        """Raises ValueError where the counts are not those of the normals."""
+        total = self.equal + self.one_step + self.further
+        if total != self.normals:
+            raise ValueError(f"equal, one_step and further add up to {total}; normals is {self.normals}")
+        return self
+
+    @property
+    def key(self) -> tuple[str, str, str, str]:
+        """What no two rows of a file share."""
+        return self.encoding, self.storage, self.rounding, self.target
+
+
+class DeviceFile(BaseModel):
+    """One file.
+
+    Attributes:
+        renderer, vendor, browser: what the browser says of the GPU and of itself; plain text.
+        made: when it was saved, in UTC.
+        program, sources: the version of the page, and the fingerprint of the run that it shows.
+        codecs, facts: what was measured.
+    """
+
+    model_config = STRICT
+
+    normalbench_device: int
+    renderer: Text
+    vendor: Text
+    browser: Text
+    made: Time
+    program: Plain
+    sources: Plain
+    codecs: Annotated[list[CodecRow], Field(min_length=1, max_length=MOST_CODECS)]
+    facts: Annotated[dict[FactName, FactValue], Field(max_length=MOST_FACTS), AfterValidator(_facts)]
+
+    @model_validator(mode="after")
+    def has_each_codec_once(self) -> DeviceFile:
+        """Raises ValueError where two rows are of one codec and target."""
+        key, count = Counter(row.key for row in self.codecs).most_common(1)[0]
+        if count > 1:
+            raise ValueError(f"codecs has {' '.join(key)} twice")
+        return self
+
+    @cached_property
+    def digest(self) -> str:
+        """A fingerprint of what it says."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:16]
+
+    @property
+    def identity(self) -> tuple[str, str]:
+        """A device and a browser: its GPU as the browser names it, and the browser's major version."""
+        return self.renderer, browser_name(self.browser)
+
+
+@dataclass(frozen=True)
+class Read:
+    """A file that was read, and where it was."""
+
+    path: Path
+    file: DeviceFile
+
+
+def read_device_file(path: Path) -> Read:
+    """A device file, checked.
+
+    Raises:
+        UsageError: it cannot be read or is not one; the message names the file, and the place in it.
+    """
+    try:
+        return Read(path, _checked(_parsed(file_bytes(path, MOST_BYTES))))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _parsed(data: bytes) -> Any:
+    """What JSON holds. Raises ValueError where it is not JSON, or says something twice or NaN."""
+    if data.startswith(BOM):
+        raise ValueError("it begins with a byte-order mark; save it as UTF-8 without one")
+    if not data.strip():
+        raise ValueError("it is empty")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"byte {error.start + 1}: it is not text in UTF-8") from None
+    try:
+        return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
+    except _SaidError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise ValueError(not_json(error)) from None
+
+
+class _SaidError(ValueError):
+    """What is wrong with a file, in words."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        raise _SaidError(f"{_short(twice)} is given twice in one object")
+    return made
+
+
+def _no_constant(name: str) -> Any:
+    raise _SaidError(f"{name} is not a number of JSON; write null where nothing was measured")
+
+
+def _checked(found: Any) -> DeviceFile:
+    """Raises ValueError where it is not a device's, or of another version."""
+    if not isinstance(found, dict) or "normalbench_device" not in found:
+        raise ValueError('it is not a device file, which the live section of a page saves by "Save this device"')
+    version = found["normalbench_device"]
+    if type(version) is not int or version != FORMAT:
+        raise ValueError(f"normalbench_device: {_short(version)} is not {FORMAT}, the version that this program reads")
+    try:
+        return DeviceFile.model_validate(found)
+    except ValidationError as error:
+        raise ValueError(_wrong(error)) from None
+
+
+# What pydantic puts behind a name that is wrong itself.
+KEY = "[key]"
+# By pydantic's names of what is wrong.
+WRONG = {
+    "string_type": "is not text",
+    "string_unicode": "is not text",
+    "list_type": "is not a list",
+    "dict_type": "is not an object",
+    "model_type": "is not an object",
+    "int_type": "is not a whole number",
+    "float_type": "is not a number",
+    "finite_number": "is too large",
+    "greater_than_equal": "is less than {ge}",
+    "less_than_equal": "is more than {le}",
+    "string_too_long": "is longer than {max_length} letters",
+    "string_too_short": "has no letters",
+}
+
+
+def _wrong(error: ValidationError) -> str:
+    """The first that is wrong, and its place in the file."""
+    first = error.errors(include_url=False)[0]
+    names = [f"row {part + 1}" if isinstance(part, int) else _short(part) for part in first["loc"] if part != KEY]
+    where, context = ", ".join(names), first.get("ctx", {})
+    if first["type"] == "missing":
+        return f"{where} is missing"
+    if first["type"] == "too_long":
+        return f"{where}: it has more than {context['max_length']} entries"
+    if first["type"] == "too_short":
+        return f"{where}: it has no entries"
+    if "error" in context and isinstance(first["input"], dict):
+        return ": ".join(filter(None, (where, str(context["error"]))))
+    said = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)
+    return f"{where}: {_short(first['input'])} {said}"
+
+
+def _short(value: Any) -> str:
+    """The beginning of a value's text; a number may have more digits than Python prints."""
+    try:
+        text = value if isinstance(value, str) else repr(value)
+    except ValueError:
+        return "a number"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"

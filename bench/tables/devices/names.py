@@ -1,0 +1,90 @@
+"""Short names of devices and browsers, from what a browser says of them.
+
+A browser gives the GPU as text: the driver's own name or, on most systems, ANGLE's, `ANGLE (vendor, GPU, API)`. The
+version of the API and of the driver are left out of the short name, unless devices would share it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable
+
+UNKNOWN_DEVICE, UNKNOWN_BROWSER = "unknown device", "unknown browser"
+LONGEST = 48
+ANGLE = re.compile(r"ANGLE \((.*)\)(.*)")
+# Around and behind a GPU's name: what runs it, and the shader models of Direct3D.
+BEFORE = re.compile(r"^(ANGLE \w+ Renderer: |Mesa |NVIDIA |AMD |ATI )+", re.IGNORECASE)
+VULKAN = re.compile(r"Vulkan [\d.]+ \((.*)\)$")
+BEHIND = re.compile(r"(/PCIe|/SSE|/integrated| Direct3D| OpenGL| on Vulkan).*$", re.IGNORECASE)
+MARKS = re.compile(r"\((R|TM|C)\)", re.IGNORECASE)
+INNERMOST = re.compile(r"\([^()]*\)")
+APIS = re.compile(r"(Direct3D\d+|OpenGL ES|OpenGL|Vulkan|Metal)")
+# By what a user agent says, the first that it has; those that call themselves another's name as well come first.
+BROWSERS = (
+    (r"Edg(?:A|iOS)?/(\d+)", "Edge"),
+    (r"OPR/(\d+)", "Opera"),
+    (r"SamsungBrowser/(\d+)", "Samsung Internet"),
+    (r"(?:Firefox|FxiOS)/(\d+)", "Firefox"),
+    (r"CriOS/(\d+)", "Chrome on iOS"),
+    (r"(?:Chrom(?:e|ium)|HeadlessChrome)/(\d+)", "Chromium"),
+    (r"Version/(\d+)[\d.]* .*Safari/", "Safari"),
+)
+
+
+def device_name(renderer: str) -> str:
+    """A GPU's short name: `GeForce RTX 4090` of `ANGLE (NVIDIA, NVIDIA GeForce RTX 4090 Direct3D11 vs_5_0, D3D11)`."""
+    wrapped = ANGLE.fullmatch(renderer.strip())
+    parts = _parts(wrapped[1]) if wrapped else [renderer]
+    name = parts[1] if len(parts) > 1 else parts[0]
+    similar = " or similar" if "or similar" in renderer else ""
+    name = name.replace(", or similar", "").strip()
+    if inner := VULKAN.match(name):
+        name = inner[1]
+    name = MARKS.sub("", name)
+    while INNERMOST.search(name):
+        name = INNERMOST.sub("", name)
+    name = BEHIND.sub("", BEFORE.sub("", name)).strip().removesuffix(" Device")
+    return (" ".join(name.split())[: LONGEST - len(similar)].rstrip(" ,") + similar).strip() or UNKNOWN_DEVICE
+
+
+def _parts(text: str) -> list[str]:
+    """What commas separate, but for those inside parentheses."""
+    found, depth = [""], 0
+    for letter in text:
+        depth += {"(": 1, ")": -1}.get(letter, 0)
+        if letter == "," and depth == 0:
+            found.append("")
+        else:
+            found[-1] += letter
+    return [part.strip() for part in found]
+
+
+def browser_name(agent: str) -> str:
+    """A browser and its major version: `Firefox 153`."""
+    for pattern, name in BROWSERS:
+        if found := re.search(pattern, agent):
+            return f"{name} {found[1][:6]}"
+    return " ".join(agent.split())[:LONGEST].strip() or UNKNOWN_BROWSER
+
+
+def told_apart(renderers: Iterable[str]) -> dict[str, str]:
+    """By renderer a short name that no other renderer has. The order does not matter.
+
+    Those that share one get their API behind it; where that is the same too, four digits of a hash.
+    """
+    every = sorted(set(renderers))
+    made = {renderer: device_name(renderer) for renderer in every}
+    for more in (_api, _hash):
+        names = list(made.values())
+        made = {r: f"{name} ({more(r)})" if names.count(name) > 1 and more(r) else name for r, name in made.items()}
+    return made
+
+
+def _api(renderer: str) -> str:
+    # The last: ANGLE says it behind the GPU's name.
+    return next(reversed(APIS.findall(renderer)), "")
+
+
+def _hash(renderer: str) -> str:
+    return hashlib.sha256(renderer.encode()).hexdigest()[:4]

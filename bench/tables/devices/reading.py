@@ -1,0 +1,137 @@
+"""Device files by their names, each device and browser once, and their rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...output.errors import UsageError, check_comma, names_a_folder, tell
+from ..table import Row, Step
+from .device_file import CodecRow, DeviceFile, Read, read_device_file
+from .names import browser_name, told_apart
+
+MOST_FILES = 2048
+SAVED = 'the live section of a page saves one by "Save this device"'
+
+
+@dataclass(frozen=True)
+class Device:
+    """A device's file, and what rows call the device."""
+
+    name: str
+    file: DeviceFile
+
+    @property
+    def browser(self) -> str:
+        return browser_name(self.file.browser)
+
+    @property
+    def called(self) -> str:
+        """The device and its browser, as sentences call them."""
+        return called(self.name, self.browser)
+
+    @property
+    def key(self) -> Row:
+        """What tells its rows from those of every other file."""
+        file = self.file
+        known = {"renderer": file.renderer, "browser": self.browser, "made": file.made, "digest": file.digest}
+        return {"device": self.name, **known}
+
+
+def called(device: Any, browser: Any) -> str:
+    """A device and its browser."""
+    return f"{device}, {browser}"
+
+
+def files_named(words: str) -> list[Path]:
+    """The files that comma-separated words name; a folder stands for its *.json.
+
+    Raises:
+        UsageError: none is named, a folder has none, or there are too many.
+    """
+    check_comma(words)
+    found: dict[Path, None] = {}
+    for word in filter(None, map(str.strip, words.split(","))):
+        found |= dict.fromkeys(_in_folder(Path(word)) if names_a_folder(word) else [Path(word)])
+    if not found:
+        raise UsageError(f"no device file named; --devices FILE,FILE names them, and {SAVED}")
+    return checked_number(list(found))
+
+
+def _in_folder(folder: Path) -> list[Path]:
+    try:
+        found = sorted(folder.glob("*.json"))
+    except OSError as error:
+        raise UsageError(f"{folder} cannot be read: {error.strerror or error}") from None
+    if not found:
+        raise UsageError(f"{folder}: there is no *.json in it; {SAVED}")
+    return found
+
+
+def checked_number(paths: list[Path]) -> list[Path]:
+    """The paths. Raises UsageError where they are more than a page can show."""
+    if len(paths) > MOST_FILES:
+        raise UsageError(f"{len(paths)} device files; at most {MOST_FILES} are read at once")
+    return paths
+
+
+def devices(found: Iterable[Read]) -> list[Device]:
+    """The devices of files: of one GPU in one browser the newest file alone; the others are named on standard error."""
+    newest: dict[tuple[str, str], Read] = {}
+    for read in found:
+        other = newest.setdefault(read.file.identity, read)
+        if other is not read:
+            kept, dropped = (read, other) if read.file.made > other.file.made else (other, read)
+            newest[read.file.identity] = kept
+            tell(f"left out: {dropped.path}: {kept.path} is of the same device and browser, and not older")
+    return named([read.file for read in newest.values()])
+
+
+def named(files: Sequence[DeviceFile]) -> list[Device]:
+    """Devices, each by a name that no other GPU has."""
+    names = told_apart(file.renderer for file in files)
+    return [Device(names[file.renderer], file) for file in files]
+
+
+def steps_of(words: str) -> list[Step]:
+    """A step for each device. Raises UsageError for a file that cannot be read or is not a device's."""
+    found = devices(read_device_file(path) for path in files_named(words))
+    return [Step(one.key, one, one.called) for one in found]
+
+
+def codec_rows(device: Device) -> list[Row]:
+    """The rows of the table `devices`."""
+    about = _about(device) | {"sources": device.file.sources, "vendor": device.file.vendor}
+    return [about | _codec(row) for row in device.file.codecs]
+
+
+def _codec(row: CodecRow) -> Row:
+    said = row.model_dump(exclude={"equal"})
+    # A clock that was not read has no name.
+    timer = row.timer if row.encode_ms is not None or row.decode_ms is not None else None
+    return said | {"same_percent": 100 * row.equal / row.normals, "timer": timer or None}
+
+
+def fact_rows(device: Device) -> Iterator[Row]:
+    """The rows of the table `device_facts`."""
+    for name, value in device.file.facts.items():
+        number = None if isinstance(value, str) else value
+        yield _about(device) | {"name": name, "value": str(value), "number": number}
+
+
+def _about(device: Device) -> Row:
+    file = device.file
+    about = {"device": device.name, "browser": device.browser, "renderer": file.renderer}
+    return about | {"made": file.made, "program": file.program}
+
+
+def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:
+    """Of rows that share their keys the newest: a run may hold an older file's rows as well."""
+    found: dict[tuple[Any, ...], Row] = {}
+    for row in rows:
+        key = tuple(row.get(name) for name in keys)
+        if key not in found or str(row.get("made")) >= str(found[key].get("made")):
+            found[key] = row
+    return list(found.values())

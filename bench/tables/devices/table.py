@@ -1,0 +1,96 @@
+"""The table of readers' devices: what they make of each codec, next to the run's own codes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...options.option import Option
+from .. import shared_columns as shared
+from ..table import Column, Role, Section, Table
+
+KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
+
+Devices = Annotated[
+    str,
+    Option("--devices", "Device files, or folders of them, comma-separated.", files=True, in_run=True),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DevicesOptions:
+    """Which device files are read."""
+
+    devices: Devices = ""
+
+
+DEVICE = Column("device", "The GPU, by a short name of what the browser calls it.", KEY)
+BROWSER = Column("browser", "The browser and its major version.", KEY)
+MADE = Column("made", "When the device was saved, in UTC.", HOW, drops=5)
+PROGRAM = Column("program", "The version of normalbench whose page measured it.", HOW, drops=6)
+RENDERER = Column("renderer", "The GPU as the browser calls it.", HOW, drops=1)
+
+COLUMNS = (
+    DEVICE,
+    BROWSER,
+    shared.ENCODING,
+    shared.STORAGE,
+    Column("rounding", "How the stored numbers are rounded.", KEY),
+    Column("target", "The format that the browser rendered to.", KEY),
+    Column(
+        "same_percent",
+        "The share of the codes that equal the run's in every bit of the texel.",
+        unit="%",
+        better="more",
+    ),
+    Column("one_step", "Codes with one number that is one step away from the run's.", better="less"),
+    Column("further", "Codes that differ from the run's by more than that.", better="less"),
+    Column(
+        "mean_deg",
+        "Mean angle between the normal and what the device encodes, stores, reads and decodes.",
+        unit="degrees",
+        better="less",
+    ),
+    Column("max_deg", "The largest of those angles.", unit="degrees", better="less"),
+    Column("run_mean_deg", "Mean angle of the run's own codes, on the same normals.", unit="degrees", drops=7),
+    Column(
+        "encode_ms",
+        "Milliseconds per megapixel to encode and store, less an empty pass.",
+        TIME,
+        "ms",
+        "less",
+        drops=9,
+    ),
+    Column(
+        "decode_ms", "Milliseconds per megapixel to read and decode, less an empty pass.", TIME, "ms", "less", drops=8
+    ),
+    Column("timer", "What timed it.", HOW, drops=2),
+    Column("normals", "How many normals the device encoded.", HOW, drops=10),
+    MADE,
+    PROGRAM,
+    Column("sources", "The fingerprint of the run that the page showed.", HOW, drops=3),
+    RENDERER,
+    Column("vendor", "The vendor as the browser calls it.", HOW, drops=4),
+)
+
+TABLE = Table(
+    name="devices",
+    package=__package__ or "",
+    help="What readers' devices make of each codec: codes that differ from the run's, angles and times.\n\n"
+    'A device file is what the live section of a page saves by "Save this device".',
+    example="normalbench devices --devices phone.json",
+    options=DevicesOptions,
+    columns=COLUMNS,
+    by="device",
+    in_all=False,
+    asked_by="devices",
+    section=Section(
+        title="On readers' devices",
+        short="Devices",
+        intro="Which GPUs store the same codes as this program, and which do not?",
+        method="The live section of a page encoded the same normals on each device, into the formats that the browser "
+        "renders to, and compared every code with the run's own, bit for bit. The angles are of what the device "
+        "encodes, stores, reads and decodes itself. Times are per megapixel, less an empty pass; the column timer "
+        "names the clock. A file that a reader saved is all that is known of a device: nothing is measured here.",
+    ),
+)

@@ -1,0 +1,268 @@
+"""`normalbench import` and the tables of devices: rows in a run, once each, all or none; and what its page shows."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import devices as made
+import pytest
+
+from normalbench.bench.output.journal import Journal
+from normalbench.bench.results import runs
+from normalbench.bench.results.runs import read_run
+from normalbench.bench.tables.devices.agreement import sentences
+from normalbench.bench.tables.registry import TABLES
+
+OTHER = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.5.0)"
+
+
+@pytest.fixture
+def folder(run, tmp_path):
+    """A small run."""
+    folder = tmp_path / "run"
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
+    return folder
+
+
+def content_of(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def test_the_tables_have_their_columns_and_names_that_are_unique(run, tmp_path):
+    made.write_ten(tmp_path / "ten")
+    for name, count in (("devices", 350), ("device_facts", 40)):
+        status, out, _ = run(name, "--devices", str(tmp_path / "ten"), "--format", "json")
+        rows, table = json.loads(out), TABLES[name]
+        assert status == 0 and len(rows) == count == len({table.name_of(row) for row in rows})
+        assert all(tuple(row) == tuple(table.empty()) for row in rows)
+
+
+def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
+    row = made.codec_rows()[0] | {"encoding": "my_own", "storage": "mine"}
+    path = made.write(tmp_path / "a.json", codecs=[row])
+    (found,) = json.loads(run("devices", "--devices", str(path), "--format", "json")[1])
+    assert (found["encoding"], found["storage"], found["same_percent"]) == ("my_own", "mine", 100)
+
+
+def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):
+    """The run's own rows stay, the run stays finished, and the same file again changes no byte."""
+    sources = json.loads((folder / "run.json").read_text())["sources"]
+    first, command = made.write(tmp_path / "a.json", sources=sources), ("import", "-o", str(folder))
+    status, out, err = run(*command, str(first))
+    assert (status, err) == (0, "") and "SwiftShader, Chromium 156: added 35 codecs, 4 facts" in out
+    assert f"normalbench report {folder}" in out
+    done = read_run(folder)
+    assert done.finished and not done.damage and len(done.tables["devices"]) == 35 and len(done.tables["quality"]) == 1
+    assert len(json.loads((folder / "devices.json").read_text())) == 35
+    before = content_of(folder)
+    status, out, _ = run(*command, str(first))
+    assert status == 0 and "nothing added; the run has the file of 2026-11-23T15:00:00Z already\n" in out
+    assert content_of(folder) == before
+    newer = made.write(tmp_path / "b.json", made="2026-11-24T15:00:00Z", truncated=("RG8",))
+    assert "in place of those of 2026-11-23T15:00:00Z" in run(*command, str(newer))[1]
+    rows = read_run(folder).tables["devices"]
+    assert len(rows) == 35 and {row["made"] for row in rows} == {"2026-11-24T15:00:00Z"}
+    before = content_of(folder)
+    assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
+    changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
+    assert "with other figures; the run's stay" in run(*command, str(changed))[1] and content_of(folder) == before
+
+
+def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
+    path = made.write(tmp_path / "a.json", sources="another")
+    for said in ("SwiftShader, Chromium 156: measured on the page of a run of other sources", ""):
+        status, _, err = run("import", str(path), "-o", str(folder))
+        assert status == 0 and said in err and err.count("\n") == bool(said), err
+
+
+def test_gpus_that_come_to_share_a_short_name_are_told_apart_whichever_is_first(run, tmp_path, folder):
+    paths = [made.write(tmp_path / "a.json", renderer=made.GEFORCE), made.write(tmp_path / "b.json", renderer=OTHER)]
+    for path in paths:
+        assert run("import", str(path), "-o", str(folder))[0] == 0
+    names = {row["renderer"]: row["device"] for row in read_run(folder).tables["devices"]}
+    assert names == {made.GEFORCE: "GeForce RTX 4090 (Direct3D11)", OTHER: "GeForce RTX 4090 (OpenGL)"}
+    out = run("devices", "--devices", ",".join(map(str, reversed(paths))), "--format", "json")[1]
+    assert {row["renderer"]: row["device"] for row in json.loads(out)} == names
+
+
+def test_one_bad_file_of_several_leaves_the_run_as_it_was(run, tmp_path, folder):
+    good, bad = made.write(tmp_path / "a.json"), tmp_path / "bad.json"
+    bad.write_text("{}")
+    before = content_of(folder)
+    status, out, err = run("import", str(good), str(bad), str(tmp_path / "none.json"), "-o", str(folder))
+    assert (status, out, err.count("\n")) == (2, "", 2) and "bad.json: it is not a device file" in err
+    assert "none.json: there is no such file" in err and content_of(folder) == before
+
+
+@pytest.mark.parametrize("where, said", [(None, "name the run's folder with -o RUN"), ("nowhere", "is not a results")])
+def test_a_folder_that_is_no_run_is_one_line_and_stays_as_it_is(run, tmp_path, where, said):
+    words = ("-o", str(tmp_path / where)) if where else ()
+    status, out, err = run("import", str(made.write(tmp_path / "a.json")), *words)
+    assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
+    assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_a_run_that_another_process_writes_or_that_was_changed_is_refused(run, tmp_path, folder):
+    path = made.write(tmp_path / "a.json")
+    with runs.amended(folder):
+        status, _, err = run("import", str(path), "-o", str(folder))
+    assert status == 2 and "another process writes" in err, err
+    with (folder / "rows.jsonl").open("a") as file:
+        file.write((folder / "rows.jsonl").read_text())
+    before = content_of(folder)
+    status, _, err = run("import", str(path), "-o", str(folder))
+    assert status == 2 and "nothing is added to it" in err and content_of(folder) == before, err
+
+
+def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    before = read_run(folder)
+    monkeypatch.setattr(os, "fsync", full)
+    status, _, err = run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))
+    assert status == 2 and "No space left on device" in err, err
+    after = read_run(folder)
+    assert after.steps == before.steps and not after.damage and after.finished
+    assert not list(folder.glob(".*partial"))
+
+
+@pytest.mark.parametrize("when", ["before the rows", "after the rows"])
+def test_a_run_whose_import_is_killed_is_whole(run, tmp_path, folder, monkeypatch, when):
+    """Between any two of the files that are written; another import adds what is missing."""
+    replace = Journal.replace
+
+    def dying(self, lines):
+        if when == "after the rows":
+            replace(self, lines)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Journal, "replace", dying)
+    path = made.write(tmp_path / "a.json")
+    assert run("import", str(path), "-o", str(folder))[0] == 130
+    monkeypatch.setattr(Journal, "replace", replace)
+    done = read_run(folder)
+    assert done.finished and not done.damage and len(done.tables["quality"]) == 1
+    assert ("devices" in done.tables) == (when == "after the rows")
+    assert run("import", str(path), "-o", str(folder))[0] == 0
+    done = read_run(folder)
+    assert not done.damage and len(done.tables["devices"]) == 35
+
+
+def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
+    """With another set: the devices stay, and the page of the run has them."""
+    assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "1000")
+    assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
+    done = read_run(folder)
+    assert done.finished and set(done.tables) == {"quality", "devices", "device_facts"}
+    assert '<section id="devices"' in (folder / "report.html").read_text()
+
+
+def test_a_named_device_makes_its_tables_part_of_all(run, tmp_path):
+    from normalbench.bench.suite.run import chosen_tables
+
+    names = {table.name for table in chosen_tables("all", {"devices": "a.json"})}
+    assert {"devices", "device_facts"} <= names
+    assert not {"devices", "device_facts"} & {table.name for table in chosen_tables("all", {"count": 3})}
+    path, out = made.write(tmp_path / "a.json"), tmp_path / "out"
+    assert run("run", "--tables", "devices,device_facts", "--devices", str(path), "-o", str(out))[0] == 0
+    assert {name: len(rows) for name, rows in read_run(out).tables.items()} == {"devices": 35, "device_facts": 4}
+
+
+def test_gates_hold_devices(run, tmp_path):
+    made.write(tmp_path / "a.json", truncated=("RGB10_A2",))
+    gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/a.json"\nfurther = "at most 0"\n'
+    (tmp_path / "gates.toml").write_text(gate)
+    status, out, err = run("check", str(tmp_path / "gates.toml"), "--format", "json")
+    failing = [row["row"] for row in json.loads(out) if row["holds"] != "pass"]
+    assert status == 1 and len(failing) == 8 and all("rgb10a2" in name for name in failing), err
+
+
+def test_a_test_holds_devices(pytester):
+    """By the marker, with a file beside the test."""
+    made.write(pytester.path / "a.json")
+    limits = 'further="at most 0", same_percent="at least 99.9"'
+    marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
+    pytester.makepyfile(test_it=f"import pytest\n{marked}")
+    pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:hypothesispytest").assert_outcomes(passed=1)
+
+
+def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
+    from normalbench.bench.tables.devices.work import timed
+
+    rows = []
+    for name, ms in (("A", 0.05), ("B", 0.01), ("C", 0.0)):
+        about = {"device": name, "browser": "Chromium 156"}
+        rows += [about | row for row in made.codec_rows(ms_per_bit=ms)]
+    found = timed([*rows, rows[0] | {"encoding": "below", "encode_ms": -1.0, "decode_ms": 0.5}])
+    assert len(found) == 70 and {row["device"] for row in found} == {"A, Chromium 156", "B, Chromium 156"}
+    assert found[0]["codec"] == "xyz rgba8" and found[-1]["codec"] == "octahedral_precise rg16"
+
+
+def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
+    for name, truncated in (("before", ()), ("after", ("RG16F",))):
+        path = made.write(tmp_path / f"{name}.json", truncated=truncated)
+        words = ("--tables", "devices,device_facts", "--devices", str(path), "-o", str(tmp_path / name))
+        assert run("run", *words)[0] == 0
+    status, out, _ = run("compare", str(tmp_path / "before"), str(tmp_path / "after"), "--format", "json")
+    rows = json.loads(out)
+    assert status == 0 and {row["column"] for row in rows} >= {"same_percent", "further", "mean_deg"}
+    assert all("rg16f" in row["row"] for row in rows)
+
+
+def test_the_sentences_name_who_agrees_and_where_the_others_differ():
+    rows = []
+    for name, truncated in (("A", ()), ("B", ()), ("C", ("RGB10_A2",))):
+        about = {"device": name, "browser": "Chromium 156", "sources": "x"}
+        for row in made.codec_rows(truncated):
+            rows.append(about | row | {"same_percent": 100 * row["equal"] / row["normals"]})
+    first, second = sentences(rows)
+    assert first == "A, Chromium 156 and B, Chromium 156 agree with the run in every code of 35 codecs."
+    assert second.startswith("C, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6 % of its codes, ")
+    near = rows[0] | {"device": "D", "one_step": 1, "same_percent": 100 - 100 / 65536}
+    said = sentences([near])
+    assert said == [
+        "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153 % of its codes, by one step each."
+    ]
+    assert "2 versions of the program" in sentences([*rows, rows[0] | {"sources": "y"}])[-1]
+
+
+@pytest.mark.slow
+def test_a_killed_import_keeps_all_or_nothing(tmp_path, folder):
+    """Ended by SIGKILL at twenty moments."""
+    before, path = content_of(folder), made.write(tmp_path / "a.json")
+    words = [sys.executable, "-m", "normalbench.bench", "import", str(path), "-o", str(folder)]
+    for at in range(20):
+        for name, data in before.items():
+            (folder / name).write_bytes(data)
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL)
+        time.sleep(0.4 + 0.02 * at)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        done = read_run(folder)
+        assert done.finished and not done.damage and len(done.tables["quality"]) == 1, at
+        assert len(done.tables.get("devices", ())) in (0, 35), at
+
+
+def test_an_older_file_in_a_folder_does_not_stop_a_gate(run, tmp_path):
+    """The newer one is held; nothing that was asked for is missing."""
+    made.write(tmp_path / "files/a.json")
+    made.write(tmp_path / "files/b.json", made="2026-11-24T15:00:00Z")
+    gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/files"\nfurther = "at most 0"\n'
+    (tmp_path / "gates.toml").write_text(gate)
+    status, _, err = run("check", str(tmp_path / "gates.toml"))
+    assert status == 0 and "left out: " in err and "a.json" in err, err
+
+
+def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder):
+    facts = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(facts | {"finished": False}))
+    assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
+    done = read_run(folder)
+    assert not done.finished and len(done.tables["devices"]) == 35
