@@ -267,7 +267,7 @@ def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
 
 def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
     """The shader's own packing says what the run's codes are; then every code of the target is compared."""
-    packed = stepped((9, 0, 1))
+    packed = stepped((9, 0, 1), (200, 1, -1), (500, 0, 1))
     target = stepped()
     generator = np.random.default_rng(0)
     down = generator.random(target.shape) < 0.5
@@ -276,6 +276,7 @@ def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
     found = compared(laboratory, packed, target)
     assert (found["oneStep"], found["further"]) == (once.sum(), twice.sum())
     assert [one["normals"] for one in found["numbers"]] == down.sum(axis=0).tolist()
+    assert [one["most"] for one in found["numbers"]] == [1, 1]
 
 
 def rounded(x, storage, whole):
