@@ -93,6 +93,7 @@ STORED = """checks => live.measuring.codecs = live.data.storages
   .map((codec) => ({ ...codec, checks: checks[codec.storage] }))"""
 
 
+@pytest.mark.slow
 def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
     """Fixed point, halves, numbers across bytes, packed integers; small floats by SwiftShader, which cuts them off."""
     given = {name: checks.checks(Codec(ENCODINGS["octahedral"], STORAGES[name])) for name in programs.USUAL}
@@ -111,6 +112,7 @@ def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
     assert small["mean_deg"] > 1.5 * small["run_mean_deg"]
 
 
+@pytest.mark.slow
 def test_a_device_is_known_by_what_it_does(laboratory):
     """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
     laboratory.only("xyz")
@@ -134,6 +136,7 @@ WITHOUT_FLOATS = """{
 }"""
 
 
+@pytest.mark.slow
 def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
     """Angles come back as bits of integers, which every device renders to."""
     opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
@@ -181,6 +184,7 @@ def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
     assert laboratory.page.locator("[data-save]").is_visible()
 
 
+@pytest.mark.slow
 def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
     laboratory.start()
     laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
@@ -192,6 +196,7 @@ def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
     assert all(row["equal"] == row["normals"] for row in rows), [row["difference"] for row in rows]
 
 
+@pytest.mark.slow
 def test_times_wait_for_a_page_that_is_seen(laboratory):
     laboratory.only("xyz")
     laboratory.page.locator("#measure-times").check()
@@ -208,6 +213,7 @@ def test_times_wait_for_a_page_that_is_seen(laboratory):
     assert 0 <= row["encode_ms"] < 10000 and 0 <= row["decode_ms"] < 10000
 
 
+@pytest.mark.slow
 def test_times_are_measured_without_timer_queries(laboratory):
     laboratory.only("octahedral")
     laboratory.page.locator("#measure-times").check()
@@ -222,6 +228,7 @@ def test_times_are_measured_without_timer_queries(laboratory):
     assert row["timer"].startswith("wall clock") and row["encode_ms"] >= 0, laboratory.status
 
 
+@pytest.mark.slow
 def test_other_normals_than_the_runs_are_not_measured(laboratory):
     laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
     laboratory.start()
@@ -265,6 +272,7 @@ def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
     assert found["differing"][0]["normal"] == 0, "normal 0 travels with the page"
 
 
+@pytest.mark.slow
 def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
     """The shader's own packing says what the run's codes are; then every code of the target is compared."""
     packed = stepped((9, 0, 1), (200, 1, -1), (500, 0, 1))
@@ -299,6 +307,7 @@ FINE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("storage", "rounding"), FINE)
 def test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
     """Numbers off by up to 3 units in the last place are rounded the other way near ties, several of them in a group.
