@@ -30,20 +30,23 @@ _noted: ContextVar[list[str] | None] = ContextVar("noted", default=None)
 
 def leave_out(line: str) -> None:
     """Say what is not measured, and why."""
-    if (lines := _noted.get()) is not None:
+    if (lines := _noted.get()) is None:
+        tell(f"left out: {line}")
+    else:
         lines.append(line)
-    tell(f"left out: {line}")
 
 
 @contextmanager
 def noting_what_is_left_out() -> Iterator[list[str]]:
-    """The lines about what is left out meanwhile."""
+    """The lines about what is left out meanwhile, which are said at its end; not where it is refused, in one line."""
     lines: list[str] = []
     token = _noted.set(lines)
     try:
         yield lines
     finally:
         _noted.reset(token)
+    for line in lines:
+        tell(f"left out: {line}")
 
 
 class UsageError(Exception):
