@@ -55,6 +55,7 @@ def table_command(
             done = _measured(ask, kept, where)
             failed = _show(table, done, format, output)
             if report:
+                _bring(table, outputs, Path(folder))
                 _write_page(table, done, Path(folder), report)
     if lacking := table.lacking(done):
         raise MissingError("; ".join(lacking))
@@ -115,6 +116,14 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
     show(table, done, format, output)
     work.write(done, lambda _: None)
     return failed
+
+
+def _bring(table: Table, outputs: Any, folder: Path) -> None:
+    """Have what was written elsewhere in a run's folder too."""
+    for name, inside in table.files.items():
+        target = getattr(outputs, name, None)
+        if target is not None and not (folder / inside).exists():
+            (folder / inside).symlink_to(target.resolve(), target_is_directory=target.is_dir())
 
 
 def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> None:

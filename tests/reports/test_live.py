@@ -188,7 +188,8 @@ def test_an_encoder_is_compiled_as_it_is_typed(laboratory):
     laboratory.page.locator("[data-own=storage]").select_option("rg16")
     laboratory.says("[data-own=said]", "32 bits in RG16")
     assert float(re.search(r"mean ([\d.]+)°", laboratory.texts("[data-own=said]")[0])[1]) < 0.002
-    assert laboratory.texts("[data-own=command]") == ["normalbench run --encoding mine.glsl --storage rg16"]
+    command = "normalbench quality --encoding mine.glsl --storage rg16 --normals sphere"
+    assert laboratory.texts("[data-own=command]") == [command]
 
 
 @pytest.mark.slow
@@ -202,9 +203,37 @@ def test_what_is_typed_is_seen_in_the_scene(laboratory):
     assert apart(laboratory.picture(), before) > 0.2
 
 
+@pytest.mark.slow
+def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    good = text.input_value()
+    laboratory.choose(right="your encoder")
+    text.fill(f"const float power = 2.0;\n{good}")
+    laboratory.says("[data-own=said]", "The page uses this name itself")
+    assert laboratory.page.locator("[data-see=right]").input_value() == "exact normals"
+    laboratory.settle()
+    before = laboratory.picture()
+    laboratory.choose(right="xy rgba8", shown="error")
+    assert apart(laboratory.picture(), before) > 0.2
+    assert laboratory.page.locator("[data-see=right] option", has_text="your encoder").is_disabled()
+    text.fill(good)
+    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    assert laboratory.page.locator("[data-see=right] option", has_text="your encoder").is_enabled()
+
+
+@pytest.mark.slow
+def test_helpers_named_like_encoders_are_no_encoders(laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    text.fill("vec2 fold_encode(vec2 p) { return p; }\n" + text.input_value())
+    laboratory.says("[data-own=said]", re.compile(r"mean 0\.33"))
+
+
 WRONG = {
     "": "There is no encoder",
-    "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder",
+    "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder of it: vec3 a_decode(vec2 e)",
+    "vec2 a_encode(vec3 n) { discard; return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }": "No direction",
+    "uniform float q; vec2 a_encode(vec3 n) { return q * n.xy; } vec3 a_decode(vec2 e) { return e.xyx; }": "uniform",
+    "/* vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0.); }": "At the end of the text",
     "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec3 e) { return e; }": "Where the page calls it",
     "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(0.0) / 0.0; }": "as a number",
     '#include "a.glsl"\nvec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }': "Line 1",
@@ -245,7 +274,9 @@ def test_a_link_holds_the_text_and_runs_nothing_by_itself(gl_browser, report, la
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fragment", ["#live=abc", "#live=" + "A" * 3000, "#live=q1YqSy1S0lEqLk0qLkksSVWyUqoFAA"])
+@pytest.mark.parametrize(
+    "fragment", ["#live=", "#live=%%%", "#live=abc", "#live=" + "A" * 3000, "#live=q1YqSy1S0lEqLk0qLkksSVWyUqoFAA"]
+)
 def test_a_damaged_link_is_said(gl_browser, report, fragment):
     page = Laboratory(gl_browser, report, fragment=fragment)
     said = page.texts("[data-own=said]")[0]

@@ -210,7 +210,8 @@ def test_times_wait_for_a_page_that_is_seen(laboratory):
     laboratory.ask("() => document.dispatchEvent(new Event('visibilitychange'))")
     (row,) = laboratory.finish()
     assert row["timer"] == "EXT_disjoint_timer_query_webgl2"
-    assert 0 <= row["encode_ms"] < 10000 and 0 <= row["decode_ms"] < 10000
+    times = [row[name] for name in ("encode_ms", "decode_ms")]
+    assert all(time is None or 0 < time < 10000 for time in times), times
 
 
 @pytest.mark.slow
@@ -225,7 +226,9 @@ def test_times_are_measured_without_timer_queries(laboratory):
     )
     laboratory.start()
     (row,) = laboratory.finish()
-    assert row["timer"].startswith("wall clock") and row["encode_ms"] >= 0, laboratory.status
+    assert row["timer"].startswith("wall clock") and (row["encode_ms"] is None or row["encode_ms"] > 0), (
+        laboratory.status
+    )
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections import Counter
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -38,6 +38,8 @@ MOST_NORMALS, MOST_MS, HALF_TURN_DEG = 2**31, 1e6, 180.0
 # Of a fact that is a number.
 LARGEST = 1e300
 BOM = b"\xef\xbb\xbf"
+# How far a reader's clock may be ahead.
+AHEAD = timedelta(days=2)
 # What is shown of a value that is wrong.
 SHOWN = 40
 
@@ -50,9 +52,13 @@ def _time(text: str) -> str:
     """A time as UTC, to the second, so that the order of texts is that of times."""
     try:
         made = datetime.fromisoformat(text)
-        return made.replace(tzinfo=made.tzinfo or UTC).astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+        made = made.replace(tzinfo=made.tzinfo or UTC).astimezone(UTC)
     except (ValueError, OverflowError):
         raise ValueError("is not a time such as 2026-11-23T15:00:00Z") from None
+    # It would count as newer than every honest file.
+    if made > datetime.now(UTC) + AHEAD:
+        raise ValueError("lies in the future")
+    return made.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _fact(value: Any) -> Any:

@@ -219,6 +219,13 @@ class LiveDevice {
     else gl[`uniform${value.length}fv`](place, value);
   }
 
+  // Fills a target of integers with bits that stand for no number, which a shader that writes nothing leaves there.
+  clearWords({ framebuffer }) {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.clearBufferuiv(gl.COLOR, 0, new Uint32Array(4).fill(0xffffffff));
+  }
+
   // Waits until everything is drawn on the canvas.
   finish() {
     const { gl } = this;

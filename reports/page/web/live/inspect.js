@@ -28,6 +28,8 @@ class Inspect {
       this.field[name].addEventListener("input", () => {
         if (this.field[name].value !== "") this.go([Number(this.field.x.value), Number(this.field.y.value)], name);
       });
+      // What was typed becomes the pixel that is shown.
+      this.field[name].addEventListener("change", () => this.show());
     }
   }
 

@@ -19,8 +19,10 @@ function deviceFile({ device, data, rows, facts }) {
 }
 
 function deviceName(renderer) {
-  const slug = String(renderer).toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 60);
-  return `normalbench-${slug || "device"}.json`;
+  const slug = String(renderer).toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "");
+  // Whole words of it, without the layer that draws.
+  const words = slug.split("-").filter((word) => !["angle", "google", "inc"].includes(word)).slice(0, 6).join("-");
+  return `normalbench-${words.slice(0, 60) || "device"}.json`;
 }
 
 // A button that saves the device, and the command that adds it to a run.

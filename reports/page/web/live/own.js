@@ -22,7 +22,8 @@ class OwnEncoder {
     this.see = see;
     this.device = live.device;
     this.field = Object.fromEntries(Array.from(root.querySelectorAll("[data-own]"), (one) => [one.dataset.own, one]));
-    for (const side of ["left", "right"]) see.control[side].append(element("option", {}, OWN));
+    this.options = ["left", "right"].map((side) => see.control[side].appendChild(element("option", { disabled: "" }, OWN)));
+    see.failed = (error) => this.refuse(error);
     const storages = new Map(live.data.storages.map(({ storage, title }) => [storage, title]));
     this.field.storage.append(...Array.from(storages, ([storage, title]) => element("option", { value: storage }, title)));
     const texts = live.data.codecs.filter(({ text }) => text);
@@ -43,7 +44,7 @@ class OwnEncoder {
     });
     run.addEventListener("click", () => this.run());
     share.addEventListener("click", () => this.share());
-    keep.addEventListener("click", () => save("mine.glsl", `data:text/plain;charset=utf-8,${encodeURIComponent(text.value)}`));
+    keep.addEventListener("click", () => saveText("mine.glsl", text.value));
     window.addEventListener("hashchange", () => this.read());
   }
 
@@ -55,10 +56,23 @@ class OwnEncoder {
   // An encoder that takes the GPU away is not run again until somebody asks for it.
   lost() {
     if (performance.now() - (this.ran ?? -1e9) > 5000) return;
+    this.withdraw();
+    this.say("The GPU was lost while this encoder ran: does a loop of it not end?");
+  }
+
+  // It is no longer to be seen.
+  withdraw() {
     this.codec = null;
     for (const side of ["left", "right"]) if (this.see.control[side].value === OWN) this.see.control[side].value = EXACT;
+    for (const option of this.options) option.disabled = true;
     live.byLabel.delete(OWN);
-    this.say("The GPU was lost while this encoder ran: does a loop of it not end?");
+  }
+
+  // What a compiler says of the text, in the page's own shaders too.
+  refuse(error) {
+    this.withdraw();
+    this.say(...linesOf(error.message, this.field.text.value));
+    this.field.text.setAttribute("aria-invalid", "true");
   }
 
   say(...lines) {
@@ -77,12 +91,13 @@ class OwnEncoder {
       this.forget(codec);
       this.show(codec, program);
     } catch (error) {
-      this.say(...linesOf(error.message));
+      this.say(...linesOf(error.message, this.field.text.value));
       this.field.text.setAttribute("aria-invalid", "true");
       return;
     }
     this.field.text.removeAttribute("aria-invalid");
     live.byLabel.set(OWN, codec);
+    for (const option of this.options) option.disabled = false;
     if (["left", "right"].some((side) => this.see.control[side].value === OWN)) this.see.change();
   }
 
@@ -95,19 +110,25 @@ class OwnEncoder {
   made() {
     const text = this.field.text.value, bare = text.replace(/\/\/[^\n]*|\/\*[\s\S]*?\*\//g, (comment) => comment.replace(/[^\n]/g, " "));
     if (text.length > LONGEST_TEXT) return `The text is longer than ${LONGEST_TEXT} letters.`;
-    const encode = bare.match(/\bvec([23])\s+(\w*encode)\s*\(([^)]*)\)/), decode = bare.match(/\bvec3\s+(\w*decode)\s*\(([^)]*)\)/);
-    if (!encode) return "There is no encoder: vec2 NAME_encode(vec3 n), or of vec3.";
-    if (!decode) return "There is no decoder: vec3 NAME_decode(vec2 e), or of vec3.";
-    const size = Number(encode[1]), stored = live.data.storages.find((one) => one.storage === this.field.storage.value && one.size === size);
+    const found = (pattern) => new Map(Array.from(bare.matchAll(pattern), (match) => [match.groups.name, match]));
+    const encoders = found(/\bvec(?<size>[23])\s+(?<name>\w+)_encode\s*\((?<given>[^)]*)\)/g);
+    const decoders = found(/\bvec3\s+(?<name>\w+)_decode\s*\((?<given>[^)]*)\)/g);
+    const name = Array.from(encoders.keys()).find((one) => decoders.has(one));
+    if (!encoders.size) return "There is no encoder: vec2 NAME_encode(vec3 n), or of vec3.";
+    if (!name) return `There is no decoder of it: vec3 ${encoders.keys().next().value}_decode(vec2 e), or of vec3.`;
+    if (/\buniform\b/.test(bare)) return "A uniform has no value here: give its number as a constant.";
+    const encode = encoders.get(name).groups, decode = decoders.get(name).groups;
+    const size = Number(encode.size), stored = live.data.storages.find((one) => one.storage === this.field.storage.value && one.size === size);
     if (!stored) return `This storage holds no codes of ${size} numbers; choose another one.`;
     const takes = (parameters) => parameters.split(",").length > 1;
     const source = `${stored.source}\nprecision highp float;\n${live.data.helpers}\n#line 1\n${text}\n#line ${OTHERS}\n`;
-    const calls = { encode: encode[2], decode: decode[1] }, views = { encode: takes(encode[3]), decode: takes(decode[2]) };
+    const calls = { encode: `${name}_encode`, decode: `${name}_decode` }, views = { encode: takes(encode.given), decode: takes(decode.given) };
     return { ...stored, label: OWN, source, calls, views, domain: this.field.domain.value };
   }
 
   show(codec, program) {
     const { device } = this, target = device.target(device.gl.RGBA32UI, TRIED, TRIED), isHalf = this.field.domain.value === "hemisphere";
+    device.clearWords(target);
     device.draw(program, target, { halves: isHalf ? 1 : 2 }, device.tablesOf(codec));
     const words = device.words(target), found = new Float32Array(words.buffer);
     device.release(target);
@@ -127,7 +148,7 @@ class OwnEncoder {
       ? `On ${count} random directions: mean ${digits(sum / count)}°, RMS ${digits(Math.sqrt(squares / count))}°, largest ${digits(worst)}°, at ${vectorText(Array.from(found.slice(at + 1, at + 4)))}.`
       : "No direction comes back as a number.";
     this.say(`${codec.bits} bits in ${codec.title}. ${figures}`, ...(lost && count ? [`${lost} directions come back as no number.`] : []));
-    this.field.command.textContent = `normalbench run --encoding mine.glsl --storage ${codec.storage}`;
+    this.field.command.textContent = `normalbench quality --encoding mine.glsl --storage ${codec.storage} --normals ${codec.domain}`;
     this.map(codec, count ? worst : 1);
   }
 
@@ -159,31 +180,33 @@ class OwnEncoder {
 
   // What a link brought; whether it brought anything. It is shown, and run when somebody asks for it.
   async read() {
-    const packed = location.hash.match(/^#live=([\w-]+)$/)?.[1];
-    if (!packed) return false;
+    if (!location.hash.startsWith("#live=")) return false;
+    const packed = location.hash.slice("#live=".length);
     try {
-      const { text, storage, domain } = JSON.parse(await inflated(packed));
+      const { text, storage, domain } = JSON.parse(await inflated(packed)) ?? {};
       if (typeof text !== "string") throw new Error("it holds no text");
       this.field.text.value = text;
       for (const [name, value] of [["storage", storage], ["domain", domain]]) {
         if (Array.from(this.field[name].options).some((one) => one.value === value)) this.field[name].value = value;
       }
       this.say("This encoder came with the link. Read it, then run it.");
+      this.field.run.hidden = false;
     } catch (error) {
-      this.say(`The link cannot be read: ${error.message}.`);
+      this.say(`The link cannot be read: ${error.message.replace(/\.$/, "")}.`);
     }
-    this.field.run.hidden = false;
     return true;
   }
 }
 
 // What a compiler says, by the line of the text.
-function linesOf(log) {
-  const lines = log.replaceAll("\0", "").split("\n").map((line) => line.trim()).filter(Boolean);
+function linesOf(log, text) {
+  const last = text.split("\n").length, lines = log.replaceAll("\0", "").split("\n").map((line) => line.trim()).filter(Boolean);
   return lines.slice(0, 8).map((line) => {
     const [, at, said] = line.match(/^(?:ERROR|WARNING): \d+:(\d+): ?(.*)$/) ?? [];
     if (!at) return line;
-    return Number(at) < OTHERS ? `Line ${at}: ${said}` : `Where the page calls it: ${said}`;
+    if (Number(at) <= last) return `Line ${at}: ${said}`;
+    if (Number(at) < OTHERS) return `At the end of the text: ${said}`;
+    return /redefinition/.test(said) ? `The page uses this name itself; choose another one: ${said}` : `Where the page calls it: ${said}`;
   });
 }
 

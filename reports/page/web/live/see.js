@@ -170,7 +170,7 @@ class See {
     this.draw();
     if (this.device.isLost) return;
     // What is said of a pixel waits until the turntable stops, because it is read out.
-    if (!this.isTurning) for (const listener of this.listeners) listener();
+    if (!this.isTurning) this.guarded(() => this.listeners.forEach((listener) => listener()));
     // The device is done when a pixel is read back.
     this.device.finish();
     this.isSlow = performance.now() - began > SLOW_MS;
@@ -222,6 +222,23 @@ class See {
 
   draw() {
     if (this.device.isLost) return;
+    this.guarded(() => this.drawSides());
+  }
+
+  // A reader's encoder may not compile with one of the page's shaders. Then it is withdrawn, and all is done without it.
+  guarded(work) {
+    try {
+      work();
+    } catch (error) {
+      if (["left", "right"].every((side) => this.codec(side)?.label !== OWN)) throw error;
+      this.failed(error);
+      this.say();
+      this.drawSides();
+      work();
+    }
+  }
+
+  drawSides() {
     const uniforms = this.uniforms(), at = Math.round((this.canvas.width * this.value("divider")) / 100);
     const parts = { left: [0, at], right: [at, this.canvas.width - at] };
     for (const [side, [from, width]] of Object.entries(parts)) if (width > 0) this.drawSide(side, uniforms, [from, 0, width, this.canvas.height]);

@@ -94,7 +94,8 @@ class TimedCodec {
     Object.assign(this, { on, timer, megapixels: TIMED_SIDE ** 2 / 1e6 });
   }
 
-  // Milliseconds for a megapixel of a pass into `target`, less its empty pass; null where the device does not tell.
+  // Milliseconds for a megapixel of a pass into `target`, less its empty pass; null where the device does not tell, or
+  // tells no difference.
   async pass(name, target, textures) {
     const { on } = this, isInteger = target.name.endsWith("UI"), times = [];
     const empty = [...(isInteger ? ["WRITES_INTEGERS"] : []), ...("codes" in textures ? ["READS_CODES"] : [])];
@@ -103,7 +104,7 @@ class TimedCodec {
       await seen();
       times.push(await this.timer.of(() => on.draw(program, target, textures), () => readPixel(on.device.gl, target)));
     }
-    return times.includes(null) ? null : Math.max(0, times[0] - times[1]) / this.megapixels;
+    return times.includes(null) || times[0] <= times[1] ? null : (times[0] - times[1]) / this.megapixels;
   }
 
   async encode() {
