@@ -179,6 +179,8 @@ def test_an_encoder_is_compiled_as_it_is_typed(laboratory):
     typed = text.input_value()
     (first,) = laboratory.texts("[data-own=said]")
     assert re.search(r"16 bits in RGBA8\. On 65536 random directions: mean 0\.33\d°, RMS 0\.3[67]", first), first
+    # 10 log10 of 1 over the mean squared error, as `quality --normals sphere` has it.
+    assert float(re.search(r"PSNR ([\d.]+) dB", first)[1]) == pytest.approx(48.58, abs=0.05)
     text.fill(typed.replace("max(-z, 0.0)", "max(-z, 0.1)"))
     laboratory.says("[data-own=said]", re.compile(r"mean [1-9]"))
     text.fill(typed.replace("max(-z, 0.0)", "maxi(-z, 0.0)"))

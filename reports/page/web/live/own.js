@@ -128,11 +128,11 @@ class OwnEncoder {
 
   show(codec, program) {
     const { device } = this, target = device.target(device.gl.RGBA32UI, TRIED, TRIED), isHalf = this.field.domain.value === "hemisphere";
+    const uniforms = { halves: isHalf ? 1 : 2 };
     device.clearWords(target);
-    device.draw(program, target, { halves: isHalf ? 1 : 2 }, device.tablesOf(codec));
-    const words = device.words(target), found = new Float32Array(words.buffer);
-    device.release(target);
-    let sum = 0, squares = 0, worst = -1, at = 0, lost = 0;
+    device.draw(program, target, uniforms, device.tablesOf(codec));
+    const found = new Float32Array(device.words(target).buffer);
+    let sum = 0, squares = 0, differences = 0, worst = -1, at = 0, lost = 0;
     for (let i = 0; i < found.length; i += 4) {
       const off = found[i];
       if (!(off >= 0)) {
@@ -141,11 +141,17 @@ class OwnEncoder {
       }
       sum += off;
       squares += off * off;
+      differences += found[i + 1];
       if (off > worst) [worst, at] = [off, i];
     }
     const count = found.length / 4 - lost;
+    device.draw(device.program(codec, ["angle.frag", "trip.frag", "figures.frag"], { defines: ["DIRECTION"] }), target, uniforms, device.tablesOf(codec));
+    const direction = Array.from(device.words(target).slice(at, at + 3), floatOf);
+    device.release(target);
+    // Of the three components, with a peak of 1, as in the tables.
+    const decibels = -10 * Math.log10(differences / (3 * count));
     const figures = count
-      ? `On ${count} random directions: mean ${digits(sum / count)}°, RMS ${digits(Math.sqrt(squares / count))}°, largest ${digits(worst)}°, at ${vectorText(Array.from(found.slice(at + 1, at + 4)))}.`
+      ? `On ${count} random directions: mean ${digits(sum / count)}°, RMS ${digits(Math.sqrt(squares / count))}°, largest ${digits(worst)}°, at ${vectorText(direction)}; PSNR ${digits(decibels, 4)} dB.`
       : "No direction comes back as a number.";
     this.say(`${codec.bits} bits in ${codec.title}. ${figures}`, ...(lost && count ? [`${lost} directions come back as no number.`] : []));
     this.field.command.textContent = `normalbench quality --encoding mine.glsl --storage ${codec.storage} --normals ${codec.domain}`;

@@ -29,7 +29,7 @@ class See {
   fill() {
     const names = [EXACT, ...live.data.codecs.map(({ label }) => label)];
     for (const side of ["left", "right"]) this.control[side].append(...names.map((name) => element("option", {}, name)));
-    this.control.subject.append(element("option", { value: SCENE }, "spheres, floor and wall"));
+    this.control.subject.append(element("option", { value: SCENE }, "spheres and walls"));
     for (const [at, { title }] of live.data.scenes.entries()) this.control.subject.append(element("option", { value: at }, title));
     const first = live.data.codecs.find(({ label }) => label === "octahedral rgba8") ?? live.data.codecs[0];
     this.control.left.value = EXACT;

@@ -1,5 +1,5 @@
-// Random directions and how far off they come back: degrees and the direction, as the bits of floats.
-uniform int width;
+// Random directions and how far off they come back, as the bits of floats: degrees, and the square of the difference; or
+// the direction itself.
 uniform float halves;  // 1 for z >= 0 alone, 2 for the whole sphere
 
 out uvec4 found;
@@ -21,6 +21,10 @@ void main() {
     vec2 random = vec2(hashed(uvec2(pixel)) >> 8u) / 16777216.0;
     float z = 1.0 - halves * random.x, around = 6.283185307 * random.y;
     vec3 n = normalize(vec3(sqrt(max(1.0 - z * z, 0.0)) * vec2(cos(around), sin(around)), z));
-    float off = degrees(angle_between(n, round_trip(n, vec3(0.0, 0.0, -1.0))));
-    found = floatBitsToUint(vec4(off, n));
+#ifdef DIRECTION
+    found = floatBitsToUint(vec4(n, 0.0));
+#else
+    vec3 back = round_trip(n, vec3(0.0, 0.0, -1.0)), apart = back - n;
+    found = floatBitsToUint(vec4(degrees(angle_between(n, back)), dot(apart, apart), 0.0, 0.0));
+#endif
 }
