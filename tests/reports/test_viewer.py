@@ -75,9 +75,9 @@ def test_the_gain_and_the_colours_of_an_angle_are_chosen(opened, results):
 @pytest.mark.slow
 def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
     viewed(opened, left="exact", right="spherical rgba8", view="error")
-    stage = opened.page.locator(".stage")
+    stage = opened.page.locator("#viewer .stage")
     box = stage.bounding_box()
-    before = opened.pixels(".stage")
+    before = opened.pixels("#viewer .stage")
     middle = box["y"] + box["height"] / 2
     opened.page.mouse.move(box["x"] + box["width"] * 0.3, middle)
     opened.page.mouse.down()
@@ -85,7 +85,7 @@ def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
     opened.page.mouse.up()
     opened.page.mouse.move(1, 1)
     assert opened.texts("[data-divided]") == ["80 %"]
-    after = opened.pixels(".stage")
+    after = opened.pixels("#viewer .stage")
     changed = (np.abs(after - before).max(axis=2) > 40).mean(axis=0)
     width = len(changed)
     assert changed[: int(0.48 * width)].mean() < 0.02 and changed[int(0.52 * width) : int(0.78 * width)].mean() > 0.2
@@ -98,7 +98,7 @@ def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
 def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened, results):
     viewed(opened, left="octahedral rgba8", right="spheremap rgba8", view="decoded")
     assert opened.page.locator(".lens").is_hidden()
-    box = opened.page.locator(".stage").bounding_box()
+    box = opened.page.locator("#viewer .stage").bounding_box()
     opened.page.mouse.move(box["x"] + box["width"] * (100.5 / 320), box["y"] + box["height"] * (60.5 / 240))
     assert opened.page.locator(".lens").is_visible()
     arrays = kept(results, "octahedral-rgba8")
@@ -112,7 +112,7 @@ def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened,
     degrees = 2.0 ** (-20 + (arrays["angle"][60, 100] - 1.0) / 8)
     assert said.startswith(f"code {code}, decoded (") and said.endswith(f"off by {float(f'{degrees:.2g}'):g}°")
     assert opened.texts("[data-values]")[0].startswith("Pixel 200, 120, exact normal (")
-    opened.page.locator(".stage").focus()
+    opened.page.locator("#viewer .stage").focus()
     opened.page.keyboard.press("ArrowRight")
     opened.page.keyboard.press("Shift+ArrowDown")
     assert opened.texts("[data-values]")[0].startswith("Pixel 202, 140,")
