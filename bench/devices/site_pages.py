@@ -112,7 +112,7 @@ def _shown(title: str, rows: Sequence[Row], of: BenchTable) -> Table:
 
     def says(name: str) -> str:
         column = of.column(name)
-        return "" if not column else f"{column.says} Unit: {column.unit}." if column.unit else column.says
+        return column.definition if column else ""
 
     order = [column.name for column in of.columns if column.name in rows[0]]
     return table(title, [{name: row[name] for name in order} for row in rows], says)

@@ -79,7 +79,6 @@ class Kept(TypedDict):
     sign_bits: Literal[0, 1]
     bytes: Annotated[int, Field(ge=0, le=4)]
     takes_view: bool
-    is_biased: bool
     channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
     tables: dict[Name, Table]
     checks: NotRequired[Checks | None]

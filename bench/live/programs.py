@@ -72,7 +72,6 @@ def _stored(codec: Codec, code: Code) -> Record:
         "target": storage.target.title,
         "size": code.interface.size,
         "words": code.interface.words,
-        "is_biased": storage.is_biased,
         "bytes": channels.bytes if storage.is_packed else 0,
         "channels": [
             {"kind": c.kind, "bits": c.bits, "first": c.first, "integer": c.integer} for c in channels.channels

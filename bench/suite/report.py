@@ -249,7 +249,7 @@ def _section(folder: Path, found: Found, table: Table, asked: bool, remarks: lis
 
 def _definition(table: Table, name: str) -> str:
     column = table.column(name)
-    return f"{column.says} Unit: {column.unit}." if column and column.unit else column.says if column else ""
+    return column.definition if column else ""
 
 
 def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Sheet]:

@@ -65,6 +65,11 @@ class Column:
     shown: bool = True
     is_histogram: bool = False
 
+    @property
+    def definition(self) -> str:
+        """What it says, with its unit."""
+        return f"{self.says} Unit: {self.unit}." if self.unit else self.says
+
     def is_called(self, name: str) -> bool:
         """Whether a row's column is this one."""
         return fnmatchcase(name, self.name)

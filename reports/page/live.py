@@ -55,7 +55,6 @@ class Live:
             **about,
             "codecs": [_named(codec) for codec in self.codecs],
             "storages": [_named(one) for one in self.storages],
-            "left_out": dict(self.left_out),
             "helpers": self.helpers,
             "scenes": list(self._scenes()),
             "unpacking": dict(self.unpacking),

@@ -248,7 +248,6 @@ def html(
         specs: its charts, by the names of their drawings; one that is missing is not shown.
         library_script: what draws them.
     """
-    scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
     laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
     titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
@@ -272,10 +271,21 @@ def html(
         live=found.live,
         live_script=library.packed(laboratory) if found.live else "",
         live_data=library.packed(found.live.data(about(found))) if found.live else "",
-        scripts=scripts,
-        style=(WEB / "page.css").read_text(encoding="utf-8"),
-        script_sources=sources_of([*scripts, library_script, laboratory], is_beside=bool(gallery.files)),
+        **base(SCRIPTS, [library_script, laboratory], is_beside=bool(gallery.files)),
     )
+
+
+def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = False) -> dict[str, Any]:
+    """What base.html.j2 needs of every page.
+
+    Args:
+        names: its scripts, files of the folder web.
+        unpacked: texts of scripts that it unpacks later.
+        is_beside: whether pictures lie beside it.
+    """
+    scripts = [(WEB / name).read_text(encoding="utf-8") for name in names]
+    style = (WEB / "page.css").read_text(encoding="utf-8")
+    return {"scripts": scripts, "style": style, "script_sources": sources_of([*scripts, *unpacked], is_beside)}
 
 
 def about(found: Found) -> dict[str, str]:

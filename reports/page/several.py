@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import tables
-from .page import WEB, data_block, shown_sheet, sources_of, template
+from .page import base, data_block, shown_sheet, template
 from .sections import Sheet
 
 SCRIPTS = ("tables.js", "several.js")
@@ -75,15 +75,12 @@ def html(names: Sequence[str], sheets: Sequence[Sheet], figures: Sequence[Figure
         sheets: what differs first.
         figures: of each table.
     """
-    scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
     shown = [shown_sheet(sheet) for sheet in sheets]
     return template("several.html.j2").render(
         names=names,
         sheets=shown,
         figures=figures,
-        scripts=scripts,
-        style=(WEB / "page.css").read_text(encoding="utf-8"),
-        script_sources=sources_of(scripts),
+        **base(SCRIPTS),
     )
 
 

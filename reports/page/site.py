@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .. import tables
-from .page import WEB, Cell, Column, Line, Table, sources_of, template
+from .page import Cell, Column, Line, Table, base, template
 
 SCRIPTS = ("tables.js", "site.js")
 
@@ -60,12 +60,6 @@ def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> Table:
     return Table(title, columns, lines, "")
 
 
-def _parts() -> dict[str, object]:
-    scripts = [(WEB / name).read_text(encoding="utf-8") for name in SCRIPTS]
-    style = (WEB / "page.css").read_text(encoding="utf-8")
-    return {"scripts": scripts, "style": style, "script_sources": sources_of(scripts)}
-
-
 def index_html(said: Sequence[str], searched: Sequence[Searched]) -> str:
     """The index.
 
@@ -73,9 +67,9 @@ def index_html(said: Sequence[str], searched: Sequence[Searched]) -> str:
         said: what all devices together show, in sentences.
         searched: its tables.
     """
-    return template("site.html.j2").render(said=said, searched=searched, **_parts())
+    return template("site.html.j2").render(said=said, searched=searched, **base(SCRIPTS))
 
 
 def device_html(device: DevicePage) -> str:
     """A device's page."""
-    return template("device.html.j2").render(device=device, **_parts())
+    return template("device.html.j2").render(device=device, **base(SCRIPTS))

@@ -10,7 +10,6 @@ from ....reports.charts.drawings import Drawing
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...codecs.names import check_twin, codecs_named, fitting
-from ...live.kept import write_live
 from ...machine.devices import require_device, require_jax
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
@@ -170,6 +169,9 @@ def _write(done: Measured, _: Tick) -> None:
     if done.outputs.maps:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
     if done.outputs.live:
+        # It imports what writes GLSL ES, which rows alone do not need.
+        from ...live.kept import write_live
+
         write_live((step.case.codec for step in done.steps), done.outputs.live)
         pictures.write_scenes([step.case for step in done.steps], done.outputs.live)
 

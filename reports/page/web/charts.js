@@ -2,8 +2,7 @@
 
 // Charts by Vega-Lite: packed, unpacked when the first one comes into view. What they say is read without `eval`.
 async function unpacked(id) {
-  const bytes = Uint8Array.from(atob(document.querySelector(id).textContent), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+  return new Response(new Blob([bytesOf(document.querySelector(id).textContent)]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 }
 
 const charts = { views: [] };

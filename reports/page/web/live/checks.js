@@ -17,10 +17,6 @@ function hashed(word, { shifts, factors }) {
   return mixed;
 }
 
-function bytesOf(text) {
-  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
-}
-
 // How near a number is to where its rounding turns, in units of its own error, and the step from the code on the other
 // side to `place`, the code that it has.
 function tieOf(x, place, { kind, bits, integer }, { rounding, bytes }) {
@@ -84,7 +80,7 @@ class Normals {
   }
 
   make(domain) {
-    const { count, hard } = this.common, given = new Float32Array(bytesOf(hard.data));
+    const { count, hard } = this.common, given = new Float32Array(bytesOf(hard.data).buffer);
     const n = new Float32Array(4 * count), view = new Float32Array(4 * count), f = Math.fround;
     for (let i = 0; i < count; i++) {
       const at = 4 * i;
@@ -187,7 +183,7 @@ class Checks {
   // them tells, nothing is known: `isKnown` is 0 there. `exact` are the numbers before the first of them was stored, four
   // for each normal, or null.
   runs(expected, given, codec, exact) {
-    const { group } = this.common, size = codec.channels.length, asked = new Uint32Array(bytesOf(expected.groups));
+    const { group } = this.common, size = codec.channels.length, asked = new Uint32Array(bytesOf(expected.groups).buffer);
     const sums = given.map((codes) => this.sums(codes, size));
     const codes = new Int32Array(given[0].length), isKnown = new Uint8Array(asked.length);
     for (let g = 0; g < asked.length; g++) {
@@ -243,7 +239,7 @@ class Checks {
 
   // Of groups that nothing is known of: those normals whose codes travel with the page.
   addSamples(found, expected, run, here, size) {
-    const { stride, group, count } = this.common, sample = new Int32Array(bytesOf(expected.sample));
+    const { stride, group, count } = this.common, sample = new Int32Array(bytesOf(expected.sample).buffer);
     for (let i = 0; i < count / stride; i++) {
       const codes = sample.subarray(size * i, size * (i + 1)), own = here.subarray(size * stride * i, size * (stride * i + 1));
       const differs = codes.some((code, c) => code !== own[c]);
@@ -253,7 +249,7 @@ class Checks {
 
   // Which numbers differ anywhere.
   numbers(expected, codes, size) {
-    const { count } = this.common, sums = new Uint32Array(bytesOf(expected.numbers)), normals = new Normals(this.common);
+    const { count } = this.common, sums = new Uint32Array(bytesOf(expected.numbers).buffer), normals = new Normals(this.common);
     const one = (c) => Int32Array.from({ length: count }, (_, i) => codes[size * i + c]);
     return Array.from({ length: size }, (_, c) => c).filter((c) => normals.checksum(one(c), 1, 1) !== sums[c]);
   }

@@ -174,8 +174,7 @@ class LiveDevice {
     const key = codec.source;
     if (!this.tables.has(key)) {
       const made = Object.entries(codec.tables).map(([name, { width, height, channels, data }]) => {
-        const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-        return [name, this.texture({ 1: "R32F", 2: "RG32F", 4: "RGBA32F" }[channels], width, height, new Float32Array(bytes.buffer))];
+        return [name, this.texture({ 1: "R32F", 2: "RG32F", 4: "RGBA32F" }[channels], width, height, new Float32Array(bytesOf(data).buffer))];
       });
       this.tables.set(key, Object.fromEntries(made));
     }

@@ -37,9 +37,9 @@ class See {
     fillColours(live.data.colours);
     const strip = this.control.strip, pen = penOf(strip);
     [strip.width, strip.height] = [256, 1];
-    const image = new ImageData(256, 1);
-    for (let i = 0; i < 256; i++) image.data.set([...colours.table.slice(3 * i, 3 * i + 3), 255], 4 * i);
-    pen.putImageData(image, 0, 0);
+    this.scale = new Uint8ClampedArray(256 * 4);
+    for (let i = 0; i < 256; i++) this.scale.set([...colours.table.slice(3 * i, 3 * i + 3), 255], 4 * i);
+    pen.putImageData(new ImageData(this.scale, 256), 0, 0);
   }
 
   listen() {
@@ -69,9 +69,7 @@ class See {
 
   // Everything that was on the GPU is gone, or was never there.
   restore() {
-    const { device } = this, bytes = new Uint8Array(256 * 4);
-    for (let i = 0; i < 256; i++) bytes.set([...colours.table.slice(3 * i, 3 * i + 3), 255], 4 * i);
-    this.colours = device.texture("RGBA8", 256, 1, bytes, true);
+    this.colours = this.device.texture("RGBA8", 256, 1, this.scale, true);
     this.pictures = new Map();
     this.sides = { left: {}, right: {} };
     this.half();
