@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import ctypes
 import gc
+import sys
 
 # mallopt's name in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
 M_ARENA_MAX, ARENAS = -8, 2
@@ -17,10 +18,18 @@ def have_few_heaps() -> None:
 
 
 def give_back_what_is_freed() -> None:
-    """What is freed within the heaps is the system's again: hundreds of megabytes after a table of images."""
-    gc.collect()
+    """What is freed within the heaps is the system's again: tens of megabytes after a frame, in a few milliseconds."""
     if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
         trim(0)
+
+
+def give_back_what_a_table_needed() -> None:
+    """What objects hold that nothing refers to, and compiled programs: hundreds of megabytes. The next table reads what
+    it shares of them from the cache."""
+    gc.collect()
+    if jax := sys.modules.get("jax"):
+        jax.clear_caches()
+    give_back_what_is_freed()
 
 
 def keep_what_is_imported() -> None:

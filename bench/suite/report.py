@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
+import pickle
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
@@ -48,6 +52,7 @@ PAGE, CHARTS, PICTURES, MAPS, LISTINGS = "report.html", "charts", "pictures", "s
 LIVE = "live"
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
+NOTHING: Mapping[str, str] = MappingProxyType({})
 # Rows that another version wrote, or somebody's hand.
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
@@ -117,9 +122,17 @@ def _write_text(make: Callable[[], str], output: Path | None) -> None:
 
 
 def write_report(
-    folder: Path, done: Done, target: Path, charts: str | None = CHARTS, pictures_beside: bool = False
+    folder: Path,
+    done: Done,
+    target: Path,
+    charts: str | None = CHARTS,
+    pictures_beside: bool = False,
+    drawn: Mapping[str, str] = NOTHING,
 ) -> Path:
     """The page, and beside it a folder of its charts unless `charts` is None, and one of its pictures if asked for.
+
+    Args:
+        drawn: charts that are there already, as `draw_ahead` gives them.
 
     Returns:
         the page's path.
@@ -137,7 +150,7 @@ def write_report(
         # Pictures are packed while charts are drawn; either takes a core for seconds.
         with ThreadPoolExecutor(1) as pool:
             packing = pool.submit(embedded.gallery, run.subjects, pictures)
-            specs, failed = _drawn(run, beside)
+            specs, failed = _drawn(run, beside, drawn)
             gallery = packing.result()
     if gallery.damaged:
         failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
@@ -165,12 +178,30 @@ def _library() -> str:
     return cache.kept(cache.key_of(library.name()), lambda: {"script": library.script()})["script"]
 
 
-def _drawn(run: Found, folder: Path) -> tuple[dict[str, Sequence[Row]], list[str]]:
+def draw_ahead(folder: Path) -> dict[str, str]:
+    """Writes the charts of what a run has measured so far. Gives what each of them shows, by name. Raises UsageError
+    where one cannot be written."""
+    found = {}
+    for drawing in page.drawings(gathered(folder, read_run(folder))):
+        # What cannot be drawn of these rows is said of all of them.
+        with suppress(*UNEXPECTED):
+            _write_chart(drawing, folder / CHARTS)
+            found[drawing.name] = _what_it_shows(drawing)
+    return found
+
+
+def _what_it_shows(drawing: drawings.Drawing) -> str:
+    """What two charts that are alike have in common."""
+    return hashlib.sha256(pickle.dumps(drawing.draw)).hexdigest()
+
+
+def _drawn(run: Found, folder: Path, drawn: Mapping[str, str]) -> tuple[dict[str, Sequence[Row]], list[str]]:
     """Writes every chart as files. Gives those of the page by name, and a sentence for each that cannot be drawn."""
     specs, failed = {}, []
     for drawing in page.drawings(run):
         try:
-            _write_chart(drawing, folder)
+            if not (drawing.name in drawn and drawn[drawing.name] == _what_it_shows(drawing)):
+                _write_chart(drawing, folder)
             if drawing.specs:
                 made = drawing.specs()
                 # A browser reads no infinity.

@@ -7,16 +7,17 @@ import sys
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 from ...reports import tables
-from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
+from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
-from ..results.measuring import HERE, Asked, Place, asked, measured
+from ..results.measuring import Asked, Place, asked, measured
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
@@ -117,23 +118,38 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
     facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
     facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
     folder = output or unfinished(RESULTS, facts) or _new_folder()
-    with noting_what_is_left_out() as left_out:
-        asks = asked_of(request, folder)
-    facts |= {"left_out": left_out}
-    keep_what_is_imported()
-    total = sum(len(ask.steps) for ask in asks)
-    with place(on) as where, opened(folder, facts) as run:
-        if run.kept:
-            tell(f"{folder} goes on: {_there(run, asks)} of {total} steps are there")
-        try:
-            shown = _measure_all(run, asks, given(request), where)
-            run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
-            keep_times(where, folder)
-            _complete(run, shown)
-        except (KeyboardInterrupt, SystemExit):
-            tell(f"{run.kept} of {total} steps are kept; the same command goes on")
-            raise
+    # It imports what it needs while this process finds out what there is to measure.
+    with _second(request, on) as second:
+        with noting_what_is_left_out() as left_out:
+            asks = asked_of(request, folder)
+        facts |= {"left_out": left_out}
+        keep_what_is_imported()
+        with place(on) as where, opened(folder, facts) as run:
+            shown = _measured_and_shown(run, asks, given(request), where, second)
     return int(shown.failed)
+
+
+def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
+    """The second process, where there is something for it to do."""
+    is_wanted = not on and is_worth_it(chosen_tables(request.tables, given(request)))
+    return second_process() if is_wanted else nullcontext()
+
+
+def _measured_and_shown(
+    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
+) -> Shown:
+    total = sum(len(ask.steps) for ask in asks)
+    if run.kept:
+        tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
+    try:
+        shown = _measure_all(run, asks, said, where, second)
+        run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
+        keep_times(where, run.folder)
+        _complete(run, shown, second.drawn if second else {})
+    except (KeyboardInterrupt, SystemExit):
+        tell(f"{run.kept} of {total} steps are kept; the same command goes on")
+        raise
+    return shown
 
 
 def _there(run: Run, asks: Iterable[Asked]) -> int:
@@ -146,33 +162,35 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure_all(run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place) -> Shown:
+def _measure_all(
+    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
+) -> Shown:
     """Every table measured and shown."""
     # The answer first: nothing else runs while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
     for ask in first:
         shown.add(ask, measured(ask, run, where))
-    if where is HERE and is_worth_it(rest):
-        _measure_beside(run, rest, shown, said)
+    if second and is_worth_it(ask.table for ask in rest):
+        _measure_beside(run, rest, shown, said, second)
     for ask in rest:
         if ask.table.name not in shown.done:
             shown.add(ask, measured(ask, run, where))
     return shown
 
 
-def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any]) -> None:
+def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any], second: Second) -> None:
     """Tables measured by two processes at the same time, but for those that the second did not get to because something
     killed it."""
     beside = [ask for ask in asks if ask.table.is_measured_beside]
-    with second_process(run, beside, _taken(said, beside)) as second:
-        # What takes times is measured when nothing else runs.
-        for ask in sorted((ask for ask in asks if ask not in beside), key=_takes_times):
-            if _takes_times(ask):
-                second.wait()
-            shown.add(ask, measured(ask, run))
-            _add_written(run, beside, shown, second)
-        second.wait()
+    second.measure(run, beside, _taken(said, beside))
+    # What takes times is measured when nothing else runs.
+    for ask in sorted((ask for ask in asks if ask not in beside), key=_takes_times):
+        if _takes_times(ask):
+            second.wait()
+        shown.add(ask, measured(ask, run))
+        _add_written(run, beside, shown, second)
+    second.wait()
     _add_written(run, beside, shown, second)
 
 
@@ -212,7 +230,7 @@ class Shown:
     def add(self, ask: Asked, done: Measured) -> None:
         """A table that is measured; shown once those before it are."""
         self.done[ask.table.name] = done
-        give_back_what_is_freed()
+        give_back_what_a_table_needed()
         while self._left and self._left[0].table.name in self.done:
             table = self._left.popleft().table
             self.failed |= _show(table, self.done[table.name].rows)
@@ -227,8 +245,8 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
     return failed
 
 
-def _complete(run: Run, shown: Shown) -> None:
-    """Tables for others, the pictures and the page; then the run is finished."""
+def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
+    """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
     from .report import write_report
 
     write_tables(run.folder, read_run(run.folder).tables)
@@ -237,7 +255,7 @@ def _complete(run: Run, shown: Shown) -> None:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
     whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
-    page = write_report(run.folder, whole, run.folder / PAGE)
+    page = write_report(run.folder, whole, run.folder / PAGE, drawn=drawn)
     run.finish()
     say(f"All of it on one page: {page}\n")
 

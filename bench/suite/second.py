@@ -1,7 +1,7 @@
 """The second process of a run, which measures tables while the first one renders others.
 
 One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
-starts it with `second_process`; what happens in it stands in `second_child.py`.
+starts it with `second_process`; what happens in it stands in `second_child.py`. What it measured it draws, too.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import IO, Any
@@ -22,14 +22,15 @@ from ..output.errors import MissingError, UsageError, tell, told
 from ..results.measuring import Asked
 from ..results.plain import key_text
 from ..results.runs import Run
+from ..tables.table import Step, Table
 
 CHILD = python("normalbench.bench.suite.second_child")
 ERRORS: Mapping[int, type[Exception]] = {error.exit_code: error for error in (UsageError, MissingError)}
 
 
-def is_worth_it(asks: Sequence[Asked]) -> bool:
+def is_worth_it(tables: Iterable[Table]) -> bool:
     """Whether there is something to measure at the same time, and a core for it."""
-    return cores() > 1 and len({ask.table.is_measured_beside for ask in asks}) > 1
+    return cores() > 1 and len({table.is_measured_beside for table in tables}) > 1
 
 
 class Second:
@@ -37,15 +38,38 @@ class Second:
 
     Attributes:
         written: the tables whose files are written, too.
+        drawn: the charts that it drew: by name, what each shows.
     """
 
-    def __init__(self, process: subprocess.Popen[str], run: Run, asks: Sequence[Asked]):
+    def __init__(self, process: subprocess.Popen[str]):
         self.written: set[str] = set()
-        self._process, self._run, self._error = process, run, None
-        self._steps = {key_text(ask.table.name, step.key): (ask.table.name, step) for ask in asks for step in ask.steps}
+        self.drawn: dict[str, str] = {}
+        self._process, self._error = process, None
+        self._run: Run | None = None
+        self._steps: dict[str, tuple[str, Step]] = {}
         self._ended = Event()
         self._reader = Thread(target=self._read, daemon=True)
+
+    def measure(self, run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> None:
+        """Have it measure tables into a run.
+
+        Args:
+            said: the options that were given.
+        """
+        self._run = run
+        self._steps = {key_text(ask.table.name, step.key): (ask.table.name, step) for ask in asks for step in ask.steps}
         self._reader.start()
+        tables = [ask.table.name for ask in asks]
+        given = {"folder": str(run.folder), "tables": tables, "said": said, "told": sorted(told)}
+        pipe = self._process.stdin
+        assert pipe
+        # What ends early says why in another way; a pipe that closes tries again to write what it holds.
+        try:
+            pipe.write(json.dumps(given) + "\n")
+            pipe.flush()
+        except BrokenPipeError:
+            with suppress(BrokenPipeError):
+                pipe.close()
 
     def wait(self) -> None:
         """Until its tables are measured and written; rows are missing where something killed it.
@@ -61,7 +85,8 @@ class Second:
         """End the process, and what it started; rows that it has sent are kept."""
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
-        self._reader.join()
+        if self._run:
+            self._reader.join()
 
     def _read(self) -> None:
         try:
@@ -75,30 +100,23 @@ class Second:
             self._ended.set()
 
     def _take(self, line: Mapping[str, Any]) -> None:
+        assert self._run
         if "rows" in line:
             self._run.keep(*self._steps[line["step"]], line["rows"])
         elif "written" in line:
             self.written.add(line["written"])
+        elif "drawn" in line:
+            self.drawn = line["drawn"]
         else:
             raise ERRORS[line["status"]](line["error"])
 
 
 @contextmanager
-def second_process(run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> Iterator[Second]:
-    """A process that measures tables into a run; ended with the block.
-
-    Args:
-        said: the options that were given.
-    """
-    given = {"folder": str(run.folder), "tables": [ask.table.name for ask in asks], "said": said, "told": sorted(told)}
+def second_process() -> Iterator[Second]:
+    """A process that imports what it will need, and waits for what to measure; ended with the block."""
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors, _started(errors) as process:
-        assert process.stdin
-        second = Second(process, run, asks)
+        second = Second(process)
         try:
-            # What ends early says why in another way.
-            with suppress(BrokenPipeError):
-                process.stdin.write(json.dumps(given) + "\n")
-                process.stdin.flush()
             yield second
         finally:
             second.end()

@@ -3,7 +3,8 @@
     python -m normalbench.bench.suite.second_child < REQUEST
 
 REQUEST is a line of JSON. Prints lines of JSON: a step and its rows, a table whose steps are all measured and whose
-files are written, or what is wrong. Ends when its standard input does, as when the first process was killed.
+files are written, the charts that are drawn, or what is wrong. Ends when its standard input does, as when the first
+process was killed.
 """
 
 from __future__ import annotations
@@ -13,16 +14,20 @@ import os
 import signal
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 from typing import IO, Any
 
-from ..machine.memory import give_back_what_is_freed, have_few_heaps, keep_what_is_imported
+from ..machine.devices import require_jax
+from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..output.errors import MissingError, UsageError, told
 from ..results.measuring import measured
 from ..results.plain import key_text, plain
 from ..results.runs import read_run
+from ..tables.registry import TABLES
 from ..tables.table import Row, Step
+from .report import draw_ahead
 from .run import asked_of
 from .run_options import RunOptions
 
@@ -59,7 +64,17 @@ def measure(given: Mapping[str, Any], sent: Sent) -> None:
         done = measured(ask, sent)
         ask.table.work.write(done, lambda _: None)
         sent.send({"written": ask.table.name})
-        give_back_what_is_freed()
+        give_back_what_a_table_needed()
+    sent.send({"drawn": draw_ahead(Path(given["folder"]))})
+
+
+def _import_what_is_needed() -> None:
+    """While the first process looks for what to measure."""
+    require_jax()
+    for table in TABLES.values():
+        if table.is_measured_beside:
+            # Looked up when it is first asked for.
+            _ = table.work
 
 
 def _end_with_the_first() -> None:
@@ -78,7 +93,11 @@ def _own_output() -> IO[str]:
 def main() -> None:
     """Measure what standard input asks for."""
     have_few_heaps()
-    out, given = _own_output(), json.loads(sys.stdin.readline())
+    out = _own_output()
+    # What is missing is said by the first process.
+    with suppress(MissingError):
+        _import_what_is_needed()
+    given = json.loads(sys.stdin.readline())
     Thread(target=_end_with_the_first, daemon=True).start()
     # The first process has said it.
     told.update(given["told"])

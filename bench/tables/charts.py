@@ -29,7 +29,11 @@ def drawing(
     specs: Callable[[Sequence[Row]], Sequence[dict[str, Any]]],
 ) -> Drawing:
     """A chart of rows: as files by `draw`, in the page by `specs`."""
-    return Drawing(name, title, description, lambda: draw(for_drawing(rows, NOT_SHOWN)), partial(specs, rows))
+    return Drawing(name, title, description, partial(_drawn, draw, rows), partial(specs, rows))
+
+
+def _drawn(draw: Callable[[Sequence[Row]], Any], rows: Sequence[Row]) -> Any:
+    return draw(for_drawing(rows, NOT_SHOWN))
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:

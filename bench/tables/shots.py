@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..machine.memory import give_back_what_is_freed
 from .table import Row, Step, Tick
 
 
@@ -38,6 +39,8 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
             row, drawn = shot.bench.measure(shot.case)
             if shot.images and drawn:
                 write(shot.images, row, drawn, shot.bench.reference(shot.case))
+            del drawn
+            give_back_what_is_freed()
             tick(step.name)
             yield [row]
 

@@ -50,6 +50,11 @@ class NormalPixels:
     bits: tuple[int, ...]
     decoded: np.ndarray
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Height, width, 3."""
+        return self.decoded.shape
+
 
 @dataclass(frozen=True)
 class ImagePixels:
@@ -57,6 +62,11 @@ class ImagePixels:
 
     final: np.ndarray
     flip: np.ndarray | None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Height, width, 3."""
+        return self.final.shape
 
 
 @dataclass(frozen=True)

@@ -78,6 +78,8 @@ def test_pictures_that_do_not_fit_are_named_and_the_best_come_first(results):
         and "xy rgba8, the normals of playground" in made.left_out
     )
     assert len(shown["codecs"]) + len(made.left_out) == len(subject.codecs)
+    ranked = [one.label for one in sorted(subject.codecs, key=lambda one: one.rank)]
+    assert {one["label"] for one in shown["codecs"]} == set(ranked[: len(shown["codecs"])]), "no worse one in its place"
 
 
 def test_damaged_pictures_are_named(results, tmp_path):

@@ -18,7 +18,6 @@ from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto
 from ....reports.charts.drawings import Drawing
 from ....reports.charts.front_specs import pareto_specs
-from ....reports.charts.pareto import MOST_PANELS
 from ...codecs.user_encodings import encodings_named
 from ...isa import isa, spirv
 from ...options import gpu_families as families
@@ -312,8 +311,9 @@ def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
             "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
         )
         said += "another is no dearer, no worse and takes no more bits. The figures are in the tables."
-        shown = [panel for panel in front.panels if panel.is_usual] if len(front.panels) > MOST_PANELS else front.panels
-        draws = partial(pareto.pareto_figure, shown, front.error), partial(pareto_specs, front.panels, front.error)
+        # The page's chart has a switch between GPUs; a file shows the one that the page speaks of.
+        usual = [panel for panel in front.panels if panel.is_usual]
+        draws = partial(pareto.pareto_figure, usual, front.error), partial(pareto_specs, front.panels, front.error)
         yield Drawing(f"cost-{at}", title, said, *draws)
 
 

@@ -46,7 +46,7 @@ def write(chosen: Sequence[measure.Case], folder: Path) -> None:
 
 def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
     """Four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can be
-    had."""
+    had. Gives the pictures of the article's methods."""
     wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
     drawn: Drawn = {}
     for (normals, codec), case in wanted.items():
@@ -61,8 +61,14 @@ def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
             _write_png(folder / f"{name}-{kind}.png", pixels)
         if trip.covered.size <= MAX_PIXELS:
             _write_pixels(folder / f"{name}.npz", codec, trip)
-        drawn[(normals, codec)] = four
+        if _is_in_sheet(normals, codec):
+            drawn[(normals, codec)] = four
     return drawn
+
+
+def _is_in_sheet(normals: str, codec: Codec) -> bool:
+    is_article = (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
+    return is_article and codec.encoding.name in published.PICTURED
 
 
 def _round_trip(case: measure.Case) -> measure.RoundTrip | None:
@@ -112,12 +118,7 @@ def write_scenes(chosen: Sequence[measure.Case], folder: Path) -> None:
 
 def _write_sheet(drawn: Drawn, folder: Path) -> None:
     """One picture of the article's methods, where they were measured as the article did."""
-    sheet = {
-        codec.encoding.name: four
-        for (normals, codec), four in drawn.items()
-        if (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
-        and codec.encoding.name in published.PICTURED
-    }
+    sheet = {codec.encoding.name: four for (_, codec), four in drawn.items()}
     if len(sheet) == len(published.PICTURED):
         _write_png(folder / f"{published.NORMALS}-{published.STORAGE}.png", pictures.contact_sheet(sheet))
 

@@ -29,17 +29,24 @@ def cores(monkeypatch):
 
 
 @pytest.mark.usefixtures("gl")
-def test_two_processes_leave_what_one_does(run, tmp_path, cores):
-    """Rows and files are those of a run in one process, and tables are printed in their order."""
-    said = {}
+def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
+    """Rows and files are those of a run in one process, and tables are printed in their order. The second one draws
+    what it measured."""
+    said, drawn = {}, {1: [], 2: []}
+    kept = report._write_chart
     for count in (1, 2):
         cores(count)
+        here = drawn[count]
+        monkeypatch.setattr(report, "_write_chart", lambda one, to, here=here: here.append(one.name) or kept(one, to))
         status, said[count], err = run(*SMALL, "-o", str(tmp_path / str(count)))
         assert status == 0 and err == "", err
     one, two = (read_run(tmp_path / str(count)).tables for count in (1, 2))
     assert {name: one[name] for name in sorted(one)} == {name: two[name] for name in sorted(two)}
     files = [{str(p.relative_to(tmp_path / n)) for p in (tmp_path / n).rglob("*")} for n in ("1", "2")]
     assert files[0] == files[1] and "report.html" in files[1]
+    # What the first process has measured by then, the second one draws as well.
+    assert set(drawn[1]) == {"depth", "effects"} and set(drawn[2]) <= {"effects"}, drawn
+    assert (tmp_path / "1/charts/depth.png").read_bytes() == (tmp_path / "2/charts/depth.png").read_bytes()
     assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
 
 
@@ -107,7 +114,7 @@ def test_the_answer_comes_first(cores, monkeypatch):
     )
     monkeypatch.setattr(run_of, "show_summary", lambda table, _: seen.append(f"{table.name} is shown"))
     tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
-    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE)
+    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE, None)
     assert seen[:2] == ["pick", "pick is shown"], seen
 
 
