@@ -249,8 +249,8 @@ class Table:
         partial: whether a row that says why figures are missing may have others.
         in_all: whether `run` measures it without being asked to.
         asked_by: an option; where it is given, `run` measures the table without being asked to.
-        is_measured_beside: whether `run` measures it in its second process: what needs JAX or compilers rather than
-            the GL device.
+        is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
+            on the GL device.
         old_names: what older runs call the table.
         renamed: columns of older runs, by what they are called now.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
