@@ -166,7 +166,7 @@ def _measure_all(
     run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
 ) -> Shown:
     """Every table measured and shown."""
-    # The answer first: nothing else runs while people wait for it.
+    # The answer first: nothing else is measured while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
     for ask in first:
