@@ -179,12 +179,13 @@ def _library() -> str:
 
 
 def draw_ahead(folder: Path) -> dict[str, str]:
-    """Writes the charts of what a run has measured so far. Gives what each of them shows, by name. Raises UsageError
-    where one cannot be written."""
+    """Writes the charts of what a run has measured so far. Gives what each of them shows, by name.
+
+    Those that cannot be drawn or written are left to `write_report`, which says so.
+    """
     found = {}
     for drawing in page.drawings(gathered(folder, read_run(folder))):
-        # What cannot be drawn of these rows is said of all of them.
-        with suppress(*UNEXPECTED):
+        with suppress(*UNEXPECTED, UsageError, OSError):
             _write_chart(drawing, folder / CHARTS)
             found[drawing.name] = _what_it_shows(drawing)
     return found

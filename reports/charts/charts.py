@@ -151,6 +151,8 @@ def vectors_chart(rows: Sequence[Row]) -> Any:
             axis.plot([row["speed"] for row in line], errors, color=colour, linestyle=dash, marker=".", label=name)
         _speeds(axis, sorted({row["speed"] for row in part}), part[0]["bits"])
     panels[0][0].set_ylabel("mean error, pixels")
+    # The layout takes a legend for a line shorter than it is, in inches.
+    figure.get_layout_engine().set(h_pad=0.15)
     return figure
 
 
@@ -160,7 +162,9 @@ def _speeds(axis: Any, speeds: list[float], bits: int) -> None:
     axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
     axis.xaxis.set_major_formatter("{x:g}")
     axis.grid(alpha=0.3)
-    axis.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False, handlelength=5)
+    # Below what the axis says, in its own letters: a share of the panel's height would cut off a long legend.
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5}
+    axis.legend(fontsize=7, frameon=False, handlelength=5, **below)
 
 
 def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:

@@ -33,6 +33,8 @@ def maps_chart(rows: Sequence[Row]) -> Any:
         a figure for `plots.save`.
     """
     figure, axis = drawn_off_screen().subplots(figsize=(8.2, 1.4 + 0.3 * len(rows)), layout="constrained")
+    from matplotlib.ticker import LogLocator
+
     places = range(len(rows))
     found = {column: [max(row[column], LEAST_DEG) for row in rows] for column, *_ in MARKED}
     axis.hlines(places, found["angle_mean_deg"], found["angle_max_deg"], color="#AAAAAA", linewidth=1.2, zorder=1)
@@ -41,6 +43,8 @@ def maps_chart(rows: Sequence[Row]) -> Any:
     axis.set_yticks(places, [label(row) for row in rows], size=8)
     axis.invert_yaxis()
     axis.set_xscale("log")
+    # Few of these ranges hold several powers of ten.
+    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.xaxis.set_major_formatter("{x:g}")
     axis.xaxis.set_minor_formatter("")
     axis.set_xlabel(TITLE)

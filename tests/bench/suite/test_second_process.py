@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -59,6 +60,19 @@ def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cor
     assert status == 0 and read_run(tmp_path / "run").finished, err
     assert set(read_run(tmp_path / "run").tables) == {"depth", "effects", "frames"}
     assert err == "normalbench: broken\n"
+
+
+@pytest.mark.usefixtures("gl")
+def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
+    """Where their folder is a file, the second process leaves it to the first to say so."""
+    cores(2)
+    folder = tmp_path / "run"
+    assert run("run", "--tables", "depth", "-o", str(folder))[0] == 0
+    shutil.rmtree(folder / "charts")
+    (folder / "charts").touch()
+    status, _, err = run(*SMALL, "-o", str(folder))
+    lines = err.splitlines()
+    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
 
 
 @pytest.mark.usefixtures("gl")
