@@ -286,6 +286,9 @@ def _end(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGALRM, lambda _, later: _end(number, later))
         signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
         return
+    # What was put off before would end the program a second time, while it tidies up.
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, lambda *_: None)
     by = SystemExit(TERMINATED) if number == signal.SIGTERM else KeyboardInterrupt()
     ending.append(by)
     sys.unraisablehook = _say_unless_ending

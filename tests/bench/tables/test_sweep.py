@@ -7,11 +7,13 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from normalbench.bench.cli import app as cli
 from normalbench.bench.results.measuring import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.measure import STAGES
@@ -179,6 +181,23 @@ def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypat
     status, out, err = run("sweep", *arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
     assert not list(tmp_path.iterdir())
+
+
+def test_what_was_put_off_does_not_end_the_program_twice(monkeypatch):
+    """An interruption during an import waits; once another one has ended the program, it does not come any more."""
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    monkeypatch.setattr(cli, "ending", [])
+    before = signal.getsignal(signal.SIGALRM)
+    importing = SimpleNamespace(f_code=SimpleNamespace(co_filename="<frozen importlib._bootstrap>"), f_back=None)
+    try:
+        cli._end(signal.SIGINT, importing)
+        with pytest.raises(KeyboardInterrupt):
+            cli._end(signal.SIGINT, None)
+        assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+        signal.raise_signal(signal.SIGALRM)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 @pytest.mark.slow
