@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import pickle
@@ -193,7 +192,7 @@ def draw_ahead(folder: Path) -> dict[str, str]:
 
 def _what_it_shows(drawing: drawings.Drawing) -> str:
     """What two charts that are alike have in common."""
-    return hashlib.sha256(pickle.dumps(drawing.draw)).hexdigest()
+    return cache.key_of(pickle.dumps(drawing.draw))
 
 
 def _drawn(run: Found, folder: Path, drawn: Mapping[str, str]) -> tuple[dict[str, Sequence[Row]], list[str]]:
