@@ -651,6 +651,20 @@ def throughput(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
+def growth(
+    *,
+    over: Names = ...,
+    sizes: Names | None = ...,
+    on: str | None = ...,
+) -> Rows:
+    """How the time grows with the number of normals, codecs, codes, objects and lights.
+
+    Args:
+        over: What grows: normals, codecs, codes, objects, lights; comma-separated, or all.
+        sizes: Sizes, comma-separated, of one kind. Default: three, each about ten times the one before.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
 def published(
     *,
     source: Names = ...,

@@ -25,6 +25,7 @@ FOLDERS = (
     "sweep",
     "tune",
     "throughput",
+    "growth",
     "published",
     "devices",
     "device_facts",

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from ...reports.tables import written
+from ..metrics.growth import exponent
 from ..output.errors import UsageError
 from ..output.journal import journal
 from .chunks import chunk_size
@@ -105,15 +106,21 @@ def simulated(load: Load, workers: int, costs: Costs, seed: int = 0) -> Simulate
 
 
 def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[dict[str, Any]]:
-    """A row for each number of workers; the loads are measured one after the other."""
+    """A row for each number of workers; the loads are measured one after the other.
+
+    From the row before the time grows as workers^exponent: -1 where twice as many take half the time.
+    """
     alone = sum(simulated(load, 1, costs).seconds for load in loads)
-    made = []
+    made: list[dict[str, Any]] = []
+    fewer: tuple[int, float] | None = None
     for workers in WORKERS:
         found = [simulated(load, workers, costs) for load in loads]
         took = costs.start + sum(one.seconds for one in found)
         row = {"work": name, "workers": workers, "minutes": round(took / 60, 1), "times faster": round(alone / took, 1)}
         made.append(row | {"workers busy %": round(100 * alone / took / workers)})
         made[-1]["command busy %"] = round(100 * sum(one.command for one in found) / took, 1)
+        made[-1]["exponent"] = fewer and exponent((fewer[0], workers), (fewer[1], took))
+        fewer = workers, took
     return made
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
-
-import numpy as np
 
 from ....reports.charts import throughput as charts
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_jax
+from ...metrics.growth import exponent
 from ...options.counts import MAX_TIMED_COUNT, checked_numbers
 from ...options.targets import that_fit
 from ...output.errors import pick
@@ -51,8 +49,7 @@ def exponents(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in rows if (row["statistics"], row["encoding"]) == (statistics, encoding)]
         counts = [row["count"] for row in part]
         if len(counts) > 1:
-            times = [math.log(row["count"] / row["rate"]) for row in part]
-            slope = np.polyfit(np.log(counts), times, 1)[0]
+            slope = exponent(counts, [row["count"] / row["rate"] for row in part])
             between = f"from {min(counts)} to {max(counts)} normals"
             yield f"{encoding}, {statistics}: time grows as count^{slope:.2f} {between}"
 

@@ -1,0 +1,1 @@
+"""How the time grows with the size of what is measured."""
