@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from typing import Any
 
 from ..languages.words import file_of, names_an_encoder, twin_of
-from ..metrics.meter import Worst
+from ..metrics.totals import Worst
 from ..options.option import checked_options
 from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps

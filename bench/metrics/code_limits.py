@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .meter import Statistics
+from .totals import Statistics
 
 SPHERE, HEMISPHERE = 4 * math.pi, 2 * math.pi
 AREAS = {"sphere": SPHERE, "hemisphere": HEMISPHERE}

@@ -9,10 +9,8 @@ histogram whose bins are 2^-10 of an octave wide, so they hold to 0.1 %.
 from __future__ import annotations
 
 import itertools
-import math
 import operator
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from threading import Lock
 from typing import Any, NamedTuple
@@ -25,7 +23,8 @@ from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
 from ..machine.cores import on_all_cores
 from .angles import angles_deg
-from .histogram import BINS, bin_of, bins_of, counts_below, counts_by_angle, percentile, tally
+from .histogram import bin_of, bins_of, tally
+from .totals import Figures, Part, Statistics, Total, Worst, statistics
 
 # Lanes that are summed apart, and the rows added to them at a time. XLA copies a computation into each of its uses, up
 # to 15, and computes it anew for each. With 16 rows each number is computed once.
@@ -38,18 +37,6 @@ SAME_ANGLE = 0.999
 
 def idle() -> None:
     """What is done at each chunk when nobody watches."""
-
-
-class Figures(NamedTuple):
-    """Of the covered normals of a chunk: sums of the squared error, of the article's squared error (in units of 1/255),
-    of the angle and of its square (degrees), how many decodes were not numbers, and the largest angle."""
-
-    squared: Any
-    article_squared: Any
-    angle: Any
-    angle_squared: Any
-    invalid: Any
-    largest: Any
 
 
 def angle_between(a: Vec3, b: Vec3):
@@ -129,57 +116,6 @@ def _traced_scan(chunk: Decoded):
 
 
 _scan = jax.jit(_traced_scan)
-# Figures, how many normals lie in each bin of the histogram, and the normal with the largest angle.
-Part = tuple[Figures, np.ndarray, "Worst | None"]
-
-
-@dataclass(frozen=True)
-class Statistics:
-    """What a set of normals lost in a codec.
-
-    Attributes:
-        count: normals that count; background is left out.
-        pixels: all of them, background included.
-        invalid: decodes that were no number; each counts as the opposite direction.
-        mse: mean squared error over the three components of covered normals, not renormalised.
-        article_mse: the article's: |n - n'| rounded to 8 bits, over every pixel.
-        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
-        angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
-            first holds 0 as well.
-        within: for each power of two of degrees, ascending, how many angles are below it.
-        worst: the normal that came back farthest off.
-    """
-
-    count: int
-    pixels: int
-    invalid: int
-    mse: float
-    article_mse: float
-    angle_mean_deg: float
-    angle_rms_deg: float
-    angle_p99_deg: float
-    angle_max_deg: float
-    angle_counts: tuple[tuple[float, int], ...]
-    within: tuple[tuple[float, int], ...]
-    worst: Worst | None
-
-
-@dataclass(frozen=True)
-class Worst:
-    """The normal that came back farthest off, what it came back as, float32 of shape (3,), and by how many degrees."""
-
-    normal: np.ndarray
-    decoded: np.ndarray
-    angle_deg: float
-
-    def __str__(self) -> str:
-        normal, decoded = (", ".join(str(c) for c in v) for v in (self.normal, self.decoded))
-        return f"({normal}) comes back as ({decoded}), {self.angle_deg:.6g} degrees off"
-
-
-def psnr_db(mse: float) -> float:
-    """Peak signal to noise ratio for a peak of 1, infinite where there is no error."""
-    return 10 * math.log10(1 / mse) if mse > 0 else math.inf
 
 
 def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
@@ -202,28 +138,6 @@ def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
     with np.errstate(invalid="ignore", over="ignore"):
         angles = angles_deg(n, decoded)
     return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
-
-
-class Total:
-    """What chunks add up to."""
-
-    def __init__(self):
-        self.figures, self.histogram = Figures(*[0.0] * len(Figures._fields)), np.zeros(BINS + 1, np.int64)
-        self.worst: Worst | None = None
-
-    @property
-    def met_deg(self) -> float:
-        """The largest angle so far, in float64; other threads may ask."""
-        return self.worst.angle_deg if self.worst else 0.0
-
-    def add(self, part: Part) -> None:
-        """One chunk's figures, histogram and worst normal."""
-        figures, counts, worst = part
-        sums = Figures(*map(operator.add, self.figures, figures))
-        self.figures = sums._replace(largest=max(self.figures.largest, figures.largest))
-        self.histogram += counts
-        if worst and (self.worst is None or worst.angle_deg > self.worst.angle_deg):
-            self.worst = worst
 
 
 def _on_device(plane: Any) -> Any:
@@ -274,27 +188,29 @@ class Meter:
             return figures, histogram, None
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
-    def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
-        """Statistics of a set, its chunks shared among the cores.
+    def total(self, loads: Iterable[Callable[[], Any]], tick: Callable[[], None] = idle) -> Total:
+        """What the chunks of a set, shared among the cores, add up to.
 
         Args:
             loads: for each chunk a function that gives it. The iterable is run in the calling thread, which a GL
                 context is bound to; the functions in worker threads.
-            pixels: how many normals the set has, background included.
             tick: called when a chunk is done.
         """
-        return measure_together([self], loads, pixels, lambda _: tick())[0]
+        return measure_together([self], loads, lambda _: tick())[0]
+
+    def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
+        """Statistics of a set of so many normals, background included; the rest is as for `total`."""
+        return statistics(pixels, self.total(loads, tick))
 
 
 def measure_together(
     meters: Sequence[Meter],
     loads: Iterable[Callable[[], Any]],
-    pixels: int,
     tick: Callable[[int], None],
-) -> list[Statistics]:
+) -> list[Total]:
     """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
 
-    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.measure`.
+    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
     """
     totals = [Total() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
@@ -304,23 +220,4 @@ def measure_together(
         index = next(whose)
         totals[index].add(part)
         tick(index)
-    return [_statistics(pixels, total) for total in totals]
-
-
-def _statistics(pixels: int, total: Total) -> Statistics:
-    figures, histogram = total.figures, total.histogram
-    count = int(histogram[:BINS].sum())
-    return Statistics(
-        count=count,
-        pixels=pixels,
-        invalid=int(figures.invalid),
-        mse=figures.squared / (3 * count),
-        article_mse=figures.article_squared / 255**2 / (3 * pixels),
-        angle_mean_deg=figures.angle / count,
-        angle_rms_deg=math.sqrt(figures.angle_squared / count),
-        angle_p99_deg=percentile(histogram, figures.largest, 0.99),
-        angle_max_deg=figures.largest,
-        angle_counts=counts_by_angle(histogram),
-        within=counts_below(histogram),
-        worst=total.worst,
-    )
+    return totals

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import cache, partial
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property, partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -20,11 +20,16 @@ from ..options.counts import DEFAULT_COUNT
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
+# Larger sets are measured and kept in parts of so many normals, by several workers where there are some.
+PART = 2**30
 
 # R2 sequence (M. Roberts 2018): steps of 1/p and 1/p^2 with p the plastic number, p^3 = p + 1, in units of 2^-32; odd,
 # so that neither coordinate repeats before 2^32.
 PLASTIC = 1.3247179572447460
 STEPS = tuple(round(2**32 / PLASTIC**k) | 1 for k in (1, 2))
+# After 2^32 normals the sequence would come again. Each further turn is shifted by the next 32 bits of the steps.
+TURN = 2**32
+SHIFTS = tuple(int(2**64 / PLASTIC**k) % TURN for k in (1, 2))
 
 
 class Chunk(NamedTuple):
@@ -49,6 +54,7 @@ class NormalSet:
         chunk: start index -> Chunk.
         background: how many of them are of no surface and do not count; None where there can be none.
         not_finite: how many of a file's were NaN or infinite, which do not count either.
+        of: by number the chunks that are meant where this is a part of a set; None for all.
     """
 
     name: str
@@ -61,10 +67,20 @@ class NormalSet:
     background: int | None = None
     not_finite: int | None = None
 
+    of: range | None = None
+
     @property
     def starts(self) -> range:
         """Where its chunks start."""
-        return range(0, self.count, CHUNK)
+        return range(0, self.count, CHUNK)[self.of.start : self.of.stop] if self.of else range(0, self.count, CHUNK)
+
+    @cached_property
+    def parts(self) -> Sequence[NormalSet]:
+        """The set in parts of at most PART normals, each with the count of all; none where one is enough."""
+        if self.of or self.count <= PART:
+            return ()
+        chunks = PART // CHUNK
+        return [replace(self, of=range(at, at + chunks)) for at in range(0, len(self.starts), chunks)]
 
     def loads(self) -> Iterator[Callable[[], Chunk]]:
         """For each chunk, in order, a function that gives it."""
@@ -103,7 +119,9 @@ def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> 
 
     def chunk(start: int) -> Chunk:
         with jax.enable_x64(True):
-            return _uniform(np.uint32(start), np.uint32(min(count - start, CHUNK)), tuple(offsets), whole=whole)
+            turn, first = divmod(start, TURN)
+            shifted = tuple(np.uint32((int(o) + turn * by) % TURN) for o, by in zip(offsets, SHIFTS, strict=True))
+            return _uniform(np.uint32(first), np.uint32(min(count - start, CHUNK)), shifted, whole=whole)
 
     return NormalSet(name, title, (4 if whole else 2) * math.pi, count, None, seed, chunk)
 

@@ -11,10 +11,11 @@ from ..output.errors import UsageError
 N = TypeVar("N", int, float)
 
 DEFAULT_COUNT = 2**22
-MAX_COUNT = 2**32
+MAX_COUNT = 2**40
 # Held in memory at once, where JAX is timed.
 MAX_TIMED_COUNT = 2**28
 MAX_REPEATS = 1000
+MAX_OBJECTS, MAX_LIGHTS = 100_000, 10_000
 
 
 # Of a thousand, and so on, as people write them.
@@ -47,7 +48,7 @@ def in_range(option: str, value: int, low: int, high: int) -> None:
 def checked_count(count: int) -> int:
     """The count itself. Raises UsageError where no set has that many."""
     if not 1 <= count <= MAX_COUNT:
-        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^32)")
+        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^40)")
     return count
 
 

@@ -9,11 +9,10 @@ from typing import Protocol, TypeVar
 from ...gbuffer.gl.device import Device
 from ...gbuffer.scenes.setting import Setting
 from ..output.errors import UsageError, leave_out
-from .counts import check_seed, checked_sides, in_range
+from .counts import MAX_LIGHTS, MAX_OBJECTS, check_seed, checked_sides, in_range
 
 # A pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
 MAX_SAMPLES = 2**25
-MAX_OBJECTS, MAX_LIGHTS = 100_000, 10_000
 TARGETS = {"1": 1, "2": 2}
 SHADOWS = {"on": True, "off": False}
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -108,7 +109,11 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
         say_count_is_unused(options)
     # Files are fingerprinted once they were read, which refuses what is too large.
     found = files_of(options)
-    return Asked(table, options, outputs, [replace(step, key=step.key | found) for step in steps])
+    return Asked(table, options, outputs, [_with_files(step, found) for step in steps])
+
+
+def _with_files(step: Step, found: Row) -> Step:
+    return replace(step, key=step.key | found, parts=[_with_files(part, found) for part in step.parts])
 
 
 def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
@@ -122,11 +127,31 @@ def measured_steps(ask: Asked, kept: Kept, place: Place = HERE) -> list[list[Row
     """The rows of each step, not finished yet."""
     name = ask.table.name
     found = {id(step): kept.find(name, step) for step in ask.steps}
-    missing = [step for step in ask.steps if found[id(step)] is None]
+    absent = [step for step in ask.steps if found[id(step)] is None]
+    found |= {id(part): kept.find(name, part) for step in absent for part in step.parts}
+    missing = [one for one in _in_parts(absent) if found.get(id(one)) is None]
     with progress(sum(step.ticks for step in missing)) as tick:
         for step, rows in place.measure(ask, missing, tick):
             found[id(step)] = kept.keep(name, step, rows)
+    for step in absent:
+        if step.parts:
+            rows = [row for part in step.parts for row in found[id(part)] or []]
+            found[id(step)] = kept.keep(name, step, ask.table.work.merge(step, rows))
     return [found[id(step)] or [] for step in ask.steps]
+
+
+def _in_parts(steps: Sequence[Step]) -> Iterator[Step]:
+    """What is measured: the steps that are measured at once, then the first part of each of the others, and so on, as
+    what is made for a part may serve several steps."""
+    yield from (step for step in steps if not step.parts)
+    for several in zip_longest(*(step.parts for step in steps)):
+        yield from filter(None, several)
+
+
+def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
+    """Each step, and then its parts."""
+    for step in steps:
+        yield from (step, *step.parts)
 
 
 def files_of(options: Any) -> Row:

@@ -20,7 +20,7 @@ from ..output.journal import Journal, data_of, journal, read_lines
 from ..output.sources import sources
 from ..output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
-from ..tables.table import Role, Row, Step, Table
+from ..tables.table import PART, Role, Row, Step, Table
 from .plain import key_text, plain
 
 RUN, ROWS = "run.json", "rows.jsonl"
@@ -34,11 +34,13 @@ class Done:
         facts: what run.json says.
         steps: the finished steps in their order, each `table`, `key` and `rows`.
         damage: what happened to the rows since the run finished; empty where nothing did.
+        parts: the finished parts of steps that are not finished, in the same form.
     """
 
     facts: Row
     steps: list[Row]
     damage: str = ""
+    parts: Sequence[Row] = ()
 
     @property
     def tables(self) -> dict[str, list[Row]]:
@@ -96,7 +98,8 @@ def read_run(folder: Path) -> Done:
     """
     facts, lines = _facts(folder), read_lines(folder / ROWS)
     _check_steps(folder, lines)
-    return Done(facts, lines, _damage(folder, facts))
+    whole = [line for line in lines if PART not in line["key"]]
+    return Done(facts, whole, _damage(folder, facts), [line for line in lines if PART in line["key"]])
 
 
 def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
@@ -171,11 +174,12 @@ class Run:
 
     def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
         """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
-        earlier requests stay in front. Raises UsageError."""
+        earlier requests stay in front; those of parts go, since their steps are whole. Raises UsageError."""
         place = {key_text(table, step.key): at for at, (table, step) in enumerate(steps)}
         # Read again: whoever finished the rows may have written into those that were kept.
         before = read_lines(self.folder / ROWS)
-        lines = sorted(before, key=lambda line: place.get(key_text(line["table"], line["key"]), -1))
+        whole = (line for line in before if PART not in line["key"])
+        lines = sorted(whole, key=lambda line: place.get(key_text(line["table"], line["key"]), -1))
         if lines != before:
             self._journal.replace(lines)
 

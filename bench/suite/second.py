@@ -19,7 +19,7 @@ from typing import IO, Any
 from ..machine.children import environment, python
 from ..machine.cores import cores
 from ..output.errors import MissingError, UsageError, tell, told
-from ..results.measuring import Asked
+from ..results.measuring import Asked, with_parts
 from ..results.plain import key_text
 from ..results.runs import Run
 from ..tables.table import Step, Table
@@ -57,7 +57,8 @@ class Second:
             said: the options that were given.
         """
         self._run = run
-        self._steps = {key_text(ask.table.name, step.key): (ask.table.name, step) for ask in asks for step in ask.steps}
+        steps = ((ask.table.name, step) for ask in asks for step in with_parts(ask.steps))
+        self._steps = {key_text(name, step.key): (name, step) for name, step in steps}
         self._reader.start()
         tables = [ask.table.name for ask in asks]
         given = {"folder": str(run.folder), "tables": tables, "said": said, "told": sorted(told)}

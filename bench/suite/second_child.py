@@ -36,7 +36,8 @@ class Sent:
     """Rows that the first process keeps."""
 
     def __init__(self, folder: Path, out: IO[str]):
-        self._rows = {key_text(step["table"], step["key"]): step["rows"] for step in read_run(folder).steps}
+        run = read_run(folder)
+        self._rows = {key_text(one["table"], one["key"]): one["rows"] for one in (*run.steps, *run.parts)}
         self._out = out
 
     def find(self, table: str, step: Step) -> list[Row] | None:

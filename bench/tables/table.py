@@ -24,8 +24,10 @@ GL, VULKAN, COMPILERS = "GL device", "Vulkan device", "compilers"
 BACKENDS_NEED: Mapping[str, frozenset[str]] = MappingProxyType(
     {"jax": frozenset(), "glsl": frozenset({GL, VULKAN}), "wgsl": frozenset({VULKAN})}
 )
-# Called once for each part of a step that is done.
+# Called once for each chunk of a step that is done.
 Tick = Callable[[str], None]
+# What the key of a part of a step has besides the step's own.
+PART = "part"
 
 
 class Role(StrEnum):
@@ -111,13 +113,15 @@ class Step:
         key: everything that determines the rows except the machine and the sources; plain values.
         case: what the table's own code measures.
         name: what a progress bar says.
-        ticks: how many parts it has.
+        ticks: how many chunks it has.
+        parts: steps that are measured in place of one that takes hours; `Work.merge` makes its rows of theirs.
     """
 
     key: Row
     case: Any
     name: str
     ticks: int = 1
+    parts: Sequence[Step] = ()
 
 
 @dataclass(frozen=True)
@@ -163,6 +167,10 @@ def _same(rows: Sequence[Row]) -> list[Row]:
     return list(rows)
 
 
+def _last(_: Step, rows: Sequence[Row]) -> list[Row]:
+    return list(rows[-1:])
+
+
 def _nothing(*_: Any) -> Iterator[Any]:
     yield from ()
 
@@ -188,6 +196,7 @@ class Work:
         steps: from options and outputs, both typed text, to steps. Raises UsageError and MissingError.
         check: what of the outputs that a user asked for cannot be. Raises UsageError before anything is measured.
         measure: the rows of each step, in the order of the steps.
+        merge: the rows of a step that is measured in parts, of all rows of its parts in their order.
         finish: rows with what needs all of them: their order, their ranks.
         shown: finished rows for people; None where they are shown as they are.
         summary: what people look at first.
@@ -210,6 +219,7 @@ class Work:
     steps: Callable[[Any, Any], Sequence[Step]]
     measure: Callable[[Sequence[Step], Tick], Iterator[list[Row]]]
     check: Callable[[Any, Sequence[Step]], None] = _none
+    merge: Callable[[Step, Sequence[Row]], list[Row]] = _last
     finish: Callable[[Sequence[Row]], list[Row]] = _same
     shown: Callable[[Measured], Iterable[Sheet]] | None = None
     summary: Callable[[Sequence[Row]], Iterator[Sheet]] = _nothing

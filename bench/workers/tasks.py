@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from ..output.errors import MissingError, UsageError, told
-from ..results.measuring import Asked, asked
+from ..results.measuring import Asked, asked, with_parts
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Row, Step
 from .about import About, about
@@ -164,7 +164,7 @@ def _made(order: Order) -> Laid:
     # The process that asks has said what is left out.
     with _in_folder(folder), _listening():
         asks = [asked(table, table.options(**values), outputs) for values in order.options]
-    return Laid(order, folder, asks[0], {order.name_of(step): step for ask in asks for step in ask.steps})
+    return Laid(order, folder, asks[0], {order.name_of(step): step for ask in asks for step in with_parts(ask.steps)})
 
 
 @cache

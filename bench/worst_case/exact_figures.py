@@ -17,7 +17,7 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.vec import Vec3
 from ..codecs.user_encodings import NoTwinError
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
-from ..metrics.meter import Statistics
+from ..metrics.totals import Statistics
 from ..output.errors import UsageError
 from .odd_codes import odd_codes
 from .search import worst_case

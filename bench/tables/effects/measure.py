@@ -20,8 +20,8 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
-from ...metrics.meter import psnr_db
 from ...metrics.occlusion_error import method_error
+from ...metrics.totals import psnr_db
 from ...output.errors import MissingError, tell
 from ..render.measure import UNMEASURABLE
 from .table import TABLE

@@ -26,7 +26,7 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import Colour, Scene
 from ...metrics.images import squared_error
-from ...metrics.meter import psnr_db
+from ...metrics.totals import psnr_db
 
 Row = dict[str, Any]
 # Lamps and sun this much brighter: highlights then reach several times what a display shows.

@@ -22,7 +22,8 @@ from ....encodings.vec import Vec3
 from ....gbuffer.gl.compressed import device_texels
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ...codecs.user_encodings import NoTwinError
-from ...metrics.meter import Decoded, Meter, Statistics, psnr_db
+from ...metrics.meter import Decoded, Meter
+from ...metrics.totals import Statistics, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet
 from ..quality.measure import Row, identity, planes_of
 from .encoders import Texels

@@ -25,7 +25,7 @@ from ....gbuffer.render import Keeps, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.images import squared_error
-from ...metrics.meter import psnr_db
+from ...metrics.totals import psnr_db
 from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...output import cache as kept
 from ...output.sources import sources

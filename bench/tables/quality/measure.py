@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from types import MappingProxyType
 from typing import Any
@@ -28,7 +28,8 @@ from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
 from ...codecs.user_encodings import NoTwinError
 from ...metrics.code_limits import AREAS, effective_bits
-from ...metrics.meter import Decoded, Meter, Statistics, Worst, idle, measure_together, psnr_db
+from ...metrics.meter import Decoded, Meter, idle, measure_together
+from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ...output.errors import MissingError
 from ...worst_case import exact_figures
@@ -38,6 +39,8 @@ from .table import TABLE
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
+# What the row of a part has in place of figures.
+TOTAL = "total"
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
@@ -58,6 +61,10 @@ class Case:
     @property
     def name(self) -> str:
         return f"{self.codec.name} {self.normal_set.name} {self.backend}"
+
+    def parts(self) -> list[Case]:
+        """The same of each part of the set; none where it is measured at once."""
+        return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
     @property
     def domain(self) -> str | None:
@@ -196,13 +203,29 @@ def measure(case: Case, tick: Tick = idle) -> Row:
 
     A row that the device cannot give has its reason in `skipped` and no figures.
     """
-    row = _described(case)
     try:
         with BACKENDS[case.backend](case) as found:
-            statistics = found.meter.measure(found.loads, case.normal_set.count, tick)
+            total = found.meter.total(found.loads, tick)
     except UNMEASURABLE as error:
-        return row | {"skipped": str(error)}
-    return row | _measured(case, statistics) | dict(found.how)
+        return _described(case) | {"skipped": str(error)}
+    return _row(case, total, found.how)
+
+
+def _row(case: Case, total: Total, how: Mapping[str, str]) -> Row:
+    """A row of the table; of a part of a set what `merged` makes one of."""
+    if case.normal_set.of:
+        return {TOTAL: total.as_text(), **how}
+    return _described(case) | _measured(case, statistics(case.normal_set.count, total)) | dict(how)
+
+
+def merged(case: Case, rows: Sequence[Row]) -> Row:
+    """The row of a set that was measured in parts, of their rows in order."""
+    if reason := next((row["skipped"] for row in rows if row.get("skipped")), None):
+        return _described(case) | {"skipped": reason}
+    total = Total()
+    for row in rows:
+        total.add_total(total_of(row[TOTAL]))
+    return _row(case, total, {name: value for name, value in rows[0].items() if name != TOTAL})
 
 
 def _described(case: Case) -> Row:
@@ -221,13 +244,13 @@ def _described(case: Case) -> Row:
     }
 
 
-def _measured(case: Case, statistics: Statistics) -> Row:
-    row = _figures(statistics, case.normal_set.area)
+def _measured(case: Case, found: Statistics) -> Row:
+    row = _figures(found, case.normal_set.area)
     if case.worst_case:
-        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, statistics)
+        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, found)
     if case.codes:
         row |= exact_figures.odd(case.codec, case.domain)
-    return row | exact_figures.held(case.codec, case.domain, statistics, row.get("angle_sup_deg"))
+    return row | exact_figures.held(case.codec, case.domain, found, row.get("angle_sup_deg"))
 
 
 def worst(case: Case) -> Worst | None:
@@ -274,15 +297,14 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
 
 def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
     shared = [case for case in group if case.backend == "jax" and exact_figures.has_twin(case.codec.encoding)]
-    measured: dict[int, Statistics] = {}
+    measured: dict[int, Total] = {}
     if shared:
-        normals = shared[0].normal_set
         meters = [_meter(case.codec) for case in shared]
-        found = measure_together(meters, normals.loads(), normals.count, lambda index: tick(shared[index]))
-        measured = {id(case): statistics for case, statistics in zip(shared, found, strict=True)}
+        found = measure_together(meters, shared[0].normal_set.loads(), lambda index: tick(shared[index]))
+        measured = {id(case): total for case, total in zip(shared, found, strict=True)}
     for case in group:
         if id(case) in measured:
-            yield _described(case) | _measured(case, measured[id(case)]) | _how_by_jax()
+            yield _row(case, measured[id(case)], _how_by_jax())
         else:
             yield measure(case, lambda case=case: tick(case))
 

@@ -18,7 +18,7 @@ from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, leave_out
 from ...output.writing import check_folder, without
 from ..charts import backends_of, drawing, having, one_backend
-from ..table import Measured, Row, Sheet, Step, Tick, Work
+from ..table import PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
@@ -60,10 +60,16 @@ def cases(options: QualityOptions) -> list[measure.Case]:
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
     """A step for each row."""
-    made = [Step(_key(case, options), case, case.name, len(case.normal_set.starts)) for case in cases(options)]
+    made = [_step(case, _key(case, options)) for case in cases(options)]
     for folder in filter(None, (outputs.images, outputs.maps, outputs.live)):
         check_folder(folder)
     return made
+
+
+def _step(case: measure.Case, key: Row) -> Step:
+    own = case.parts()
+    parts = [_step(part, key | {PART: f"{at} of {len(own)}"}) for at, part in enumerate(own, 1)]
+    return Step(key, case, case.name, len(case.normal_set.starts), parts)
 
 
 def _check(outputs: QualityOutputs, made: Sequence[Step]) -> None:
@@ -197,6 +203,7 @@ WORK = Work(
     steps=steps,
     check=_check,
     measure=_measure,
+    merge=lambda step, rows: [measure.merged(step.case, rows)],
     finish=_finished,
     shown=_shown,
     summary=_summary,

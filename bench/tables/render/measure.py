@@ -22,7 +22,7 @@ from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
-from ...metrics.meter import Worst, psnr_db
+from ...metrics.totals import Worst, psnr_db
 from .table import TABLE
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))

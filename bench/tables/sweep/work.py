@@ -11,11 +11,10 @@ from ....gbuffer.pipelines import PIPELINES
 from ....reports.charts import charts, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_device, require_jax
-from ...options.counts import MAX_REPEATS, checked_numbers, in_range
+from ...options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
 from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.targets import (
-    MAX_OBJECTS,
     SHADOWS,
     TARGETS,
     check_scale,

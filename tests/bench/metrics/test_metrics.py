@@ -18,8 +18,9 @@ from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.machine.cores import cores, on_all_cores
 from normalbench.bench.metrics import meter as metrics
 from normalbench.bench.metrics.angles import angles_deg
-from normalbench.bench.metrics.meter import Meter, angle_between, psnr_db
+from normalbench.bench.metrics.meter import Meter, angle_between
 from normalbench.bench.metrics.moments import squared_errors
+from normalbench.bench.metrics.totals import psnr_db
 from normalbench.bench.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.options import counts
 from normalbench.bench.tables.quality import measure as quality
@@ -199,7 +200,7 @@ def test_counting_stops_where_it_is_told_to():
 
 
 def test_the_largest_count_can_be_addressed():
-    """The last chunk of 2^32 normals is as good as the first."""
+    """The last chunk of the largest set is as good as the first."""
     last = sphere(counts.MAX_COUNT).chunk(counts.MAX_COUNT - CHUNK)
     assert np.asarray(last.covered).all()
     assert np.all(np.isfinite(np.asarray(last.n.z)))

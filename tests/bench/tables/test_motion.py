@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.metrics.meter import psnr_db
+from normalbench.bench.metrics.totals import psnr_db
 from normalbench.bench.results.measuring import Nothing, asked, measured
 from normalbench.bench.tables.motion import highlights, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble

@@ -8,7 +8,7 @@ import pytest
 
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics.images import squared_error
-from normalbench.bench.metrics.meter import psnr_db
+from normalbench.bench.metrics.totals import psnr_db
 from normalbench.bench.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.output import cache
 from normalbench.bench.tables.pick import measure

@@ -1,0 +1,148 @@
+"""What chunks of a set add up to, and the figures of a row that come of it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import operator
+import zlib
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .histogram import BINS, counts_below, counts_by_angle, percentile
+
+
+class Figures(NamedTuple):
+    """Of the covered normals of a chunk: sums of the squared error, of the article's squared error (in units of 1/255),
+    of the angle and of its square (degrees), how many decodes were not numbers, and the largest angle."""
+
+    squared: Any
+    article_squared: Any
+    angle: Any
+    angle_squared: Any
+    invalid: Any
+    largest: Any
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a set of normals lost in a codec.
+
+    Attributes:
+        count: normals that count; background is left out.
+        pixels: all of them, background included.
+        invalid: decodes that were no number; each counts as the opposite direction.
+        mse: mean squared error over the three components of covered normals, not renormalised.
+        article_mse: the article's: |n - n'| rounded to 8 bits, over every pixel.
+        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
+        angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
+            first holds 0 as well.
+        within: for each power of two of degrees, ascending, how many angles are below it.
+        worst: the normal that came back farthest off.
+    """
+
+    count: int
+    pixels: int
+    invalid: int
+    mse: float
+    article_mse: float
+    angle_mean_deg: float
+    angle_rms_deg: float
+    angle_p99_deg: float
+    angle_max_deg: float
+    angle_counts: tuple[tuple[float, int], ...]
+    within: tuple[tuple[float, int], ...]
+    worst: Worst | None
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The normal that came back farthest off, what it came back as, float32 of shape (3,), and by how many degrees."""
+
+    normal: np.ndarray
+    decoded: np.ndarray
+    angle_deg: float
+
+    def __str__(self) -> str:
+        normal, decoded = (", ".join(str(c) for c in v) for v in (self.normal, self.decoded))
+        return f"({normal}) comes back as ({decoded}), {self.angle_deg:.6g} degrees off"
+
+
+def psnr_db(mse: float) -> float:
+    """Peak signal to noise ratio for a peak of 1, infinite where there is no error."""
+    return 10 * math.log10(1 / mse) if mse > 0 else math.inf
+
+
+# Figures, how many normals lie in each bin of the histogram, and the normal with the largest angle.
+Part = tuple[Figures, np.ndarray, "Worst | None"]
+
+
+class Total:
+    """What chunks add up to. Sums are exact, so that parts of a set give the same figures as all of it at once."""
+
+    def __init__(self):
+        self.figures, self.histogram = Figures(*[Fraction()] * len(Figures._fields)), np.zeros(BINS + 1, np.int64)
+        self.worst: Worst | None = None
+
+    @property
+    def met_deg(self) -> float:
+        """The largest angle so far, in float64; other threads may ask."""
+        return self.worst.angle_deg if self.worst else 0.0
+
+    def add(self, part: Part) -> None:
+        """One chunk's figures, histogram and worst normal."""
+        figures, counts, worst = part
+        exact = Figures(*map(Fraction, figures))
+        sums = Figures(*map(operator.add, self.figures, exact))
+        self.figures = sums._replace(largest=max(self.figures.largest, exact.largest))
+        self.histogram += counts
+        if worst and (self.worst is None or worst.angle_deg > self.worst.angle_deg):
+            self.worst = worst
+
+    def add_total(self, other: Total) -> None:
+        """What further chunks add up to."""
+        self.add((other.figures, other.histogram, other.worst))
+
+    def as_text(self) -> str:
+        """For `total_of`, exactly."""
+        at = np.flatnonzero(self.histogram)
+        counted = np.stack([np.diff(at, prepend=0), self.histogram[at]]).astype("<i8")
+        worst = self.worst and [*map(float, (*self.worst.normal, *self.worst.decoded, self.worst.angle_deg))]
+        packed = base64.b64encode(zlib.compress(counted.tobytes())).decode()
+        return json.dumps({"sums": [*map(str, self.figures)], "counts": packed, "worst": worst})
+
+
+def total_of(text: str) -> Total:
+    """What `Total.as_text` gave."""
+    said, made = json.loads(text), Total()
+    steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(said["counts"])), "<i8").reshape(2, -1)
+    made.figures = Figures(*map(Fraction, said["sums"]))
+    made.histogram[np.cumsum(steps)] = counts
+    if found := said["worst"]:
+        normal, decoded = np.array(found[:6], np.float32).reshape(2, 3)
+        made.worst = Worst(normal, decoded, found[6])
+    return made
+
+
+def statistics(pixels: int, total: Total) -> Statistics:
+    """Those of a set with so many pixels, background included."""
+    figures, histogram = Figures(*map(float, total.figures)), total.histogram
+    count = int(histogram[:BINS].sum())
+    return Statistics(
+        count=count,
+        pixels=pixels,
+        invalid=int(figures.invalid),
+        mse=figures.squared / (3 * count),
+        article_mse=figures.article_squared / 255**2 / (3 * pixels),
+        angle_mean_deg=figures.angle / count,
+        angle_rms_deg=math.sqrt(figures.angle_squared / count),
+        angle_p99_deg=percentile(histogram, figures.largest, 0.99),
+        angle_max_deg=figures.largest,
+        angle_counts=counts_by_angle(histogram),
+        within=counts_below(histogram),
+        worst=total.worst,
+    )

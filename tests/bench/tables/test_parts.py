@@ -1,0 +1,151 @@
+"""A set that takes hours is measured in parts: the row is that of the set at once, to the last digit, and a part is
+never measured twice."""
+
+import json
+
+import numpy as np
+import pytest
+
+from normalbench.bench.metrics.totals import Total, Worst, total_of
+from normalbench.bench.normals import normal_sets
+from normalbench.bench.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
+from normalbench.bench.results.measuring import Nothing, asked, measured_steps
+from normalbench.bench.results.runs import facts_of, opened, read_run
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.quality.table import QualityOptions
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.workers import tasks
+from normalbench.bench.workers.orders import parcels_of
+
+TABLE = TABLES["quality"]
+# Three parts, the last of which is short.
+COUNT = 5 * CHUNK + 17
+PARTS = ["1 of 3", "2 of 3", "3 of 3"]
+
+
+@pytest.fixture
+def small_parts(monkeypatch):
+    monkeypatch.setattr(normal_sets, "PART", 2 * CHUNK)
+
+
+def ask(backend="jax", encoding="octahedral,best_fit", normals="sphere"):
+    return asked(
+        TABLE, QualityOptions(encoding=encoding, storage="rgba8", normals=normals, count=COUNT, backend=backend)
+    )
+
+
+def rows_of(one, kept=None):
+    return [row for rows in measured_steps(one, kept or Nothing()) for row in rows]
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("backend", ["jax", "glsl"])
+def test_the_row_is_that_of_the_set_at_once(backend, monkeypatch):
+    """Also of a set that the encoding is not for, half of whose decodes are far off."""
+    at_once = rows_of(ask(backend, "octahedral,xy"))
+    monkeypatch.setattr(normal_sets, "PART", 2 * CHUNK)
+    in_parts = ask(backend, "octahedral,xy")
+    assert [[part.key["part"] for part in step.parts] for step in in_parts.steps] == [PARTS] * 2
+    assert rows_of(in_parts) == at_once
+    assert at_once[0]["count"] == COUNT
+
+
+def test_a_set_of_the_usual_size_has_no_parts():
+    assert [step.parts for step in ask().steps] == [[], []]
+    assert sphere(normal_sets.PART).parts == ()
+    assert [len(part.starts) for part in hemisphere(normal_sets.PART + 1).parts] == [normal_sets.PART // CHUNK, 1]
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path, monkeypatch):
+    """Parts lie in the run's file until their step is whole; nobody sees them as rows."""
+    whole, measured, facts = rows_of(ask()), [], {**facts_of([]), "request": {}}
+    run_rows = quality.rows
+
+    def some(cases, tick):
+        for at, row in enumerate(run_rows(cases, tick)):
+            if at == 3:
+                raise KeyboardInterrupt
+            measured.append(row)
+            yield row
+
+    monkeypatch.setattr(quality, "rows", some)
+    with opened(tmp_path / "run", facts) as run, pytest.raises(KeyboardInterrupt):
+        rows_of(ask(), run)
+    stopped = read_run(tmp_path / "run")
+    # The first part of both codecs, and the second of one.
+    assert [part["key"]["part"] for part in stopped.parts] == ["1 of 3", "1 of 3", "2 of 3"]
+    assert stopped.steps == [] and stopped.tables == {}
+    monkeypatch.setattr(quality, "rows", run_rows)
+    wanted = []
+    monkeypatch.setattr(quality, "rows", lambda cases, tick: run_rows(wanted.append([*cases]) or wanted[-1], tick))
+    with opened(tmp_path / "run", facts) as run:
+        one = ask()
+        assert rows_of(one, run) == json.loads(json.dumps(whole))
+        run.arrange(("quality", step) for step in one.steps)
+    assert len(wanted[0]) == 3
+    done = read_run(tmp_path / "run")
+    assert len(done.steps) == 2 and not done.parts
+    assert done.tables["quality"] == json.loads(json.dumps(whole))
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_a_worker_measures_parts_by_their_names():
+    """A step's parts are among what it makes of an order; the rows are those that this process measures."""
+    one = ask(encoding="octahedral")
+    (step,) = one.steps
+    (parcel,) = parcels_of(one, step.parts)
+    order = parcel.order()
+    answer = tasks.measure(order, [order.name_of(part) for part in step.parts])
+    assert not answer.wrong and not answer.refused
+    rows = [row for found in answer.steps for row in found.rows]
+    assert TABLE.work.merge(step, rows) == rows_of(one)
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_a_part_that_cannot_be_measured_leaves_the_step_without_figures():
+    (step,) = ask(encoding="octahedral").steps
+    (row,) = TABLE.work.merge(step, [{"total": Total().as_text()}, {"skipped": "no device"}, {"skipped": "no worker"}])
+    assert row["skipped"] == "no device" and row["psnr_db"] is None and row["encoding"] == "octahedral"
+
+
+def test_sums_are_exact_and_so_is_their_text():
+    """1 and 2^-80 a thousand times: one after the other, or in two parts that are sent as text."""
+    counts = np.zeros_like(Total().histogram)
+    counts[[0, 7, -1]] = 1, 2**40, 3
+    worst = Worst(np.float32([0.1, 0.2, 0.3]), np.float32([0.3, 0.2, 0.1]), 1 / 3)
+    parts = [((1.0, 2.0**-80, 3.0, 4.0, 0.0, float(at)), counts, worst if at == 500 else None) for at in range(1000)]
+    whole, halves = Total(), (Total(), Total())
+    for at, part in enumerate(parts):
+        whole.add(part)
+        halves[at > 300].add(part)
+    assert whole.figures.article_squared == 1000 * 2.0**-80 and whole.figures.largest == 999
+    for half in halves:
+        half_again = total_of(half.as_text())
+        assert half_again.figures == half.figures and np.array_equal(half_again.histogram, half.histogram)
+    joined = total_of(halves[0].as_text())
+    joined.add_total(total_of(halves[1].as_text()))
+    assert joined.figures == whole.figures and np.array_equal(joined.histogram, whole.histogram)
+    assert joined.worst.angle_deg == 1 / 3 and np.array_equal(joined.worst.normal, worst.normal)
+
+
+def test_no_normal_of_2_to_the_40_comes_twice():
+    """A turn of 2^32 normals is a lattice. The next turns are shifted off it: by multiples of (0, c) from the lattice,
+    none of which is a whole turn."""
+    inverse = pow(STEPS[0], -1, TURN)
+    off = (SHIFTS[1] - SHIFTS[0] * inverse * STEPS[1]) % TURN
+    assert len({turn * off % TURN for turn in range(2**40 // TURN)}) == 2**40 // TURN
+    some = sphere(2**40)
+    first, later = (np.asarray(some.chunk(start).n.z) for start in (CHUNK, TURN + CHUNK))
+    assert not np.array_equal(first, later) and np.array_equal(first, np.asarray(sphere(2**33).chunk(CHUNK).n.z))
+
+
+@pytest.mark.slow
+def test_workers_share_a_row(run):
+    """2^30 normals and some are two parts: two processes give the rows of one."""
+    arguments = ["quality", "--encoding", "xyz", "--storage", "rgba8", "--count", str(2**30 + 5 * CHUNK)]
+    arguments += ["--normals", "sphere", "--backend", "jax", "--format", "json"]
+    status, shared, _ = run(*arguments, "--on", "local:2")
+    assert status == 0
+    status, alone, _ = run(*arguments)
+    assert status == 0 and json.loads(shared) == json.loads(alone)
