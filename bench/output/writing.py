@@ -124,7 +124,8 @@ def check_page(path: Path | None) -> None:
 def check_is_folder(path: Path | None, what: str) -> None:
     """Raises UsageError where a folder is called like a file, or a file has its name; None will do."""
     if path and not path.is_dir() and (path.is_file() or path.suffix.lower() in FILE_SUFFIXES):
-        raise UsageError(f"{path}: {what} a folder; name one, such as {path.with_suffix('').name or 'pictures'}")
+        free = path.with_suffix("") if path.suffix else path.with_name(f"{path.name}-folder")
+        raise UsageError(f"{path}: {what} a folder; name one, such as {free.name or 'pictures'}")
 
 
 def check_plot(path: Path | None) -> None:

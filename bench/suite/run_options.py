@@ -20,8 +20,9 @@ def _shared() -> dict[str, Field]:
 
 
 def _made() -> type:
-    names = ", ".join(TABLES)
-    tables = Annotated[str, Option("--tables", f"{names}; comma-separated, or all.")]
+    others = ", ".join(name for name, table in TABLES.items() if not table.in_all)
+    said = f"{', '.join(TABLES)}; comma-separated, or all, which is all but {others}."
+    tables = Annotated[str, Option("--tables", said)]
     typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default="all"))]
     for name, one in _shared().items():
         typed.append((name, Annotated[one.type | None, one.option], field(default=None)))

@@ -77,7 +77,7 @@ def histogram_chart(rows: Sequence[Row]) -> Any:
     axis.set_xlim(LEAST_DEG, 200)
     axis.set_ylim(-0.3, len(rows) + 0.2)
     axis.set_yticks(range(len(rows)), [codec_label(row) for row in reversed(ordered)], size=8)
-    axis.set_xlabel("angle between normal and decode, degrees")
+    axis.set_xlabel(f"angle between normal and decode on {rows[0]['normals']}, degrees")
     axis.grid(axis="x", alpha=0.3)
     axis.figure.legend(loc="outside upper center", ncols=len(all_bits) + 3, fontsize=8, frameon=False)
     return axis.figure

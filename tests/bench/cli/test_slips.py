@@ -54,7 +54,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a half": ((*ROW[:-1], "1.5"), "1.5 is not a whole number, such as 1000, 1e6, 4M or 2^22"),
     "a word for a count": ((*ROW[:-1], "many"), "many is not a whole number"),
     "a count of nothing": ((*ROW[:-1], "0"), "--count 0: a count is 1 to"),
-    "a count beyond all": ((*ROW[:-1], "1e12"), "--count 1000000000000: a count is 1 to"),
+    "a count beyond all": ((*ROW[:-1], "1e13"), "--count 10000000000000: a count is 1 to"),
     "a negative seed": ((*ONE, "--seed", "-1"), "--seed -1: from 0 to"),
     "a folder that is not there": ((*ONE, "-o", "no/x.csv"), "cannot write no/x.csv: there is no folder no"),
     "a page in no folder": ((*ONE, "--report", "no/x.html"), "cannot write no/x.html: there is no folder no"),
@@ -69,6 +69,10 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         "x.png: --images writes into a folder; name one, such as x",
     ),
     "a file for a folder of results": (("run", "-o", "f.npy"), "f.npy: run writes into a folder; name one, such as f"),
+    "a file without an ending for a folder of results": (
+        ("run", "-o", "plain"),
+        "plain: run writes into a folder; name one, such as plain-folder",
+    ),
     "a table for a folder of results": (("run", "-o", "x.csv"), "x.csv: run writes into a folder; name one, such as x"),
     "a folder for a file": ((*ONE, "-o", "there"), "there is a folder; name a file"),
     "a format that is not": ((*ONE, "--format", "xlsx"), "'xlsx' is not one of"),
@@ -177,6 +181,7 @@ def write_files() -> None:
     for name, text in FILES.items():
         Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
     np.save("f.npy", np.eye(3, dtype=np.float32))
+    Path("plain").touch()
     np.save("two.npy", np.zeros((4, 4, 2), np.float32))
     np.save("signed.npy", np.full((4, 4, 3), 73, np.int8))
 
