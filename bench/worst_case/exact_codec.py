@@ -18,11 +18,11 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.rounding import Scale, fixed, shared
 from ...encodings.storages.storage import Storage
 from ...encodings.vec import Vec2, Vec3, dot, select
+from .climb import WAYS
 
 # Normals in a block; and in a block of an encoder that searches, which takes longer for each normal.
 BLOCK, SHORT = 2**15, 2**12
 SLAB = (2**7 - 1, 2**8 - 1)  # rows and columns of corners in a block
-WAYS = 2**4  # that a climb tries from a normal
 TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
 
 

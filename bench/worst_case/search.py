@@ -15,7 +15,6 @@ round of climbing, which starts from the best alone with steps of every size, st
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -27,18 +26,13 @@ import numpy as np
 from ...encodings.codecs.codec import Codec
 from ..machine.cores import on_all_cores
 from . import cells
-from .exact_codec import BLOCK, WAYS, ExactCodec, degrees
+from .climb import WAYS, Ground, Starts, highest
+from .exact_codec import BLOCK, ExactCodec, degrees
 
-STEPS = 80  # of a round
 # Directions looked at, and the worst of them kept: where the corners of cells are not known, or only some; where they
 # are known; and for an encoder that searches, which takes longer for each direction.
 WIDE, NARROW, QUICK = (2**23, 2**12), (2**20, 2**11), (2**19, 2**8)
-KEPT = 2**8  # of a round, for the next
-FIRST_SIZES = (0.25, 0.02)  # of a round's steps, in the error
-GROW, SHRINK = 1.5, 0.55
-LEAST = 1e-10  # of a step, in the error; then a climb is over
-# Rounds from the best alone, until one moves it no more than that, relatively.
-LAST_ROUNDS, SETTLED = 12, 1e-8
+FIRST_SIZES = (0.25, 0.02)  # of the first step of each round, in the error
 CLIMBING = "climbing"
 # A start this near the result, relatively, is what found it.
 SAME = 1e-6
@@ -61,32 +55,6 @@ class Worst:
     moved_deg: float
 
 
-@dataclass(frozen=True)
-class Starts:
-    """Normals, shape (3, count), and their squared chords, shape (count,)."""
-
-    chords: np.ndarray
-    normals: np.ndarray
-
-    def best(self, count: int) -> Starts:
-        """The worst of them, at most `count`."""
-        return self[np.argsort(-self.chords, kind="stable")[:count]]
-
-    def filled(self, count: int) -> Starts:
-        """So many of them, each as often as it takes: climbs differ by where in the block they start."""
-        return self[np.arange(count) % len(self.chords)]
-
-    def __getitem__(self, which: slice | np.ndarray) -> Starts:
-        return Starts(self.chords[which], self.normals[:, which])
-
-    def __add__(self, other: Starts) -> Starts:
-        return Starts(*(np.concatenate(pair, axis=-1) for pair in zip(_fields(self), _fields(other), strict=True)))
-
-
-def _fields(starts: Starts) -> tuple[np.ndarray, np.ndarray]:
-    return starts.chords, starts.normals
-
-
 @cache
 def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     """The largest error over the sphere, or over z >= 0, with eye rays straight ahead."""
@@ -101,18 +69,16 @@ def worst_case(codec: Codec, is_half: bool = False) -> Worst:
         starts = _worst_of(exact, blocks, count)
     ours = corners.result() if corners else None
     starts = starts + ours if ours else starts
-    for size in FIRST_SIZES:
-        starts = _climb(exact, starts.best(count).filled(count), size).best(KEPT)
-    angle, moved, last = degrees(starts.chords[0]), math.inf, starts.best(1)
-    lanes = exact.block // WAYS  # normals that fill a block with what is tried around them
-    for _ in range(LAST_ROUNDS):
-        last = _climb(exact, last.filled(lanes), np.geomspace(1e-9, 1.0, lanes)).best(1)
-        moved, angle = degrees(last.chords[0]) - angle, degrees(last.chords[0])
-        if moved <= SETTLED * angle:
-            break
+    ground = Ground(exact.chords, exact.around, _lengths, degrees, exact.block // WAYS)
+    last, moved = highest(ground, starts, count, FIRST_SIZES)
+    angle = degrees(last.chords[0])
     is_ours = ours and degrees(ours.chords[0]) >= angle * (1 - SAME)
-    x, y, z = (float(c) for c in last.normals[:, 0])
+    x, y, z = (float(c) for c in last.places[:, 0])
     return Worst(angle, (x, y, z), way if is_ours else CLIMBING, moved)
+
+
+def _lengths(chords: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(chords, 0.0))
 
 
 def _worst_corners(exact: ExactCodec, way: str, count: int) -> Starts:
@@ -183,33 +149,3 @@ def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
     x /= np.linalg.norm(x)
     turned = np.stack([x, np.cross(axis, x), axis], axis=1) @ around_z
     return turned / np.linalg.norm(turned, axis=0)
-
-
-def _climb(exact: ExactCodec, starts: Starts, first) -> Starts:
-    """Normals, a multiple of what fills a block, each moved to the worst of WAYS around it; steps shrink where none is
-    worse.
-
-    `first` is the size of the first step in the error, for all or for each.
-    """
-    sizes = first * np.sqrt(np.maximum(starts.chords, 0.0))
-    lanes = exact.block // WAYS
-    parts = (slice(begin, begin + lanes) for begin in range(0, len(sizes), lanes))
-    return reduce(add, on_all_cores(lambda part: _climb_from(exact, starts[part], sizes[part]), parts))
-
-
-def _climb_from(exact: ExactCodec, starts: Starts, sizes: np.ndarray) -> Starts:
-    """Normals that fill a block with what is tried around them, moved by steps of these sizes to begin with."""
-    chords, normals = starts.chords, starts.normals
-    errors, lane = np.sqrt(np.maximum(chords, 0.0)), np.arange(len(chords))
-    for step in range(STEPS):
-        around = exact.around(normals, sizes, step)
-        found = exact.chords(around.reshape(3, -1)).reshape(WAYS, -1)
-        way = found.argmax(axis=0)
-        worst = found[way, lane]
-        is_worse = worst > chords
-        chords = np.where(is_worse, worst, chords)
-        normals = np.where(is_worse, around[:, way, lane], normals)
-        sizes = sizes * np.where(is_worse, GROW, SHRINK)
-        if (sizes < LEAST * errors).all():
-            break
-    return Starts(chords, normals)
