@@ -12,28 +12,34 @@ import itertools
 import numpy as np
 
 from ..machine.cores import on_all_cores
-from .exact_codec import BLOCK, ExactCodec
+from .exact_codec import SLAB, ExactCodec
 
 ALL_CORNERS, SOME_CORNERS, NEAREST, NONE = "all corners", "corners", "nearest codes", ""
 # Cells whose corners are all tried; codes whose convex hull is computed; the sides of a plane that is climbed over.
 MOST_CELLS, MOST_POINTS, MOST_NUMBERS = 2**24, 2**18, 2**16
 # How far inside its cell a corner is tried, in the cell's width; and halvings that find its edge.
 INSIDE, HALVINGS = 1e-9, 60
-CLIMBERS, CLIMBS = BLOCK // 16, 150
+CLIMBERS, CLIMBS = 2**11, 150
 COLUMNS, KEPT = 2**12, 2**8
 
 
-def corners(exact: ExactCodec) -> tuple[str, np.ndarray]:
-    """Normals at corners of cells, the worst or nearly, shape (3, count), and in a word where they come from."""
+def way_to_corners(exact: ExactCodec) -> str:
+    """How the corners of a codec's cells are found; NONE where they cannot be."""
     counts = [exact.codec.storage.count(i) for i in exact.free]
     if not counts and exact.codec.codes <= MOST_POINTS:
-        return NEAREST, _across_faces(exact)
+        return NEAREST
     if len(counts) != 2 or max(counts) > MOST_NUMBERS:
-        return NONE, np.empty((3, 0))
+        return NONE
+    return ALL_CORNERS if exact.codec.codes <= MOST_CELLS else SOME_CORNERS
+
+
+def corners(exact: ExactCodec, way: str) -> np.ndarray:
+    """Normals at the worst corners of cells, shape (3, count), as `way_to_corners` says; not for NONE."""
+    if way == NEAREST:
+        return _across_faces(exact)
     tables = sides(exact)
-    if exact.codec.codes <= MOST_CELLS:
-        return ALL_CORNERS, _corners_of(exact, tables, _all_cells(exact, tables))
-    return SOME_CORNERS, _corners_of(exact, tables, _climb_cells(exact, tables))
+    cells = _all_cells(exact, tables) if way == ALL_CORNERS else _climb_cells(exact, tables)
+    return _corners_of(exact, tables, cells)
 
 
 def sides(exact: ExactCodec) -> list[np.ndarray]:
@@ -59,22 +65,23 @@ def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
     """Of all cells those with the worst corners, and the three that each of these shares it with."""
     u, v = exact.free
     rest = [range(1) if i in exact.free else range(len(table)) for i, table in enumerate(tables)]
-    rows = min(max(1, BLOCK // (len(tables[v]) // 2)), len(tables[u]) // 2 - 1)
-    last = len(tables[u]) // 2 - 1 - rows
+    edges = tables[u][1:-1:2], tables[v][1:-1:2]
+    numbers = exact.codec.numbers(u), exact.codec.numbers(v)
 
-    def slab(place: tuple[int, tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray]:
-        start, others = place
-        edges = (tables[u][2 * start + 1 : 2 * (start + rows) : 2], tables[v][1:-1:2])
-        numbers = (exact.codec.numbers(u)[start : start + rows + 1], exact.codec.numbers(v))
-        found = exact.corners(edges, numbers, np.array([t[i] for t, i in zip(tables, others, strict=True)]))
+    def slab(place: tuple[tuple[int, ...], tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray]:
+        starts, others = place
+        ends = [start + size for start, size in zip(starts, SLAB, strict=True)]
+        around = [side[start : end + 1] for side, start, end in zip(numbers, starts, ends, strict=True)]
+        across = [side[start:end] for side, start, end in zip(edges, starts, ends, strict=True)]
+        found = exact.corners(across, around, np.array([t[i] for t, i in zip(tables, others, strict=True)]))
         chords, index = column_peaks(found.ravel(), KEPT)
         cells = np.repeat(np.array(others)[:, None], len(index), axis=1)
-        cells[u], cells[v] = start + index // found.shape[1], index % found.shape[1]
+        cells[u], cells[v] = starts[0] + index // found.shape[1], starts[1] + index % found.shape[1]
         return chords, cells
 
-    starts = [min(start, last) for start in range(0, len(tables[u]) // 2 - 1, rows)]
+    begins = (range(0, len(side), size) for side, size in zip(edges, SLAB, strict=True))
     worst, cells = np.empty(0), np.empty((exact.size, 0), np.int64)
-    for chords, found in on_all_cores(slab, itertools.product(starts, itertools.product(*rest))):
+    for chords, found in on_all_cores(slab, itertools.product(itertools.product(*begins), itertools.product(*rest))):
         worst, cells = np.concatenate([worst, chords]), np.concatenate([cells, found], axis=1)
         kept = np.argsort(-worst, kind="stable")[:CLIMBERS]
         worst, cells = worst[kept], cells[:, kept]
@@ -126,5 +133,13 @@ def _across_faces(exact: ExactCodec) -> np.ndarray:
 
     numbers = [exact.codec.numbers(i) for i in range(exact.size)]
     code = np.stack([c.ravel() for c in np.meshgrid(*numbers, indexing="ij")])
-    directions = np.unique(exact.normals(code).round(12), axis=1)
+    directions = _distinct(exact.normals(code).round(12))
     return ConvexHull(directions.T).equations[:, :3].T.copy()
+
+
+def _distinct(directions: np.ndarray) -> np.ndarray:
+    """The different ones of directions of shape (3, count), in order."""
+    # np.unique of columns takes ten times as long.
+    ordered = directions[:, np.lexsort(directions)]
+    is_new = (np.diff(ordered, axis=1) != 0.0).any(axis=0)
+    return ordered[:, np.concatenate([[True], is_new])]

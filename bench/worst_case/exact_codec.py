@@ -18,9 +18,11 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.rounding import Scale, fixed, shared
 from ...encodings.storages.storage import Storage
 from ...encodings.vec import Vec2, Vec3, dot, select
+from .climb import WAYS
 
-BLOCK = 2**15
-WAYS = 2**4  # that a climb tries from a normal
+# Normals in a block; and in a block of an encoder that searches, which takes longer for each normal.
+BLOCK, SHORT = 2**15, 2**12
+SLAB = (2**7 - 1, 2**8 - 1)  # rows and columns of corners in a block
 TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
 
 
@@ -54,16 +56,33 @@ class _Programs:
         return Codec(self._encoding, fixed(self._like, scales), self._rounding)
 
     def _normals(self, code, *_: Scale):
-        return jnp.stack(_toward(self._encoding.decode(self._code(*code), ahead(code[0]))))
+        return jnp.stack(_toward(self._encoding.decode(*self._seen(code))))
+
+    def _seen(self, code) -> tuple[Vec2 | Vec3, Vec3]:
+        """A code and the eye rays that it is decoded for."""
+        return self._code(*code), ahead(code[0])
 
     def _chords(self, n, *scales: Scale):
         n = Vec3(*n)
-        decoded = self._codec(scales).round_trip(n, ahead(n.z))
+        decoded = self._decoded(self._codec(scales), n)
         length2 = dot(decoded, decoded)
         is_direction = (length2 > 0.0) & jnp.isfinite(length2)
         miss = n - decoded * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0)))
         chords = select(is_direction, dot(miss, miss), 4.0)
         return select(n.z >= 0.0, chords, -1.0) if self._is_half else chords
+
+    def _decoded(self, codec: Codec, n: Vec3) -> Vec3:
+        """Normals on their way through the codec."""
+        if not self._encoding.is_precise:
+            return codec.round_trip(n, ahead(n.z))
+        # The codes around are decoded as one array: the program is a quarter as long and compiles sooner.
+        code = self._encoding.encode(n, ahead(n.z))
+        around = codec.around(type(code)(*(jnp.broadcast_to(c, n.z.shape) for c in code)))
+        stored = codec.store(self._code(*(jnp.stack(each) for each in zip(*around, strict=True))))
+        decoded = self._encoding.decode(*self._seen(stored))
+        miss = decoded - Vec3(*(c[None] for c in n))
+        nearest = jnp.argmin(dot(miss, miss), axis=0, keepdims=True)
+        return Vec3(*(jnp.take_along_axis(c, nearest, axis=0)[0] for c in decoded))
 
     def _corners(self, edges, numbers, others):
         u, v = self.free
@@ -74,17 +93,20 @@ class _Programs:
             return code
 
         corner, centre = at(*edges), at(*numbers)
-        n, decoded = (Vec3(*self._normals(code)) for code in (corner, centre))
-        inside = (n.z >= 0.0) if self._is_half else True
+        both = Vec3(*self._normals([jnp.stack(pair) for pair in zip(corner, centre, strict=True)]))
+        n, decoded = (Vec3(*(c[i] for c in both)) for i in (0, 1))
+        inside = (n.z >= 0.0) if self._is_half else jnp.ones_like(n.z, bool)
         is_precise = self._encoding.is_precise
         # Precise rounding takes the nearest code, whichever the corner's normal is encoded to.
         back = corner if is_precise else self._encoding.encode(n, ahead(n.z))
         for mine, its in zip(corner, back, strict=True):
             inside &= abs(mine - its) < TOLERANCE
-        rows, columns = n.z.shape
+        rows, columns = SLAB
+        # Corners and codes were decoded as one array, so there is one row and one column of corners too many.
+        n = Vec3(*(c[:rows, :columns] for c in n))
         around = (Vec3(*(c[i : i + rows, j : j + columns] for c in decoded)) for i in (0, 1) for j in (0, 1))
         chords = reduce(jnp.minimum if is_precise else jnp.maximum, (dot(n - d, n - d) for d in around))
-        return jnp.where(inside, chords, -1.0)
+        return jnp.where(inside[:rows, :columns], chords, -1.0)
 
 
 _compiled = cache(_Programs)
@@ -94,13 +116,14 @@ class ExactCodec:
     """A codec in float64 on the whole sphere, or on z >= 0 alone.
 
     Planes are NumPy arrays of shape (3, count) and codes of shape (components and sign bits, count), float64, of any
-    count up to BLOCK.
+    count; they are computed in blocks of `block`.
     """
 
     def __init__(self, codec: Codec, is_half: bool):
         like, self._scales = shared(codec.storage, codec.encoding.components, np.float64)
         self._programs = _compiled(codec.encoding, like, codec.rounding, is_half)
         self.codec, self.is_half, self.size = codec, is_half, self._programs.size
+        self.block = SHORT if codec.encoding.searches else BLOCK
 
     @property
     def free(self) -> list[int]:
@@ -112,15 +135,19 @@ class ExactCodec:
         normals there; of precise rounding to the nearest, which all of them have.
 
         Args:
-            edges: where cells end, in each of the two free components.
+            edges: where cells end, in each of the two free components; as many as SLAB says, or fewer.
             numbers: of those components, the ones around: one more of each.
             others: the whole code, which gives the components that are not free.
 
         Returns:
             shape (edges of the one, of the other); -1 where the code of the corner is another, or outside the domain.
         """
+        rows, columns = (len(side) for side in edges)
+        # One shape, so that one compiled program serves every storage.
+        edges = [_lengthened(side, size + 1) for side, size in zip(edges, SLAB, strict=True)]
+        numbers = [_lengthened(side, size + 1) for side, size in zip(numbers, SLAB, strict=True)]
         with jax.enable_x64(True):
-            return np.asarray(self._programs.corners(edges, numbers, others))
+            return np.asarray(self._programs.corners(edges, numbers, others))[:rows, :columns]
 
     def normals(self, code: np.ndarray) -> np.ndarray:
         """The directions of codes, which need not be stored ones."""
@@ -141,12 +168,13 @@ class ExactCodec:
 
     def _in_blocks(self, function, planes: np.ndarray) -> np.ndarray:
         count = planes.shape[1]
-        short = -count % BLOCK
+        short = -count % self.block
         padded = np.pad(planes, ((0, 0), (0, short)), mode="edge") if short else planes
         # Odd codes are looked for in float32, as a shader makes them.
         scales = jax.tree.map(planes.dtype.type, self._scales)
         with jax.enable_x64(True):
-            parts = [function(padded[:, start : start + BLOCK], *scales) for start in range(0, count, BLOCK)]
+            starts = range(0, count, self.block)
+            parts = [function(padded[:, start : start + self.block], *scales) for start in starts]
             return np.concatenate([np.asarray(part) for part in parts], axis=-1)[..., :count]
 
     def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
@@ -170,6 +198,11 @@ class ExactCodec:
     def angle_deg(self, n: np.ndarray) -> float:
         """The angle of one normal, shape (3,), in degrees."""
         return degrees(float(self.chords(n[:, None])[0]))
+
+
+def _lengthened(numbers: np.ndarray, count: int) -> np.ndarray:
+    """`count` numbers: these, then the last one repeated."""
+    return np.pad(numbers, (0, count - len(numbers)), mode="edge")
 
 
 def degrees(chord2: float) -> float:

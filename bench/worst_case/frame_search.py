@@ -10,10 +10,10 @@ A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum o
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, partial, reduce
+from operator import add
 
 import jax
 import jax.numpy as jnp
@@ -24,13 +24,11 @@ from ...encodings.rotation import Frame, frame_of, frame_of_quaternion
 from ...encodings.vec import Vec4, cross, dot, normalize
 from ..machine.cores import on_all_cores
 from .cells import column_peaks
-from .exact_codec import BLOCK, WAYS, degrees
+from .climb import KEPT, WAYS, Ground, Starts, highest
+from .exact_codec import BLOCK, degrees
 
-LANES, STEPS, ROUNDS = BLOCK // WAYS, 80, 12
-SPREAD, KEPT = 2**20, 2**8
-# Of steps, in the error: the first of each round, and how they grow and shrink.
-FIRST_SIZES, GROW, SHRINK, LEAST = (0.5, 0.05), 1.5, 0.55, 1e-10
-SETTLED = 1e-8
+LANES, SPREAD = BLOCK // WAYS, 2**20
+FIRST_SIZES = (0.5, 0.05)  # of the first step of each round, in the error
 # What a rotation by 180 degrees moves the axes; what comes back as no tangent frame counts as that.
 FARTHEST = 8.0
 # Steps of an additive sequence in three dimensions, x^-1, x^-2 and x^-3 with x^4 = x + 1 (M. Roberts 2018); and in two.
@@ -54,43 +52,18 @@ class WorstFrame:
     moved_deg: float
 
 
-@dataclass(frozen=True)
-class _Frames:
-    """Squared moves, shape (count,), of quaternions, (4, count), with hands, (count,)."""
-
-    moves: np.ndarray
-    quaternions: np.ndarray
-    hands: np.ndarray
-
-    def best(self, count: int) -> _Frames:
-        """Those that are moved the most, at most `count`."""
-        return self[np.argsort(-self.moves, kind="stable")[:count]]
-
-    def filled(self) -> _Frames:
-        """LANES of them, each as often as it takes."""
-        return self[np.arange(LANES) % len(self.moves)]
-
-    def __getitem__(self, which: np.ndarray) -> _Frames:
-        return _Frames(self.moves[which], self.quaternions[:, which], self.hands[which])
-
-
 @cache
 def worst_frame(codec: FrameCodec) -> WorstFrame:
     """The largest rotation over all tangent frames of either hand."""
-    moves = jax.jit(partial(_moves, codec))
-    climb = jax.jit(partial(_climbed, codec))
-    with jax.enable_x64(True):
-        best = _worst_of(moves)
-        for size in FIRST_SIZES:
-            best = _climb(climb, best.filled(), np.full(LANES, size)).best(KEPT)
-        angle, moved = _degrees(best.moves[0]), math.inf
-        for _ in range(ROUNDS):
-            best = _climb(climb, best.best(1).filled(), np.geomspace(1e-9, 1.0, LANES)).best(1)
-            moved, angle = _degrees(best.moves[0]) - angle, _degrees(best.moves[0])
-            if moved <= SETTLED * angle:
-                break
-    x, y, z, w = (float(c) for c in best.quaternions[:, 0])
-    return WorstFrame(angle, (x, y, z, w), float(best.hands[0]), moved)
+    program = jax.jit(partial(_moves, codec))
+
+    def moves(frames: np.ndarray) -> np.ndarray:
+        with jax.enable_x64(True):
+            return np.asarray(program(frames[:4], frames[4]))
+
+    best, moved = highest(Ground(moves, _around, _radians, _degrees, LANES), _worst_of(moves), LANES, FIRST_SIZES)
+    x, y, z, w, hand = (float(c) for c in best.places[:, 0])
+    return WorstFrame(_degrees(best.chords[0]), (x, y, z, w), hand, moved)
 
 
 def _moves(codec: FrameCodec, quaternions, hands):
@@ -108,60 +81,34 @@ def _at_right_angles(frame: Frame) -> Frame:
     return Frame(n, normalize(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
 
 
-def _worst_of(moves: Callable) -> _Frames:
-    """The worst of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992), of either hand."""
+def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
+    """The worst of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992), of either hand: their
+    quaternions and hands, shape (5, LANES)."""
 
-    def block(start: int) -> _Frames:
+    def block(start: int) -> Starts:
         index = np.arange(start, start + BLOCK) + 0.5
         u, a, b = (np.modf(index * step)[0] * turn for step, turn in zip(THREE, (1, 2 * np.pi, 2 * np.pi), strict=True))
         low, high = np.sqrt(1 - u), np.sqrt(u)
-        q = np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b)])
         hands = np.where(np.arange(BLOCK) % 2, 1.0, -1.0)
-        with jax.enable_x64(True):
-            found, at = column_peaks(np.asarray(moves(q, hands)), KEPT)
-        return _Frames(found, q[:, at], hands[at])
+        frames = np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b), hands])
+        found, at = column_peaks(moves(frames), KEPT)
+        return Starts(found, frames[:, at])
 
-    parts = list(on_all_cores(block, range(0, SPREAD, BLOCK)))
-    joined = (np.concatenate([getattr(p, name) for p in parts], axis=-1) for name in ("moves", "quaternions", "hands"))
-    return _Frames(*joined).best(LANES)
+    return reduce(add, on_all_cores(block, range(0, SPREAD, BLOCK))).best(LANES)
 
 
-def _climb(climbed: Callable, starts: _Frames, first: np.ndarray) -> _Frames:
-    """LANES tangent frames, each moved to the worst of WAYS around it; steps shrink where none is worse."""
-    moves, quaternions = starts.moves, starts.quaternions
-    sizes = first * _radians(moves)
-    for step in range(STEPS):
-        moves, quaternions, sizes = climbed(moves, quaternions, starts.hands, sizes, float(step))
-        if (np.asarray(sizes) < LEAST * _radians(np.asarray(moves))).all():
-            break
-    return _Frames(np.asarray(moves), np.asarray(quaternions), starts.hands)
-
-
-def _climbed(codec: FrameCodec, moves, quaternions, hands, sizes, step):
-    """One step of a climb."""
-    around = _around(quaternions, sizes, step)
-    tried = _moves(codec, around.reshape(4, -1), jnp.tile(hands, WAYS)).reshape(WAYS, LANES)
-    way, lane = tried.argmax(axis=0), jnp.arange(LANES)
-    is_worse = tried[way, lane] > moves
-    return (
-        jnp.where(is_worse, tried[way, lane], moves),
-        jnp.where(is_worse, around[:, way, lane], quaternions),
-        sizes * jnp.where(is_worse, GROW, SHRINK),
-    )
-
-
-def _around(quaternions, sizes, step):
-    """WAYS quaternions around each, turned about axes all around, by four angles; shape (4, WAYS, LANES)."""
-    way, lane = jnp.arange(WAYS, dtype=sizes.dtype)[:, None], jnp.arange(LANES, dtype=sizes.dtype)[None, :]
+def _around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
+    """WAYS tangent frames around each, turned about axes all around, by four angles; shape (5, WAYS, count)."""
+    way, lane = np.arange(WAYS)[:, None], np.arange(len(sizes))[None, :]
     index = way + WAYS * step + 0.5 * lane
-    height, turn = (2.0 * jnp.modf(index * part)[0] - 1.0 for part in TWO)
-    across, half = jnp.sqrt(1.0 - height * height), 0.5 * sizes[None, :] * 0.4 ** (way % 4)
-    a, b, c = half * across * jnp.cos(np.pi * turn), half * across * jnp.sin(np.pi * turn), half * height
-    x, y, z, w = quaternions[:, None]
+    height, turn = (2.0 * np.modf(index * part)[0] - 1.0 for part in TWO)
+    across, half = np.sqrt(1.0 - height * height), 0.5 * sizes[None, :] * 0.4 ** (way % 4)
+    a, b, c = half * across * np.cos(np.pi * turn), half * across * np.sin(np.pi * turn), half * height
+    x, y, z, w, hand = frames[:, None]
     # q (a, b, c, 1): turned about its own axes.
     vector = [x + w * a + y * c - z * b, y + w * b + z * a - x * c, z + w * c + x * b - y * a]
-    turned = jnp.stack([*vector, w - x * a - y * b - z * c])
-    return turned / jnp.sqrt((turned * turned).sum(axis=0, keepdims=True))
+    turned = np.stack([*vector, w - x * a - y * b - z * c])
+    return np.concatenate([turned / np.linalg.norm(turned, axis=0), np.broadcast_to(hand, (1, *index.shape))])
 
 
 def _radians(moves):

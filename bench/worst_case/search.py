@@ -15,8 +15,8 @@ round of climbing, which starts from the best alone with steps of every size, st
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, partial, reduce
 from operator import add
@@ -26,19 +26,13 @@ import numpy as np
 from ...encodings.codecs.codec import Codec
 from ..machine.cores import on_all_cores
 from . import cells
-from .exact_codec import BLOCK, WAYS, ExactCodec, degrees
+from .climb import WAYS, Ground, Starts, highest
+from .exact_codec import BLOCK, ExactCodec, degrees
 
-# Starts that fill a block with what is tried around them, and steps of a round.
-LANES, STEPS = BLOCK // WAYS, 80
-# Directions looked at, and the worst of them kept: where nothing is known of the cells but what these find; and where
-# corners are known, or an encoder that searches takes its time.
-WIDE, NARROW = (2**23, 2 * LANES), (2**20, LANES)
-KEPT = 2**8  # of a round, for the next
-FIRST_SIZES = (0.25, 0.02)  # of a round's steps, in the error
-GROW, SHRINK = 1.5, 0.55
-LEAST = 1e-10  # of a step, in the error; then a climb is over
-# Rounds from the best alone, until one moves it no more than that, relatively.
-LAST_ROUNDS, SETTLED = 12, 1e-8
+# Directions looked at, and the worst of them kept: where the corners of cells are not known, or only some; where they
+# are known; and for an encoder that searches, which takes longer for each direction.
+WIDE, NARROW, QUICK = (2**23, 2**12), (2**20, 2**11), (2**19, 2**8)
+FIRST_SIZES = (0.25, 0.02)  # of the first step of each round, in the error
 CLIMBING = "climbing"
 # A start this near the result, relatively, is what found it.
 SAME = 1e-6
@@ -61,66 +55,57 @@ class Worst:
     moved_deg: float
 
 
-@dataclass(frozen=True)
-class Starts:
-    """Normals, shape (3, count), and their squared chords, shape (count,)."""
-
-    chords: np.ndarray
-    normals: np.ndarray
-
-    def best(self, count: int) -> Starts:
-        """The worst of them, at most `count`."""
-        return self[np.argsort(-self.chords, kind="stable")[:count]]
-
-    def filled(self, count: int) -> Starts:
-        """So many of them, each as often as it takes: climbs differ by where in the block they start."""
-        return self[np.arange(count) % len(self.chords)]
-
-    def __getitem__(self, which: slice | np.ndarray) -> Starts:
-        return Starts(self.chords[which], self.normals[:, which])
-
-    def __add__(self, other: Starts) -> Starts:
-        return Starts(*(np.concatenate(pair, axis=-1) for pair in zip(_fields(self), _fields(other), strict=True)))
-
-
-def _fields(starts: Starts) -> tuple[np.ndarray, np.ndarray]:
-    return starts.chords, starts.normals
-
-
 @cache
 def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     """The largest error over the sphere, or over z >= 0, with eye rays straight ahead."""
     exact = ExactCodec(codec, is_half)
-    way, normals = cells.corners(exact)
-    samples, count = NARROW if way in (cells.ALL_CORNERS, cells.NEAREST) or codec.encoding.searches else WIDE
-    ours = Starts(exact.chords(normals), normals).best(count) if way else None
-    starts = _worst_of(exact, itertools.chain(spread(samples, is_half), _special(is_half)), count)
+    way = cells.way_to_corners(exact)
+    is_known = way in (cells.ALL_CORNERS, cells.NEAREST)
+    samples, count = QUICK if codec.encoding.searches else NARROW if is_known else WIDE
+    # Compiling and the hull of the codes do not hold Python's lock, so a second thread finds the corners meanwhile.
+    with ThreadPoolExecutor(1) as pool:
+        corners = pool.submit(_worst_corners, exact, way, count) if way else None
+        blocks = itertools.chain(((block,) for block in spread(samples, is_half)), _special(is_half))
+        starts = _worst_of(exact, blocks, count)
+    ours = corners.result() if corners else None
     starts = starts + ours if ours else starts
-    for size in FIRST_SIZES:
-        starts = _climb(exact, starts.best(count).filled(count), size).best(KEPT)
-    angle, moved, last = degrees(starts.chords[0]), math.inf, starts.best(1)
-    for _ in range(LAST_ROUNDS):
-        last = _climb(exact, last.filled(LANES), np.geomspace(1e-9, 1.0, LANES)).best(1)
-        moved, angle = degrees(last.chords[0]) - angle, degrees(last.chords[0])
-        if moved <= SETTLED * angle:
-            break
+    ground = Ground(exact.chords, exact.around, _lengths, degrees, exact.block // WAYS)
+    last, moved = highest(ground, starts, count, FIRST_SIZES)
+    angle = degrees(last.chords[0])
     is_ours = ours and degrees(ours.chords[0]) >= angle * (1 - SAME)
-    x, y, z = (float(c) for c in last.normals[:, 0])
+    x, y, z = (float(c) for c in last.places[:, 0])
     return Worst(angle, (x, y, z), way if is_ours else CLIMBING, moved)
 
 
-def _worst_of(exact: ExactCodec, blocks: Iterable[Callable[[], np.ndarray]], count: int) -> Starts:
-    """The worst of normals that come in blocks of shape (3, up to BLOCK), at most `count`."""
+def _lengths(chords: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(chords, 0.0))
 
-    def peaks(block: Callable[[], np.ndarray]) -> Starts:
-        normals = block()
-        chords, index = cells.column_peaks(exact.chords(normals), cells.KEPT)
-        return Starts(chords, normals[:, index])
+
+def _worst_corners(exact: ExactCodec, way: str, count: int) -> Starts:
+    """The worst of the normals at corners of cells, at most `count`."""
+    normals = cells.corners(exact, way)
+    return Starts(exact.chords(normals), normals).best(count)
+
+
+def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarray]]], count: int) -> Starts:
+    """The worst of normals, at most `count`. They come in parts of shape (3, any), which fill a block together."""
+
+    def peaks(block: Sequence[Callable[[], np.ndarray]]) -> Starts:
+        parts = [part() for part in block]
+        ends = np.cumsum([part.shape[1] for part in parts])
+        chords = np.split(exact.chords(np.concatenate(parts, axis=1)), ends[:-1])
+        return reduce(add, map(_peaks, chords, parts))
 
     best = Starts(np.empty(0), np.empty((3, 0)))
     for found in on_all_cores(peaks, blocks):
         best = (best + found).best(count)
     return best
+
+
+def _peaks(chords: np.ndarray, normals: np.ndarray) -> Starts:
+    """Some of the worst of normals, from all over them."""
+    largest, index = cells.column_peaks(chords, cells.KEPT)
+    return Starts(largest, normals[:, index])
 
 
 def spread(count: int, is_half: bool) -> Iterator:
@@ -145,15 +130,15 @@ def _special(is_half: bool) -> Iterator:
     some encodings, which are then not the exact map."""
     circle = _on_sphere(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
     diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
-    for across in [*np.eye(3), *np.array(diagonals)]:
-        for offset in (0.0, 1e-9, -1e-9):
-            yield partial(_about, across, circle + np.array([[0.0], [0.0], [offset]]))
-    for axis in (*np.eye(3), *-np.eye(3)):
-        height = np.cos(np.repeat(np.geomspace(1e-4, 1.0, 256), 64))
-        yield partial(_about, axis, _on_sphere(height, np.arange(len(height)) * (np.pi / 32)))
+    offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]
+    circles = [partial(_about, across, near) for across in [*np.eye(3), *np.array(diagonals)] for near in offsets]
+    yield from (circles[start : start + 4] for start in range(0, len(circles), 4))
+    height = np.cos(np.repeat(np.geomspace(1e-4, 1.0, 256), 64))
+    ring = _on_sphere(height, np.arange(len(height)) * (np.pi / 32))
+    yield from ([partial(_about, axis, ring), partial(_about, -axis, ring)] for axis in np.eye(3))
     for start in range(16 if is_half else 0):
         angle = (np.arange(BLOCK) + start / 16) * (2 * np.pi / BLOCK)
-        yield partial(_on_sphere, np.zeros(BLOCK), angle)
+        yield [partial(_on_sphere, np.zeros(BLOCK), angle)]
 
 
 def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
@@ -164,31 +149,3 @@ def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
     x /= np.linalg.norm(x)
     turned = np.stack([x, np.cross(axis, x), axis], axis=1) @ around_z
     return turned / np.linalg.norm(turned, axis=0)
-
-
-def _climb(exact: ExactCodec, starts: Starts, first) -> Starts:
-    """Normals, a multiple of LANES, each moved to the worst of WAYS around it; steps shrink where none is worse.
-
-    `first` is the size of the first step in the error, for all or for each.
-    """
-    sizes = first * np.sqrt(np.maximum(starts.chords, 0.0))
-    parts = (slice(begin, begin + LANES) for begin in range(0, len(sizes), LANES))
-    return reduce(add, on_all_cores(lambda part: _climb_from(exact, starts[part], sizes[part]), parts))
-
-
-def _climb_from(exact: ExactCodec, starts: Starts, sizes: np.ndarray) -> Starts:
-    """LANES normals, moved by steps of these sizes to begin with."""
-    chords, normals = starts.chords, starts.normals
-    errors, lane = np.sqrt(np.maximum(chords, 0.0)), np.arange(LANES)
-    for step in range(STEPS):
-        around = exact.around(normals, sizes, step)
-        found = exact.chords(around.reshape(3, BLOCK)).reshape(WAYS, LANES)
-        way = found.argmax(axis=0)
-        worst = found[way, lane]
-        is_worse = worst > chords
-        chords = np.where(is_worse, worst, chords)
-        normals = np.where(is_worse, around[:, way, lane], normals)
-        sizes = sizes * np.where(is_worse, GROW, SHRINK)
-        if (sizes < LEAST * errors).all():
-            break
-    return Starts(chords, normals)

@@ -125,12 +125,16 @@ class Codec:
         code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, dtype) for c in code))
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
 
-    def _nearest_of(self, code, n: Vec3, view: Vec3):
-        """Of the codes around, every number rounded down or up, the one that is decoded nearest to n."""
+    def around(self, code) -> list:
+        """The codes around a code (Vec2 or Vec3), every number rounded down or up; of fixed-point formats."""
         around = [
             (c,) * 2 if self.encoding.levels_of(i) else numbers_around(c, self.storage, i) for i, c in enumerate(code)
         ]
-        codes = [type(code)(*numbers) for numbers in itertools.product(*around)]
+        return [type(code)(*numbers) for numbers in itertools.product(*around)]
+
+    def _nearest_of(self, code, n: Vec3, view: Vec3):
+        """Of the codes around the one that is decoded nearest to n."""
+        codes = self.around(code)
         # Squared distances, not cosines: near 1 those no longer tell fine codes apart.
         misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
         return reduce(_nearer, zip((dot(miss, miss) for miss in misses), codes, strict=True))[1]

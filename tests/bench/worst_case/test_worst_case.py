@@ -3,17 +3,21 @@
 import json
 import time
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from exact_codes import fibonacci, nearest_of, storage
 
 from normalbench.bench.normals.normal_sets import axes, sphere
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, degrees
+from normalbench.bench.worst_case import cells
+from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, ahead, degrees
 from normalbench.bench.worst_case.search import spread, worst_case
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import Vec3
 
 
 def codec_of(encoding: str, where: str, rounding: str = "nearest") -> Codec:
@@ -97,6 +101,26 @@ def test_a_lattices_worst_is_its_covering_radius():
 def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where, sup):
     """By climbing from 6 million directions in NumPy's float64, written by somebody else."""
     assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
+
+
+@pytest.mark.parametrize("where", ["rg8", "rg8_snorm"])
+def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
+    """The search decodes all codes around as one array; the codec decodes one after the other."""
+    codec = codec_of("octahedral_precise", where)
+    n = np.random.default_rng(11).normal(size=(3, 4096))
+    n /= np.linalg.norm(n, axis=0)
+    with jax.enable_x64(True):
+        planes = Vec3(*map(jnp.asarray, n))
+        back = np.stack(codec.round_trip(planes, ahead(planes.z)))
+    expected = ((n - back / np.linalg.norm(back, axis=0)) ** 2).sum(axis=0)
+    assert ExactCodec(codec, False).chords(n) == pytest.approx(expected, rel=1e-9)
+
+
+def test_directions_that_are_there_twice_are_taken_once():
+    random = np.random.default_rng(2)
+    directions = random.integers(-2, 3, (3, 500)).astype(float)
+    found, expected = cells._distinct(directions), np.unique(directions, axis=1)
+    assert found.shape == expected.shape and {*map(tuple, found.T)} == {*map(tuple, expected.T)}
 
 
 @pytest.mark.parametrize("is_half", [False, True])
