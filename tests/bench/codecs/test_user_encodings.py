@@ -8,6 +8,7 @@ import pytest
 
 from normalbench.bench.codecs import user_encodings
 from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.bench.machine import forks
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.encodings.catalogue import NAMES
 
@@ -152,6 +153,8 @@ def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path,
     killer = tmp_path / "python"
     killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
     killer.chmod(0o755)
+    # What was started before is another Python.
+    forks._forking.end()
     monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
     status, _, err = run("quality", "--encoding", path, *QUICK)
     assert status == 2 and "killed the process (SIGSEGV)" in err
