@@ -8,8 +8,8 @@ import pytest
 
 from normalbench.bench.codecs import user_encodings
 from normalbench.bench.codecs.first_look import directions, first_look
-from normalbench.bench.machine import forks
 from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.bench.machine import forks
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
