@@ -83,7 +83,6 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
     assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
 
 
-@pytest.mark.slow
 def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
