@@ -165,12 +165,8 @@ def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) ->
     """Fork again, and say how that ended."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     if not (process := os.fork()):
-        os.close(answer)
-        _run(module, given, files)
+        _run(module, given, answer, files)
     try:
-        # It is ended as a group, which it may not have had the time to make itself.
-        os.setpgid(process, process)
-        os.write(answer, process.to_bytes(4, "little"))
         status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
         os.write(answer, status.to_bytes(4, "little", signed=True))
     finally:
@@ -178,11 +174,14 @@ def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) ->
         os._exit(0)
 
 
-def _run(module: Any, given: dict[str, Any], files: list[int]) -> NoReturn:
+def _run(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
     """The module's `main`, in a folder and with the variables of the request."""
     status = 1
     try:
+        # By this number it is ended, with what it starts: it is known before anything of the user's is run.
         os.setpgid(0, 0)
+        os.write(answer, os.getpid().to_bytes(4, "little"))
+        os.close(answer)
         for descriptor, file in zip((1, 2), files, strict=True):
             os.dup2(file, descriptor)
             os.close(file)

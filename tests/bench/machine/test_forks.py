@@ -26,7 +26,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each 
 def ended(monkeypatch, tmp_path):
     """How a process that runs a line of Python ended."""
     (tmp_path / "tried.py").write_text(MODULE)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
     yield lambda line, seconds=30.0: forks.finished("tried", [line], seconds)
     forks._forking.end()
 
