@@ -137,7 +137,7 @@ def _differing(codec, language: str, folder: Path) -> int:
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check)\b(?! --help)"
+    r"(pick|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check|published)\b(?! --help)"
     r"|^python|--plot|--report|--worst-case|--encoding all"
 )
 
