@@ -14,6 +14,7 @@ os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 
 import jax
+import kept_runs
 import pytest
 
 from normalbench.bench.cli import app as cli
@@ -23,6 +24,7 @@ from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
+KEPT = Path(__file__).parents[1] / ".pytest_cache" / "spirv"
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
@@ -31,6 +33,14 @@ jax.config.update("jax_numpy_dtype_promotion", "strict")
 def pytest_configure(config):
     if os.environ.get("CI"):
         config.option.normalbench_require_gl = True
+
+
+@pytest.fixture(scope="session", autouse=True)
+def spirv_is_kept():
+    """SPIR-V is compiled once, as XLA's programs are: an empty cache of the program's own needs it again and again."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(spirv, "_run", kept_runs.kept(spirv._run, KEPT))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -172,8 +172,13 @@ def _looks(path: Path) -> Iterator[dict[str, Any]]:
         yield twin_look(path)
 
 
-if __name__ == "__main__":
+def main(words: Sequence[str]) -> None:
+    """What the command does; see above."""
     children.limit_this_process()
     answer = _alone()
-    for look in _looks(Path(sys.argv[1])):
+    for look in _looks(Path(words[0])):
         os.write(answer, json.dumps(look).encode() + b"\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

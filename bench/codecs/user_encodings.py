@@ -22,7 +22,7 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ...reports.page.verdict import MADE_FOR
 from ..languages.translated import translated
 from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
-from ..machine import children
+from ..machine import children, forks
 from ..machine.cores import on_all_cores
 from ..options.words import given_in
 from ..output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
@@ -38,6 +38,7 @@ OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
+FIRST_LOOK = "normalbench.bench.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
 BIASED = "its codes fill [0, 1], not [-1, 1]; an unsigned storage holds them as they are"
 
@@ -313,7 +314,7 @@ def _look(path: Path) -> Looks:
     """
     said_of_it = tuple(translated(path).notes) if is_translated(path) else ()
     try:
-        done = children.finished(children.python("normalbench.bench.codecs.first_look", str(path)), TIME_LIMIT)
+        done = forks.finished(FIRST_LOOK, [str(path)], TIME_LIMIT)
         said, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
         said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"

@@ -74,7 +74,7 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
         finally:
             _end(process)
             process.wait()
-        said = [_text(file) for file in (out, err)]
+        said = [text_of(file) for file in (out, err)]
     if status is None:
         raise subprocess.TimeoutExpired(command, seconds, *said)
     return subprocess.CompletedProcess(list(command), status, *said)
@@ -89,7 +89,8 @@ def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
     return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
 
 
-def _text(file: IO[bytes]) -> str:
+def text_of(file: IO[bytes]) -> str:
+    """What was written to a file of a process."""
     file.seek(0)
     return file.read().decode(errors="replace")
 

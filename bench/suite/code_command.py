@@ -6,6 +6,7 @@ import re
 import shlex
 import tempfile
 from collections.abc import Iterable, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from ..options.targets import what_is_left
 from ..output.errors import MissingError, UsageError, leave_out, pick, tell
 from ..output.progress import progress
 from ..output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
-from .code_figures import head
+from .code_figures import figures, head
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -77,20 +78,26 @@ def _codecs(options: CodeOptions) -> list[Codec]:
 
 
 def _write(codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
+    return max((_write_codec(codec, languages, options.prefix, output) for codec in codecs), default=0)
+
+
+def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Path | None) -> int:
+    """A codec in each language; 1 where one differs from the catalogue's."""
     status = 0
-    for codec in codecs:
-        for code in _all_made([codec], languages, options.prefix):
-            language = code.language
-            row = verified(code)
-            if row["verdict"] == DIFFERS:
-                status = 1
-                tell(f"{codec.name} in {language}: {row['says']}; it is not written")
-                continue
-            if row["verdict"] == NOT_RUN:
-                tell(f"{codec.name} in {language}: {row['says']}")
-            if code.interface.tables and output is None:
-                raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
-            _save(code, head(code, _command(codec, language, options.prefix), row["says"]), output)
+    # Measured once, and only where something is written.
+    said = cache(partial(figures, codec))
+    for code in _all_made([codec], languages, prefix):
+        language = code.language
+        row = verified(code)
+        if row["verdict"] == DIFFERS:
+            status = 1
+            tell(f"{codec.name} in {language}: {row['says']}; it is not written")
+            continue
+        if row["verdict"] == NOT_RUN:
+            tell(f"{codec.name} in {language}: {row['says']}")
+        if code.interface.tables and output is None:
+            raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
+        _save(code, head(code, _command(codec, language, prefix), row["says"], said()), output)
     return status
 
 

@@ -41,13 +41,14 @@ ADVICE: Mapping[str, str] = MappingProxyType(
 )
 
 
-def head(code: Code, command: str, verified: str) -> list[str]:
+def head(code: Code, command: str, verified: str, said: Sequence[str]) -> list[str]:
     """The paragraphs above a file's functions.
 
     Args:
         code: what the file holds.
         command: what made it.
         verified: how its results compare with the catalogue's.
+        said: its codec's figures, see `figures`.
     """
     codec, encoding = code.codec, code.codec.encoding
     compared = (
@@ -65,7 +66,7 @@ def head(code: Code, command: str, verified: str) -> list[str]:
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
         f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. "
         f"Normals: {HOLDS[encoding.domain]}.",
-        *figures(codec),
+        *said,
         *tables,
         f"Verified: {compared}.",
         f"Made by normalbench {version('normalbench')}: {command}",

@@ -19,6 +19,7 @@ from normalbench.bench.code.tables import dds, header
 from normalbench.bench.code.verify import agreement
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.codecs.user_encodings import encodings_named
+from normalbench.bench.suite import code_command
 from normalbench.bench.suite.code_command import SHIPPED
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
@@ -57,9 +58,19 @@ def written(folder: Path, code, text=None) -> Path:
     return folder / code.name
 
 
+# Slang is given HLSL's text, and takes half a second for each: these have a view, tables and floats.
+OF_SLANG = ("octahedral/rgb10a2", "per_pixel_view/rg16f", "spherical_lut/rg8", "xyz_renormalised:axis=y/r11g11b10f")
+
+
+def pairs() -> list:
+    """Each codec with each language."""
+    every = [(name, language) for name in CODECS for language in LANGUAGES]
+    is_slow = [language == "slang" and name not in OF_SLANG for name, language in every]
+    return [pytest.param(*pair, marks=[pytest.mark.slow] * slow) for pair, slow in zip(every, is_slow, strict=True)]
+
+
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("language", LANGUAGES)
-@pytest.mark.parametrize("name", CODECS)
+@pytest.mark.parametrize("name, language", pairs())
 def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
     """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
     require_runner(language)
@@ -313,3 +324,15 @@ def test_what_cannot_be_written_is_a_line_and_status_2(run, arguments, said, tmp
     assert (status, out) == (2, "")
     assert said in err and err.count("\n") == 1, err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
+    """Every file's head has its figures."""
+    seen, own = [], code_command.figures
+    monkeypatch.setattr(code_command, "figures", lambda codec: seen.append(codec.name) or own(codec))
+    words = ("octahedral,xy", "--storage", "rg8", "--to", "glsl,c,python")
+    assert run("code", *words, "-o", str(tmp_path / "codec"))[0] == 0
+    assert seen == ["octahedral/rg8", "xy/rg8"]
+    texts = [path.read_text() for path in (tmp_path / "codec").iterdir()]
+    assert len(texts) == 6 and all("Error on " in text for text in texts)

@@ -9,6 +9,7 @@ import pytest
 from normalbench.bench.codecs import user_encodings
 from normalbench.bench.codecs.first_look import directions, first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.bench.machine import forks
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
@@ -82,7 +83,6 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
     assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
 
 
-@pytest.mark.slow
 def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
@@ -152,6 +152,8 @@ def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path,
     killer = tmp_path / "python"
     killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
     killer.chmod(0o755)
+    # What was started before is another Python.
+    forks._forking.end()
     monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
     status, _, err = run("quality", "--encoding", path, *QUICK)
     assert status == 2 and "killed the process (SIGSEGV)" in err

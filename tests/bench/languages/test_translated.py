@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,9 +52,15 @@ def changed(code: str) -> str:
     return MINE.replace("return float2(p.x + p.y, p.x - p.y);", code)
 
 
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    """Files are named without the folder of a test, which is another one in each run: what was translated is kept."""
+    monkeypatch.chdir(tmp_path)
+
+
 def written(folder, text, name) -> str:
     (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
-    return str(folder / name)
+    return name if folder == Path.cwd() else str(folder / name)
 
 
 def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
@@ -69,8 +76,7 @@ def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_a_run_and_gates_take_it(run, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_run_and_gates_take_it(run, tmp_path):
     written(tmp_path, MINE, "mine.hlsl")
     written(tmp_path, '[[gate]]\nencoding = "mine.hlsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 4096\n'
             'angle_mean_deg = "at most 0.3"\n', "gates.toml")  # fmt: skip
@@ -204,7 +210,7 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, ending):
     """One line names the user's file, and the others' rows are measured."""
     text = {name: text for name, (text, _) in WRONG.items()}
     text |= {"large": "// " + "x" * 10_000_000 + "\n" + MINE, "good": MINE}
-    files = [written(tmp_path, each, f"{name}.{ending}") for name, each in text.items()]
+    files = [str(tmp_path / written(tmp_path, each, f"{name}.{ending}")) for name, each in text.items()]
     status, out, err = run("quality", "--encoding", ",".join([*files, "hemi_octahedral"]), *QUICK)
     measured = {row["encoding"] for row in json.loads(out)}
     assert status == 0 and measured == {f"large.{ending}", f"good.{ending}", "hemi_octahedral"}
@@ -231,7 +237,7 @@ def test_a_missing_compiler_is_said_with_what_to_install(run, tmp_path, monkeypa
 
 @pytest.mark.usefixtures("hlsl")
 def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", written(tmp_path, "a file", "cache"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / written(tmp_path, "a file", "cache")))
     status, out, _ = run("quality", "--encoding", written(tmp_path, MINE, "mine.hlsl"), *QUICK)
     assert status == 0 and json.loads(out)[0]["angle_mean_deg"]
 

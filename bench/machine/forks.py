@@ -1,0 +1,208 @@
+"""Processes for code that may do anything, forked from one that has imported what they need. Imports nothing heavy.
+
+To import JAX takes longer than most of what is done in such a process. So one process imports once, runs nothing, and
+forks for each request. Linux only, where forking is safe; elsewhere each process imports for itself.
+
+    python -m normalbench.bench.machine.forks DESCRIPTOR
+
+is that process: requests come through a socket.
+"""
+
+from __future__ import annotations
+
+import atexit
+import gc
+import importlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import traceback
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import IO, Any, NoReturn
+
+from . import children
+
+# A process that nobody has asked for this long ends; the next request starts another one.
+IDLE_S, START_S = 60.0, 60.0
+LONGEST = 1 << 20
+KILLED = int(-signal.SIGKILL).to_bytes(4, "little", signed=True)
+# What Python, JAX and the loader read once, when they start or are imported; other variables go with each request.
+READ_AT_THE_START = ("PYTHON", "JAX_", "XLA_", "LD_", "OMP_", "OPENBLAS_")
+
+
+def finished(module: str, words: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
+    """As `children.finished` of `children.python`: what `main(words)` of a module of this program printed, and how
+    its process ended.
+
+    Raises:
+        TimeoutExpired: it took longer; it has what was printed until then.
+    """
+    command = children.python(module, *words)
+    if sys.platform != "linux":
+        return children.finished(command, seconds)
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        try:
+            status = _ended(module, words, (out, err), seconds)
+        except OSError:
+            return children.finished(command, seconds)
+        said = [children.text_of(file) for file in (out, err)]
+    if status is None:
+        raise subprocess.TimeoutExpired(command, seconds, *said)
+    return subprocess.CompletedProcess(command, status, *said)
+
+
+def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], seconds: float) -> int | None:
+    """The status of a process, as Popen has it; None where it was ended after some seconds."""
+    given = {"module": module, "words": words, "folder": str(Path.cwd()), "variables": children.environment()}
+    with _asked(json.dumps(given).encode(), files) as answer:
+        process = int.from_bytes(answer.recv(4), "little")
+        answer.settimeout(seconds)
+        try:
+            # Nothing comes where somebody killed the process that waits for it.
+            return int.from_bytes(answer.recv(4) or KILLED, "little", signed=True)
+        except TimeoutError:
+            return None
+        finally:
+            # What it started as well, which may outlive it.
+            with suppress(ProcessLookupError):
+                os.killpg(process, signal.SIGKILL)
+
+
+def _command(descriptor: int) -> list[str]:
+    return children.python("normalbench.bench.machine.forks", str(descriptor))
+
+
+@dataclass
+class _Forking:
+    """The process that forks, started when it is needed; threads share it."""
+
+    link: socket.socket | None = None
+    process: subprocess.Popen[bytes] | None = None
+    started_with: Any = None
+
+    def start(self) -> socket.socket:
+        """A new process, in place of the one that there was."""
+        self.end()
+        self.link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            self.process = subprocess.Popen(
+                _command(theirs.fileno()),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=children.environment(),
+                pass_fds=[theirs.fileno()],
+                start_new_session=True,
+            )
+        self.started_with = _read_at_the_start()
+        return self.link
+
+    def end(self) -> None:
+        """End it: it ends where nobody can ask any more."""
+        if self.link and self.process:
+            self.link.close()
+            self.process.wait()
+        self.link = self.process = None
+
+
+_forking, _lock = _Forking(), Lock()
+atexit.register(_forking.end)
+
+
+def _read_at_the_start() -> dict[str, str]:
+    return {name: value for name, value in children.environment().items() if name.startswith(READ_AT_THE_START)}
+
+
+def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
+    """Where a process's number has come, and its status will; the process that forks may have ended: it is asked twice.
+
+    Raises:
+        OSError: it does not stay.
+    """
+    for _ in range(2):
+        answer, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        answer.settimeout(START_S)
+        with theirs, suppress(OSError), _lock:
+            link = _forking.link if _forking.started_with == _read_at_the_start() else None
+            socket.send_fds(link or _forking.start(), [request], [theirs.fileno(), *(file.fileno() for file in files)])
+        with suppress(OSError):
+            if answer.recv(4, socket.MSG_PEEK):
+                return answer
+        answer.close()
+        with _lock:
+            _forking.end()
+    raise OSError("the process that forks does not stay")
+
+
+def _serve(link: socket.socket) -> None:
+    """Fork for each request, until there is nobody to ask or nobody has asked for long."""
+    # Who waits for the process that was asked for is itself waited for by nobody.
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    link.settimeout(IDLE_S)
+    while True:
+        try:
+            request, (answer, *files), _, _ = socket.recv_fds(link, LONGEST, 3)
+        except (TimeoutError, ValueError):
+            return
+        given = json.loads(request)
+        module = importlib.import_module(given["module"])
+        gc.freeze()
+        if not os.fork():
+            link.close()
+            _watch(module, given, answer, files)
+        for descriptor in (answer, *files):
+            os.close(descriptor)
+
+
+def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
+    """Fork again, and say how that ended."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    if not (process := os.fork()):
+        _run(module, given, answer, files)
+    try:
+        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+        os.write(answer, status.to_bytes(4, "little", signed=True))
+    finally:
+        # Who asked may not wait any more.
+        os._exit(0)
+
+
+def _run(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
+    """The module's `main`, in a folder and with the variables of the request."""
+    status = 1
+    try:
+        # By this number it is ended, with what it starts: it is known before anything of the user's is run.
+        os.setpgid(0, 0)
+        os.write(answer, os.getpid().to_bytes(4, "little"))
+        os.close(answer)
+        for descriptor, file in zip((1, 2), files, strict=True):
+            os.dup2(file, descriptor)
+            os.close(file)
+        os.chdir(given["folder"])
+        os.environ.clear()
+        os.environ.update(given["variables"])
+        module.main(given["words"])
+        status = 0
+    except SystemExit as error:
+        status = error.code if isinstance(error.code, int) else int(error.code is not None)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        # Nothing of the process that it was forked from is to be tidied up.
+        with suppress(Exception):
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(status)
+
+
+if __name__ == "__main__":
+    _serve(socket.socket(fileno=int(sys.argv[1])))
+    # Nothing was begun that must be ended.
+    os._exit(0)

@@ -1,0 +1,94 @@
+"""Processes that are forked from one that has imported what they need behave as processes of their own."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from normalbench.bench.machine import forks
+
+MODULE = """
+import os, signal, subprocess, sys, time
+
+made = os.getpid()
+
+
+def main(words):
+    exec(words[0])
+"""
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process imports for itself")
+
+
+@pytest.fixture
+def ended(monkeypatch, tmp_path):
+    """How a process that runs a line of Python ended."""
+    (tmp_path / "tried.py").write_text(MODULE)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
+    yield lambda line, seconds=30.0: forks.finished("tried", [line], seconds)
+    forks._forking.end()
+
+
+def is_there(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_each_has_its_own_status_output_folder_and_variables(ended, monkeypatch, tmp_path):
+    """As they are when it is asked for, whenever the process that forks was started; that one imports once."""
+    first = ended("print(made, os.getpid()); print('e', file=sys.stderr); sys.exit(3)")
+    assert (first.returncode, first.stderr) == (3, "e\n")
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setenv("OWN", "1")
+    second = ended("print(made, os.getpid()); print(os.getcwd(), os.environ['OWN'])")
+    assert second.returncode == 0 and second.stdout.splitlines()[1] == f"{tmp_path}/here 1"
+    (made, one), (again, other) = (done.stdout.split()[:2] for done in (first, second))
+    assert made == again and len({made, one, other}) == 3
+
+
+def test_an_error_is_told_and_changes_nothing_for_the_next(ended):
+    done = ended("sys.made = 1; 1 / 0")
+    assert done.returncode == 1 and done.stderr.endswith("ZeroDivisionError: division by zero\n")
+    assert ended("print(hasattr(sys, 'made'))").stdout == "False\n"
+
+
+def test_what_it_started_ends_with_it(ended):
+    """After its time, or when it is done."""
+    line = "print(subprocess.Popen(['sleep', '60']).pid, flush=True)"
+    with pytest.raises(subprocess.TimeoutExpired) as late:
+        ended(f"{line}; time.sleep(60)", 0.5)
+    started = [int(late.value.output), int(ended(line).stdout)]
+    until = time.monotonic() + 10
+    while any(map(is_there, started)) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not any(map(is_there, started))
+
+
+@pytest.mark.parametrize("who", ["made", "os.getppid()", "os.getpid()"])
+def test_whatever_it_kills_the_next_one_is_run(ended, who):
+    """The process that forks, the one that waits, or itself."""
+    ended("pass")
+    done = ended(f"print(1, flush=True); os.kill({who}, signal.SIGKILL); time.sleep(0 if made == {who} else 0.2)")
+    assert done.stdout == "1\n" and done.returncode == (0 if who == "made" else -signal.SIGKILL)
+    assert ended("print(2)").stdout == "2\n"
+
+
+def test_other_variables_of_jax_are_read_anew(ended, monkeypatch):
+    """They are read when it is imported, by the process that forks."""
+    first = ended("print(made)").stdout
+    monkeypatch.setenv("JAX_ENABLE_X64", "1")
+    assert ended("print(made)").stdout != first
+
+
+def test_one_that_does_not_stay_is_done_without(monkeypatch):
+    """Each process then imports for itself."""
+    forks._forking.end()
+    monkeypatch.setattr(forks, "_command", lambda _: ["false"])
+    done = forks.finished("normalbench.bench.codecs.first_look", ["gone.glsl"], 60.0)
+    assert "there is no such file" in done.stdout

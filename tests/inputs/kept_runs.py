@@ -1,0 +1,53 @@
+"""What tools said of what they were given, kept for all tests, their processes and the next run.
+
+glslang takes 50 ms to begin with, and tests of an empty cache give it the same few shaders again and again. What it
+says follows from the program's file, its options and its input: these are the key.
+"""
+
+import base64
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+Run = Callable[..., subprocess.CompletedProcess[bytes]]
+
+
+def kept(run: Run, folder: Path) -> Run:
+    """`spirv._run`, which takes a command, its input and a file that the command may write by its descriptor."""
+
+    def kept_run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
+        tool = shutil.which(command[0])
+        if not tool or len(files) > 1:
+            return run(command, given, *files)
+        path = folder / _key(tool, command[1:], given, files)
+        try:
+            said = {name: base64.b64decode(text) for name, text in json.loads(path.read_text()).items()}
+        except (OSError, ValueError):
+            done = run(command, given, *files)
+            written = os.pread(files[0], os.fstat(files[0]).st_size, 0) if files else b""
+            if done.returncode == 0:
+                _write(path, {"out": done.stdout, "err": done.stderr, "written": written})
+            return done
+        if files:
+            os.pwrite(files[0], said["written"], 0)
+        return subprocess.CompletedProcess(command, 0, said["out"], said["err"])
+
+    return kept_run
+
+
+def _key(tool: str, words: list[str], given: bytes, files: tuple[int, ...]) -> str:
+    about = Path(tool).resolve().stat()
+    named = [word.replace(f"/dev/fd/{file}", "/dev/fd/file") for word in words for file in files or (-1,)]
+    return hashlib.sha256(json.dumps([tool, about.st_size, about.st_mtime_ns, named]).encode() + given).hexdigest()
+
+
+def _write(path: Path, said: dict[str, bytes]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
+        json.dump({name: base64.b64encode(data).decode() for name, data in said.items()}, file)
+    Path(file.name).replace(path)
