@@ -11,6 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from ..machine.memory import keep_what_is_freed
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, tell
 from ..output.sources import sources
@@ -43,6 +44,7 @@ def table_command(
     Raises:
         UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
     """
+    keep_what_is_freed()
     for path in filter(None, (output, report)):
         check_writable(path)
         _check_not_read(path, options)

@@ -24,6 +24,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any, NoReturn
 
+from ..machine.memory import keep_what_is_freed
 from ..output.errors import UsageError, tell
 from .words import checked_address, require_dask
 
@@ -111,6 +112,7 @@ def serve(address: str, patience: float = PATIENCE_S) -> bool:
     """Join a scheduler and measure until it is gone; whether it was there at all."""
     from .tasks import own_folder, probe
 
+    keep_what_is_freed()
     # What takes seconds is done before anybody waits for it.
     probe()
     executor = MainThread()
