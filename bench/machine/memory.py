@@ -9,8 +9,8 @@ import sys
 
 # mallopt's names in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
 M_ARENA_MAX, ARENAS = -8, 2
-# By itself glibc gives back what a chunk of normals needed, and the system clears it anew for the next: a quarter of the
-# time. The most that mallopt takes for the first in 64 bits.
+# By itself glibc gives back what a chunk of normals needed, and the system clears it anew for the next, which takes a
+# quarter of the time. The first is the most that mallopt takes in 64 bits.
 M_MMAP_THRESHOLD, LARGEST_IN_HEAPS = -3, 2**25
 M_TRIM_THRESHOLD, KEPT = -1, 2**30
 
