@@ -15,6 +15,7 @@ import gc
 import importlib
 import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -162,11 +163,15 @@ def _serve(link: socket.socket) -> None:
 
 
 def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
-    """Fork again, and say how that ended."""
+    """Fork again, and say how that ended; end it where whoever asked is there no more."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     if not (process := os.fork()):
         _run(module, given, answer, files)
     try:
+        # Nobody writes there: it can be read once the other end is closed.
+        if answer in select.select([os.pidfd_open(process), answer], [], [])[0]:
+            os.kill(process, signal.SIGKILL)
+            os.killpg(process, signal.SIGKILL)
         status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
         os.write(answer, status.to_bytes(4, "little", signed=True))
     finally:

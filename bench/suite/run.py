@@ -17,7 +17,7 @@ from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.writing import say, whole_file
-from ..results.measuring import Asked, Place, asked, measured
+from ..results.measuring import Asked, Place, asked, measured, with_parts
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
@@ -138,7 +138,7 @@ def _second(request: Any, on: str | None) -> AbstractContextManager[Second | Non
 def _measured_and_shown(
     run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
 ) -> Shown:
-    total = sum(len(ask.steps) for ask in asks)
+    total = sum(1 for ask in asks for _ in with_parts(ask.steps))
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
@@ -153,7 +153,7 @@ def _measured_and_shown(
 
 
 def _there(run: Run, asks: Iterable[Asked]) -> int:
-    return sum(run.find(ask.table.name, step) is not None for ask in asks for step in ask.steps)
+    return sum(run.find(ask.table.name, step) is not None for ask in asks for step in with_parts(ask.steps))
 
 
 def _new_folder() -> Path:

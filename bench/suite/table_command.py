@@ -16,7 +16,7 @@ from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, tell
 from ..output.sources import sources
 from ..output.writing import check_writable, say
-from ..results.measuring import Asked, Beside, Nothing, Place, asked, beside, measured
+from ..results.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..results.plain import plain
 from ..results.runs import Done, facts_of
 from ..tables.table import Measured, Row, Table
@@ -89,16 +89,17 @@ def _work(table: Table) -> Row:
 
 
 def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
+    total = sum(1 for _ in with_parts(ask.steps))
     if kept:
-        found = sum(kept.find(ask.table.name, step) is not None for step in ask.steps)
+        found = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
         if found < len(kept):
             other = f"{kept.path} keeps {len(kept)} steps of another {ask.table.name}"
             raise UsageError(f"{other}; run that one, delete it, or name another file")
-        tell(f"{found} of {len(ask.steps)} steps were measured before")
+        tell(f"{found} of {total} steps were measured before")
     try:
         return measured(ask, Nothing() if kept is None else kept, where)
     except (KeyboardInterrupt, SystemExit):
-        _say_how_to_go_on(kept, len(ask.steps))
+        _say_how_to_go_on(kept, total)
         raise
 
 

@@ -79,6 +79,25 @@ def test_whatever_it_kills_the_next_one_is_run(ended, who):
     assert ended("print(2)").stdout == "2\n"
 
 
+@pytest.mark.usefixtures("ended")
+def test_it_ends_where_whoever_asked_is_killed(tmp_path):
+    """Nobody is left to end it after its time."""
+    line = f"open({str(tmp_path / 'number')!r}, 'w').write(str(os.getpid())); time.sleep(60)"
+    asking = f"from normalbench.bench.machine import forks; forks.finished('tried', [{line!r}], 60)"
+    asks = subprocess.Popen([sys.executable, "-c", asking])
+    until = time.monotonic() + 30
+    while not (tmp_path / "number").is_file() or not (tmp_path / "number").read_text():
+        assert time.monotonic() < until
+        time.sleep(0.02)
+    number = int((tmp_path / "number").read_text())
+    assert is_there(number)
+    asks.kill()
+    asks.wait()
+    while is_there(number) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not is_there(number)
+
+
 def test_other_variables_of_jax_are_read_anew(ended, monkeypatch):
     """They are read when it is imported, by the process that forks."""
     first = ended("print(made)").stdout

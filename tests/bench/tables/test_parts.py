@@ -1,6 +1,7 @@
 """A set that takes hours is measured in parts: the row is that of the set at once, to the last digit, and a part is
 never measured twice."""
 
+import itertools
 import json
 
 import numpy as np
@@ -87,6 +88,29 @@ def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path
     done = read_run(tmp_path / "run")
     assert len(done.steps) == 2 and not done.parts
     assert done.tables["quality"] == json.loads(json.dumps(whole))
+
+
+@pytest.mark.usefixtures("small_parts")
+def test_a_command_with_a_file_goes_on_and_leaves_nothing_behind(run, tmp_path, monkeypatch):
+    """Parts count as steps of the command, and are nobody else's."""
+    arguments = ["quality", "--encoding", "octahedral", "--storage", "rgba8", "--count", str(COUNT)]
+    arguments += ["--normals", "sphere", "--backend", "jax", "-o", str(tmp_path / "rows.json")]
+    whole, run_rows = rows_of(ask(encoding="octahedral")), quality.rows
+
+    def one(cases, tick):
+        yield from itertools.islice(run_rows(cases, tick), 1)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(quality, "rows", one)
+    status, _, err = run(*arguments)
+    assert status == 130 and "1 of 4 steps are kept; the same command goes on" in err
+    monkeypatch.setattr(quality, "rows", run_rows)
+    status, _, err = run(*arguments)
+    assert status == 0 and "1 of 4 steps were measured before" in err, err
+    (row,) = json.loads((tmp_path / "rows.json").read_text())
+    # The file has bins as lists.
+    assert row | {"angle_counts": ""} == whole[0] | {"angle_counts": ""}
+    assert [path.name for path in tmp_path.iterdir()] == ["rows.json"]
 
 
 @pytest.mark.usefixtures("small_parts")
