@@ -94,7 +94,7 @@ def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[Exception], l
     found: dict[str, Encoding] = {}
     complaints: list[Exception] = []
     notes: list[str] = []
-    for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words)), strict=True):
+    for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words), forks.stop), strict=True):
         try:
             found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
             notes += said

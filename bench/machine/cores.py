@@ -17,15 +17,23 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def on_all_cores(function: Callable[[Item], T], items: Iterable[Item]) -> Iterator[T]:
+def on_all_cores(
+    function: Callable[[Item], T], items: Iterable[Item], stop: Callable[[], None] = lambda: None
+) -> Iterator[T]:
     """What a function makes of each item, in order; few items are under way at once, so that any number of them is
-    constant memory. The iterable is run in the calling thread."""
+    constant memory. The iterable is run in the calling thread. Where that is interrupted, what is under way is waited
+    for, after `stop`, which may cut it short."""
     # Half of the threads wait: for the kernel to clear memory, and for the one that asks for the results.
     threads, ahead = 2 * cores(), deque()
     with ThreadPoolExecutor(threads) as pool:
-        for item in items:
-            ahead.append(pool.submit(function, item))
-            if len(ahead) >= threads:
+        try:
+            for item in items:
+                ahead.append(pool.submit(function, item))
+                if len(ahead) >= threads:
+                    yield ahead.popleft().result()
+            while ahead:
                 yield ahead.popleft().result()
-        while ahead:
-            yield ahead.popleft().result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            stop()
+            raise

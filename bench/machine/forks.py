@@ -65,15 +65,28 @@ def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], se
     with _asked(json.dumps(given).encode(), files) as answer:
         process = int.from_bytes(answer.recv(4), "little")
         answer.settimeout(seconds)
+        _under_way.add(answer)
         try:
             # Nothing comes where somebody killed the process that waits for it.
             return int.from_bytes(answer.recv(4) or KILLED, "little", signed=True)
         except TimeoutError:
             return None
         finally:
+            _under_way.discard(answer)
             # What it started as well, which may outlive it.
             with suppress(ProcessLookupError):
                 os.killpg(process, signal.SIGKILL)
+
+
+# What other threads wait for.
+_under_way: set[socket.socket] = set()
+
+
+def stop() -> None:
+    """End what is under way: whoever waits for it has it as killed."""
+    for answer in [*_under_way]:
+        with suppress(OSError):
+            answer.shutdown(socket.SHUT_RDWR)
 
 
 def _command(descriptor: int) -> list[str]:

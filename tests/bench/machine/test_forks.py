@@ -9,6 +9,7 @@ import time
 import pytest
 
 from normalbench.bench.machine import forks
+from normalbench.bench.machine.cores import on_all_cores
 
 MODULE = """
 import os, signal, subprocess, sys, time
@@ -77,6 +78,21 @@ def test_whatever_it_kills_the_next_one_is_run(ended, who):
     done = ended(f"print(1, flush=True); os.kill({who}, signal.SIGKILL); time.sleep(0 if made == {who} else 0.2)")
     assert done.stdout == "1\n" and done.returncode == (0 if who == "made" else -signal.SIGKILL)
     assert ended("print(2)").stdout == "2\n"
+
+
+def test_who_waits_in_another_thread_can_be_told_to_stop(ended):
+    """As at Ctrl-C: the process is ended and nobody waits for its time."""
+
+    def interrupted():
+        yield "time.sleep(60)"
+        time.sleep(2)
+        raise KeyboardInterrupt
+
+    found, began = [], time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        list(on_all_cores(lambda line: found.append(ended(line)), interrupted(), forks.stop))
+    assert time.monotonic() - began < 20
+    assert [done.returncode for done in found] == [-signal.SIGKILL]
 
 
 @pytest.mark.usefixtures("ended")
