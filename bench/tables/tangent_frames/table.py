@@ -56,7 +56,7 @@ COLUMNS = (
         "The largest rotation over all tangent frames of exact arithmetic, by search; no sample can be above it.",
         unit="degrees",
         better="less",
-        drops=3,
+        drops=18,
         option="worst_case",
     ),
     Column(
@@ -91,7 +91,7 @@ TABLE = Table(
     help="What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost "
     "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "
     "its uv.",
-    example="normalbench frames --encoding quaternion --backend jax",
+    example="normalbench frames --encoding smallest_three --backend jax",
     options=FramesOptions,
     columns=COLUMNS,
     single={"encoding": "smallest_three", "backend": "jax"},
