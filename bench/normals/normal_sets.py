@@ -72,7 +72,8 @@ class NormalSet:
     @property
     def starts(self) -> range:
         """Where its chunks start."""
-        return range(0, self.count, CHUNK)[self.of.start : self.of.stop] if self.of else range(0, self.count, CHUNK)
+        whole = range(0, self.count, CHUNK)
+        return whole[self.of.start : self.of.stop] if self.of else whole
 
     @cached_property
     def parts(self) -> Sequence[NormalSet]:

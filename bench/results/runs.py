@@ -174,12 +174,13 @@ class Run:
 
     def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
         """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
-        earlier requests stay in front; those of parts go, since their steps are whole. Raises UsageError."""
+        earlier requests stay in front; those of parts go once their step is whole. Raises UsageError."""
         place = {key_text(table, step.key): at for at, (table, step) in enumerate(steps)}
         # Read again: whoever finished the rows may have written into those that were kept.
         before = read_lines(self.folder / ROWS)
-        whole = (line for line in before if PART not in line["key"])
-        lines = sorted(whole, key=lambda line: place.get(key_text(line["table"], line["key"]), -1))
+        whole = {key_text(line["table"], line["key"]) for line in before}
+        kept = (line for line in before if PART not in line["key"] or _step_of(line) not in whole)
+        lines = sorted(kept, key=lambda line: place.get(key_text(line["table"], line["key"]), -1))
         if lines != before:
             self._journal.replace(lines)
 
@@ -187,6 +188,11 @@ class Run:
         """Every step has its rows."""
         self.facts |= {"finished": True, **_seal((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
+
+
+def _step_of(part: Row) -> str:
+    """The step that a part's line is of, as `key_text` has it."""
+    return key_text(part["table"], {name: value for name, value in part["key"].items() if name != PART})
 
 
 def _write_facts(folder: Path, facts: Row) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -15,22 +14,21 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES, across
 from ...codecs.names import codecs_named
-from ...machine.devices import found_device
-from ...metrics.meter import idle
+from ...machine.devices import require_device
 from ...normals.normal_sets import sphere
+from ...output.errors import MissingError
 from ...worst_case.search import worst_case
 from ..quality import measure as quality
 from ..sweep import measure as sweep
 from ..sweep.table import SweepOptions
 from ..sweep.work import points
+from ..throughput.measure import least_times
 from .table import KINDS, TABLE
 
 ENCODING, STORAGE = "octahedral", "rg8"
 # Normals of each of several codecs.
 NORMALS = 2**16
 OBJECTS, LIGHTS = 100, 64
-# A time is the least of these many, or of fewer where they take LONG_ENOUGH seconds.
-TURNS, LONG_ENOUGH = 5, 2.0
 
 Row = dict[str, Any]
 
@@ -56,20 +54,9 @@ def _bits(codes: int) -> int:
     return round(math.log(codes, 4))
 
 
-def _least_time(work: Callable[[], object]) -> float:
-    """Seconds, after a turn to warm up."""
-    work()
-    times: list[float] = []
-    while len(times) < TURNS and sum(times) < LONG_ENOUGH:
-        begin = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - begin)
-    return min(times)
-
-
 def _quality(codecs: list[Codec], count: int) -> float:
     cases = quality.cases(codecs, [sphere(count)], ["jax"])
-    return _least_time(lambda: [*quality.rows(cases, lambda _: idle())])
+    return least_times([lambda: [*quality.rows(cases, lambda _: None)]])[0]
 
 
 def _normals(size: int) -> float:
@@ -84,13 +71,11 @@ def _codecs(size: int) -> float:
 
 def _codes(size: int) -> float:
     codec = Codec(ENCODINGS[ENCODING], across("unorm", (_bits(size),) * 2))
-    return _least_time(lambda: worst_case.__wrapped__(codec))
+    return least_times([lambda: worst_case.__wrapped__(codec)])[0]
 
 
 def _frame(objects: int, lights: int) -> float:
-    gl, missing = found_device()
-    if not gl:
-        raise LookupError(missing)
+    gl = require_device()
     asked = SweepOptions(pipeline="hybrid", light_targets="1", shadow="off", size="320x240", objects=str(objects))
     (point,) = points(replace(asked, lights=lights), gl)
     return sweep.measure(gl, point)["ms_frame"] / 1e3
@@ -113,8 +98,7 @@ def measure(case: Case) -> Row:
     row = TABLE.empty() | {"over": case.over, "size": case.size, "timed": kind.says}
     try:
         seconds = SECONDS[case.over](case.size)
-    except LookupError as error:
+    except MissingError as error:
         return row | {"skipped": str(error)}
-    gl, _ = found_device() if kind.draws else (None, "")
-    device = gl.renderer if gl else jax.devices()[0].device_kind
+    device = require_device().renderer if kind.draws else jax.devices()[0].device_kind
     return row | {"seconds": seconds, "microseconds_each": 1e6 * seconds / case.size, "device": device}

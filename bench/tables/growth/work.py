@@ -9,7 +9,7 @@ from typing import Any
 from ....reports.charts import growth as charts
 from ....reports.charts.drawings import Drawing
 from ...machine.devices import require_jax
-from ...metrics.growth import exponent
+from ...metrics.growth import exponent, growth_lines
 from ...options.counts import checked_numbers
 from ...output.errors import UsageError, pick
 from ...output.writing import check_plot, save_plot
@@ -50,21 +50,21 @@ def with_exponents(rows: Sequence[Row]) -> list[Row]:
     """Rows with the exponent from the next smaller size that was timed."""
     made: list[Row] = []
     for part in _by_kind(rows):
-        exponents = {large["size"]: _exponent([small, large]) for small, large in pairwise(having(part, "seconds"))}
+        pairs = pairwise(having(part, "seconds"))
+        exponents = {large["size"]: exponent(*_sizes_and_times([small, large])) for small, large in pairs}
         made += [row | {"exponent": exponents.get(row["size"])} for row in part]
     return made
 
 
-def _exponent(rows: Sequence[Row]) -> float | None:
-    return exponent([row["size"] for row in rows], [row["seconds"] for row in rows])
+def _sizes_and_times(rows: Sequence[Row]) -> tuple[list[int], list[float]]:
+    return [row["size"] for row in rows], [row["seconds"] for row in rows]
 
 
 def notes(rows: Sequence[Row]) -> Iterator[str]:
     """How the time of each kind grows, over all of its sizes."""
     for part in _by_kind(having(rows, "seconds")):
-        over, smallest, largest = part[0]["over"], part[0]["size"], part[-1]["size"]
-        if (found := _exponent(part)) is not None:
-            yield f"{over}: time grows as {over}^{found:.2f} from {smallest} to {largest}"
+        over = part[0]["over"]
+        yield from growth_lines(over, over, *_sizes_and_times(part))
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:

@@ -51,9 +51,9 @@ class Case:
         return f"{self.encoding.name} {self.statistics} {self.count}"
 
 
-def rates(works: Sequence[Task], count: int) -> list[float]:
-    """Million normals a second of works that take turns: the best of three turns or more, for LONG_ENOUGH seconds each,
-    after one to warm up."""
+def least_times(works: Sequence[Task]) -> list[float]:
+    """Seconds of works that take turns: the least of three turns or more, for LONG_ENOUGH seconds each, after one to
+    warm up."""
     for work in works:
         work()
     times: list[list[float]] = [[] for _ in works]
@@ -62,7 +62,12 @@ def rates(works: Sequence[Task], count: int) -> list[float]:
             begin = time.perf_counter()
             work()
             taken.append(time.perf_counter() - begin)
-    return [count / min(taken) / 1e6 for taken in times]
+    return [min(taken) for taken in times]
+
+
+def rates(works: Sequence[Task], count: int) -> list[float]:
+    """Million normals a second of works on so many, by their least times."""
+    return [count / taken / 1e6 for taken in least_times(works)]
 
 
 @lru_cache(maxsize=1)

@@ -8,7 +8,7 @@ from ....reports.charts import throughput as charts
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_jax
-from ...metrics.growth import exponent
+from ...metrics.growth import growth_lines
 from ...options.counts import MAX_TIMED_COUNT, checked_numbers
 from ...options.targets import that_fit
 from ...output.errors import pick
@@ -48,10 +48,8 @@ def exponents(rows: Sequence[Row]) -> Iterator[str]:
     for statistics, encoding in dict.fromkeys((row["statistics"], row["encoding"]) for row in rows):
         part = [row for row in rows if (row["statistics"], row["encoding"]) == (statistics, encoding)]
         counts = [row["count"] for row in part]
-        if len(counts) > 1:
-            slope = exponent(counts, [row["count"] / row["rate"] for row in part])
-            between = f"from {min(counts)} to {max(counts)} normals"
-            yield f"{encoding}, {statistics}: time grows as count^{slope:.2f} {between}"
+        times = [row["count"] / row["rate"] for row in part]
+        yield from growth_lines(f"{encoding}, {statistics}", "count", counts, times, " normals")
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from normalbench.bench.metrics.growth import exponent
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.tables.growth import measure
 from normalbench.bench.tables.growth.measure import Case
 from normalbench.bench.tables.growth.table import KINDS, GrowthOptions
@@ -49,10 +49,11 @@ def test_codes_are_rounded_to_what_two_numbers_of_equal_bits_have_and_timed_once
     assert [case.size for case in made] == [2**16, 2**20]
 
 
+@pytest.mark.usefixtures("gl")
 def test_what_is_timed_is_as_large_as_said(monkeypatch):
     """Codecs of a table, normals of a row, objects and lights of a frame, codes of a search."""
     rows, searched, frames = [], [], []
-    monkeypatch.setattr(measure, "_least_time", lambda work: [work(), 1.0][1])
+    monkeypatch.setattr(measure, "least_times", lambda works: [works[0](), [1.0]][1])
     monkeypatch.setattr(measure.quality, "rows", lambda cases, _: rows.append(cases) or [])
     monkeypatch.setattr(measure, "worst_case", type("", (), {"__wrapped__": searched.append}))
     monkeypatch.setattr(measure, "_frame", lambda *sizes: frames.append(sizes) or 1.0)
@@ -65,7 +66,10 @@ def test_what_is_timed_is_as_large_as_said(monkeypatch):
 
 
 def test_without_a_gl_device_the_row_says_so(monkeypatch):
-    monkeypatch.setattr(measure, "found_device", lambda: (None, "no GL driver"))
+    def missing():
+        raise MissingError("no GL driver")
+
+    monkeypatch.setattr(measure, "require_device", missing)
     row = measure.measure(Case("lights", 10))
     assert row["skipped"] == "no GL driver" and row["seconds"] is None
     assert [*WORK.warnings([row, row])] == ["lights: not timed: no GL driver"]

@@ -87,6 +87,13 @@ def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path
     assert len(wanted[0]) == 3
     done = read_run(tmp_path / "run")
     assert len(done.steps) == 2 and not done.parts
+    # Another request leaves parts whose step is not whole.
+    (other,) = ask(encoding="xyz").steps
+    with opened(tmp_path / "run", facts) as run:
+        run.keep("quality", other.parts[0], [{"total": ""}])
+        run.arrange(("quality", step) for step in one.steps)
+    done = read_run(tmp_path / "run")
+    assert len(done.steps) == 2 and [part["key"]["encoding"] for part in done.parts] == ["xyz"]
     assert done.tables["quality"] == json.loads(json.dumps(whole))
 
 
