@@ -5,7 +5,6 @@ says follows from the program's file, its options and its input: these are the k
 """
 
 import base64
-import hashlib
 import json
 import os
 import shutil
@@ -13,6 +12,8 @@ import subprocess
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+
+from normalbench.bench.output.cache import key_of
 
 Run = Callable[..., subprocess.CompletedProcess[bytes]]
 
@@ -43,11 +44,12 @@ def kept(run: Run, folder: Path) -> Run:
 def _key(tool: str, words: list[str], given: bytes, files: tuple[int, ...]) -> str:
     about = Path(tool).resolve().stat()
     named = [word.replace(f"/dev/fd/{file}", "/dev/fd/file") for word in words for file in files or (-1,)]
-    return hashlib.sha256(json.dumps([tool, about.st_size, about.st_mtime_ns, named]).encode() + given).hexdigest()
+    return key_of(tool, str(about.st_size), str(about.st_mtime_ns), json.dumps(named), given)
 
 
 def _write(path: Path, said: dict[str, bytes]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
+    # Threads may write the same at once.
     with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
         json.dump({name: base64.b64encode(data).decode() for name, data in said.items()}, file)
     Path(file.name).replace(path)
