@@ -17,13 +17,14 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.rounding import Scale, fixed, shared
 from ...encodings.storages.storage import Storage
-from ...encodings.vec import Vec2, Vec3, dot, select
+from ...encodings.vec import Vec2, Vec3, dot, maximum, select
 from .climb import WAYS
 
 # Normals in a block; and in a block of an encoder that searches, which takes longer for each normal.
 BLOCK, SHORT = 2**15, 2**12
 SLAB = (2**7 - 1, 2**8 - 1)  # rows and columns of corners in a block
 TOLERANCE = 1e-6  # within which a decoded code is encoded as itself
+NEAR_AXIS = 0.9  # a component above which the other two are computed from it
 
 
 def ahead(like) -> Vec3:
@@ -36,6 +37,20 @@ def _toward(v: Vec3) -> Vec3:
     length2 = dot(v, v)
     is_direction = (length2 > 0.0) & jnp.isfinite(length2)
     return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
+
+
+def unit(n: Vec3) -> Vec3:
+    """A unit vector whose two short components, near an axis, have the length that its long one leaves them.
+
+    Encoders compute 1 + n.z, which is exact there. Normalising a vector rounds n.z by itself, which can change 1 + n.z
+    by all that it is: the encoder would be given a vector of another length.
+    """
+    long = maximum(maximum(abs(n.x), abs(n.y)), abs(n.z))
+    short = Vec3(*(select(abs(c) == long, 0.0, c) for c in n))
+    # |short|^2 = (1 - |long|) (1 + |long|)
+    short2 = dot(short, short)
+    scale = jnp.sqrt(maximum((1.0 - long) * (1.0 + long), 0.0) / select(short2 > 0.0, short2, 1.0))
+    return Vec3(*(select((long > NEAR_AXIS) & (abs(c) < long), c * scale, c) for c in n))
 
 
 class _Programs:
@@ -63,7 +78,7 @@ class _Programs:
         return self._code(*code), ahead(code[0])
 
     def _chords(self, n, *scales: Scale):
-        n = Vec3(*n)
+        n = unit(Vec3(*n))
         decoded = self._decoded(self._codec(scales), n)
         length2 = dot(decoded, decoded)
         is_direction = (length2 > 0.0) & jnp.isfinite(length2)
@@ -194,6 +209,12 @@ class ExactCodec:
         if self.is_half:
             np.maximum(around[2], 0.0, out=around[2])
         return around / np.linalg.norm(around, axis=0)
+
+    def unit(self, n: np.ndarray) -> tuple[float, float, float]:
+        """One normal, shape (3,), as `chords` takes it."""
+        with jax.enable_x64(True):
+            x, y, z = (float(c) for c in unit(Vec3(*n)))
+        return x, y, z
 
     def angle_deg(self, n: np.ndarray) -> float:
         """The angle of one normal, shape (3,), in degrees."""

@@ -73,8 +73,7 @@ def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     last, moved = highest(ground, starts, count, FIRST_SIZES)
     angle = degrees(last.chords[0])
     is_ours = ours and degrees(ours.chords[0]) >= angle * (1 - SAME)
-    x, y, z = (float(c) for c in last.places[:, 0])
-    return Worst(angle, (x, y, z), way if is_ours else CLIMBING, moved)
+    return Worst(angle, exact.unit(last.places[:, 0]), way if is_ours else CLIMBING, moved)
 
 
 def _lengths(chords: np.ndarray) -> np.ndarray:

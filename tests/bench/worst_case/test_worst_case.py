@@ -12,7 +12,7 @@ from exact_codes import fibonacci, nearest_of, storage
 from normalbench.bench.normals.normal_sets import axes, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case import cells
-from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, ahead, degrees
+from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, ahead, degrees, unit
 from normalbench.bench.worst_case.search import spread, worst_case
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
@@ -114,6 +114,36 @@ def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
         back = np.stack(codec.round_trip(planes, ahead(planes.z)))
     expected = ((n - back / np.linalg.norm(back, axis=0)) ** 2).sum(axis=0)
     assert ExactCodec(codec, False).chords(n) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_two_forms_of_one_map_have_one_supremum():
+    """At the opposite pole the one computes 8 n.z + 8, of which a rounding of n.z alone is all there: 60 degrees were
+    found 1e-6 from it."""
+    published, classic = (worst_case(codec_of(name, "rg16")) for name in ("spheremap", "spheremap_classic"))
+    assert published.angle_deg == pytest.approx(classic.angle_deg, rel=1e-8)
+    assert published.normal == pytest.approx(classic.normal, abs=1e-9)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_near_an_axis_the_short_components_follow_the_long_one(axis):
+    """a^2 + b^2 = (1 - c)(1 + c), where 1 - c is a whole number of 2^-53."""
+    turn = np.linspace(0, 2 * np.pi, 100)
+    off = np.geomspace(1e-8, 0.3, 100)
+    n = np.roll([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), -np.cos(off)], axis, axis=0)
+    with jax.enable_x64(True):
+        found = np.roll(np.stack([np.asarray(c) for c in unit(Vec3(*n))]), -axis, axis=0)
+    np.testing.assert_array_equal(found[2], -np.cos(off))
+    squared = found[0] ** 2 + found[1] ** 2
+    np.testing.assert_allclose(squared, (1 + found[2]) * (1 - found[2]), rtol=1e-15)
+    assert np.abs(found - np.roll(n, -axis, axis=0)).max() < 2e-8
+
+
+def test_away_from_the_axes_a_normal_stays_as_it_is():
+    """Equal components stay equal."""
+    n = np.array([[0.6, -0.8, 0.0], [1.0, 1.0, 1.0], [0.5**0.5, 0.0, -(0.5**0.5)]]).T
+    with jax.enable_x64(True):
+        np.testing.assert_array_equal(np.stack([np.asarray(c) for c in unit(Vec3(*n))]), n)
 
 
 def test_directions_that_are_there_twice_are_taken_once():
