@@ -13,7 +13,11 @@ def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]
     Returns:
         the error, and how many pixels are no number; each of those counts as 1 in every channel.
     """
-    broken = ~np.all(np.isfinite(image), axis=-1, keepdims=True)
+    finite = np.isfinite(image)
+    # Along three channels NumPy looks for what is not finite in ten times the time that it takes to see that all is.
+    if finite.all():
+        return float(np.mean((image - reference) ** 2)), 0
+    broken = ~finite.all(axis=-1, keepdims=True)
     difference = np.where(broken, 1.0, np.nan_to_num(image) - reference)
     return float(np.mean(difference**2)), int(broken.sum())
 

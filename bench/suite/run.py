@@ -111,15 +111,15 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
     Returns:
         the exit status: 1 where a row fails.
     """
-    from ..machine.devices import require_jax
-
     have_few_heaps()
-    require_jax()
-    facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
-    facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
-    folder = output or unfinished(RESULTS, facts) or _new_folder()
-    # It imports what it needs while this process finds out what there is to measure.
+    # It imports what it needs while this process does, and finds out what there is to measure.
     with _second(request, on) as second:
+        from ..machine.devices import require_jax
+
+        require_jax()
+        facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
+        facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
+        folder = output or unfinished(RESULTS, facts) or _new_folder()
         with noting_what_is_left_out() as left_out:
             asks = asked_of(request, folder)
         facts |= {"left_out": left_out}
@@ -166,24 +166,26 @@ def _measure_all(
     run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
 ) -> Shown:
     """Every table measured and shown."""
-    # The answer first: nothing else is measured while people wait for it.
+    # The answer first: this process measures nothing else while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
+    beside = [ask for ask in rest if ask.table.is_measured_beside]
+    if second and is_worth_it(ask.table for ask in rest):
+        second.measure(run, beside, _taken(said, beside))
     for ask in first:
         shown.add(ask, measured(ask, run, where))
     if second and is_worth_it(ask.table for ask in rest):
-        _measure_beside(run, rest, shown, said, second)
+        _measure_others(run, rest, shown, second)
     for ask in rest:
         if ask.table.name not in shown.done:
             shown.add(ask, measured(ask, run, where))
     return shown
 
 
-def _measure_beside(run: Run, asks: Sequence[Asked], shown: Shown, said: Mapping[str, Any], second: Second) -> None:
-    """Tables measured by two processes at the same time, but for those that the second did not get to because something
-    killed it."""
+def _measure_others(run: Run, asks: Sequence[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process does not measure, at the same time; and its own, but for those that it did not
+    get to because something killed it."""
     beside = [ask for ask in asks if ask.table.is_measured_beside]
-    second.measure(run, beside, _taken(said, beside))
     # What takes times is measured when nothing else runs.
     for ask in sorted((ask for ask in asks if ask not in beside), key=_takes_times):
         if _takes_times(ask):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...encodings.codecs.files import file_text
 
-ROOM = Path(__file__).parents[1]
+ROOM = Path(__file__).resolve().parents[1]
 SUFFIXES = (".glsl", ".vert", ".frag", ".comp")
 # Of the encodings: not the pairs, which may have the name of another kind's.
 SHARED = ("*.glsl", "storages/*.glsl")
@@ -18,6 +18,8 @@ _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
 _PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
 
 Line = tuple[str, Path, int]
+# A line with what it includes: nothing, or the match of _INCLUDE.
+Parsed = tuple[Line, re.Match[str] | None]
 
 
 class ShaderError(Exception):
@@ -64,17 +66,15 @@ class Source:
     def _expand(self, path: Path) -> list[Line]:
         self._seen.add(path)
         lines: list[Line] = []
-        for number, line in enumerate(read_shader(path).splitlines(), 1):
-            match = _INCLUDE.match(line) if "#include" in line else None
-            # moderngl expands what is left of them, in comments as well, and knows no files.
-            lines += self._include(path, number, match) if match else [(line.replace("#inc", "# inc"), path, number)]
+        for line, match in (_own_lines if _is_own(path) else _lines)(path):
+            lines += self._include(*line[1:], match) if match else [line]
         return lines
 
     def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:
         if match["name"] and match["name"] not in self._names:
             raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
-        target = self._names[match["name"]] if match["name"] else _beside(path, match["file"])
-        target = Path(target).resolve()
+        named = match["name"]
+        target = Path(self._names[named]).resolve() if named else _target(path, match["file"])
         return [] if target in self._seen else self._expand(target)
 
     def explain(self, log: str) -> str:
@@ -96,10 +96,37 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(re.findall(r"\w+", text))
 
 
+def _lines(path: Path) -> list[Parsed]:
+    """The lines of a shader's file. Raises ShaderError."""
+    lines: list[Parsed] = []
+    for number, line in enumerate(read_shader(path).splitlines(), 1):
+        match = _INCLUDE.match(line) if "#include" in line else None
+        # moderngl expands what is left of them, in comments as well, and knows no files.
+        lines.append(((line.replace("#inc", "# inc"), path, number), match))
+    return lines
+
+
+# The program's own files stay as they are: frames ask for the same shaders again and again.
+_own_lines = cache(_lines)
+
+
+@cache
+def _is_own(path: Path) -> bool:
+    """Whether a file, its path resolved, is one of this room's or of the encodings."""
+    return any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
+
+
+def _target(path: Path, file: str) -> Path:
+    """The file that a shader at `path` includes, its path resolved."""
+    return (_own_target if _is_own(path) else _beside)(path, file)
+
+
 def _beside(path: Path, file: str) -> Path:
-    """The file that a shader at `path` includes."""
     near = path.parent / file
-    return near if near.is_file() else shaders().get(file, near)
+    return (near if near.is_file() else Path(shaders().get(file, near))).resolve()
+
+
+_own_target = cache(_beside)
 
 
 def read_shader(path: Path) -> str:

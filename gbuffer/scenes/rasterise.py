@@ -9,9 +9,13 @@ import numpy as np
 from .mesh import Mesh
 
 # Candidate pixels held at once; bounds memory whatever the scene.
-CHUNK = 1 << 20
+CHUNK = 1 << 16
 # How far outside a triangle, in its own barycentric weights, a pixel's centre still counts as on the edge.
 EDGE = 1e-9
+# Pixels along a side of the squares that boxes are cut into: those wholly outside a triangle's edge are left out.
+SIDE = 16
+# What rounding may add to an edge function, in its largest value.
+ROUNDED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -59,8 +63,9 @@ def rasterise(mesh: Mesh, camera: Camera) -> Rendered:
     seen = (abs(np.linalg.det(clip)) > 1e-12) & np.any(clip[..., 2] > camera.near, axis=1)
     corners, normals, clip = corners[seen], mesh.normals[mesh.triangles][seen], clip[seen]
     inverse = np.linalg.inv(clip)
-    boxes = _pixel_boxes(clip, camera)
-    return _resolve(corners, normals, inverse, boxes, camera)
+    triangle, boxes = _squares(_pixel_boxes(clip, camera))
+    is_met = _is_met(inverse[triangle], boxes, camera)
+    return _resolve(corners, normals, inverse, triangle[is_met], boxes[is_met], camera)
 
 
 def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
@@ -76,27 +81,52 @@ def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
     return np.concatenate([low, np.maximum(high, low)], axis=1)
 
 
-def _candidates(boxes: np.ndarray):
+def _squares(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes cut into squares of SIDE pixels at most: the triangle of each, ascending, and its box, (squares, 4)."""
+    across, down = -(-(boxes[:, 2:] - boxes[:, :2]).T // SIDE)
+    triangle = np.repeat(np.arange(len(boxes)), across * down)
+    within = np.arange(len(triangle)) - np.repeat(np.cumsum(across * down) - across * down, across * down)
+    row, column = np.divmod(within, across[triangle])
+    low = boxes[triangle, :2] + SIDE * np.stack([column, row], axis=1)
+    return triangle, np.concatenate([low, np.minimum(low + SIDE, boxes[triangle, 2:])], axis=1)
+
+
+def _is_met(inverse: np.ndarray, boxes: np.ndarray, camera: Camera) -> np.ndarray:
+    """Whether a box has a pixel on the inner side of each of a triangle's edges: edge functions are linear, so they are
+    largest in one of its four corners."""
+    columns, rows = boxes[:, (0, 2, 0, 2)] - (0, 1, 0, 1), boxes[:, (1, 1, 3, 3)] - (0, 0, 1, 1)
+    edges = np.einsum("cjn,njk->nck", _centres(columns.T, rows.T, camera), inverse)
+    edges += EDGE * edges.sum(axis=2, keepdims=True)
+    largest = edges.max(axis=1)
+    return np.all(largest >= -ROUNDED * np.abs(edges).max(axis=1), axis=1)
+
+
+def _centres(column: np.ndarray, row: np.ndarray, camera: Camera) -> np.ndarray:
+    """The centres of pixels as x, y in [-1, 1] and 1: the three of them are the axis before the last."""
+    x = (column + 0.5) / camera.width * 2 - 1
+    y = 1 - (row + 0.5) / camera.height * 2
+    return np.stack([x, y, np.ones_like(x)], axis=-2)
+
+
+def _candidates(triangle_of: np.ndarray, boxes: np.ndarray):
     """Yields (triangle, column, row) arrays that cover every box, a bounded number at a time."""
     widths, heights = (boxes[:, 2:] - boxes[:, :2]).T
     ends = np.cumsum(widths * heights)
     for start in range(0, int(ends[-1]) if len(ends) else 0, CHUNK):
         index = np.arange(start, min(start + CHUNK, int(ends[-1])))
-        triangle = np.searchsorted(ends, index, side="right")
-        within = index - (ends[triangle] - widths[triangle] * heights[triangle])
-        row, column = np.divmod(within, widths[triangle])
-        yield triangle, boxes[triangle, 0] + column, boxes[triangle, 1] + row
+        box = np.searchsorted(ends, index, side="right")
+        within = index - (ends[box] - widths[box] * heights[box])
+        row, column = np.divmod(within, widths[box])
+        yield triangle_of[box], boxes[box, 0] + column, boxes[box, 1] + row
 
 
-def _resolve(corners, normals, inverse, boxes, camera: Camera) -> Rendered:
+def _resolve(corners, normals, inverse, triangle_of, boxes, camera: Camera) -> Rendered:
     depth = np.full(camera.width * camera.height, np.inf)
     normal = np.zeros((camera.width * camera.height, 3))
     position = np.tile([0.0, 0.0, -camera.far], (camera.width * camera.height, 1))
-    for triangle, column, row in _candidates(boxes):
-        x = (column + 0.5) / camera.width * 2 - 1
-        y = 1 - (row + 0.5) / camera.height * 2
+    for triangle, column, row in _candidates(triangle_of, boxes):
         # Each edge function is a corner's weight over w; their sum is 1/w.
-        edges = np.einsum("nj,njk->nk", np.stack([x, y, np.ones_like(x)], axis=1), inverse[triangle])
+        edges = np.einsum("jn,njk->nk", _centres(column, row, camera), inverse[triangle])
         one_over_w = edges.sum(axis=1)
         # A centre on an edge two triangles share belongs to both, so that rounding leaves no crack between them.
         inside = np.all(edges >= -EDGE * one_over_w[:, None], axis=1)

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from normalbench.gbuffer.scenes import mesh as shapes
+from normalbench.gbuffer.scenes import rasterise as rasteriser
+from normalbench.gbuffer.scenes.mesh import Mesh
 from normalbench.gbuffer.scenes.rasterise import Camera, rasterise
 from normalbench.gbuffer.scenes.teapot import HEIGHT, control_points, teapot
 
@@ -104,3 +106,23 @@ def test_the_background_has_no_normal():
     seen = rasterise(shapes.box(0.1, 0.1, 0.1).placed(np.eye(3), (0, 0, -3)), CAMERA)
     assert not seen.normals[~seen.covered].any()
     assert np.all(seen.positions[~seen.covered] == (0, 0, -100))
+
+
+def test_squares_that_no_triangle_meets_are_left_out_and_no_pixel_with_them(monkeypatch):
+    """Large triangles at random, many of which reach behind the eye."""
+    rng = np.random.default_rng(5)
+    corners = rng.uniform((-9, -9, -12), (9, 9, 2), (40, 3, 3)).reshape(-1, 3)
+    normals = rng.normal(size=(120, 3))
+    mesh = Mesh(corners, normals, np.arange(120).reshape(40, 3), np.zeros((120, 2)))
+    tried: list[np.ndarray] = []
+
+    def all_squares(inverse, boxes, camera):
+        tried.append(is_met(inverse, boxes, camera))
+        return np.ones(len(boxes), bool)
+
+    found, is_met = rasterise(mesh, CAMERA), rasteriser._is_met
+    monkeypatch.setattr(rasteriser, "_is_met", all_squares)
+    expected = rasterise(mesh, CAMERA)
+    for name in ("normals", "positions", "covered"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    assert 0.2 < tried[0].mean() < 0.6, "what is drawn anyway says nothing"
