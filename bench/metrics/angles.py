@@ -11,6 +11,8 @@ def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     Args:
         a, b: of shape (..., 3).
     """
-    a, b = a.astype(np.float64), b.astype(np.float64)
-    across = np.linalg.norm(np.cross(a, b - a), axis=-1)
-    return np.degrees(np.arctan2(across, np.sum(a * b, axis=-1)))
+    # By columns: NumPy takes four times as long to add up each row of three.
+    (ax, ay, az), (bx, by, bz) = (np.moveaxis(v.astype(np.float64), -1, 0) for v in (a, b))
+    dx, dy, dz = bx - ax, by - ay, bz - az
+    x, y, z = ay * dz - az * dy, az * dx - ax * dz, ax * dy - ay * dx
+    return np.degrees(np.arctan2(np.sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz))

@@ -127,6 +127,6 @@ def plain_text(value: Any) -> Any:
         return {str(plain_text(str(name))): plain_text(inner) for name, inner in value.items()}
     if isinstance(value, list):
         return [plain_text(inner) for inner in value]
-    if not isinstance(value, str):
+    if not isinstance(value, str) or value.isprintable():
         return value
     return "".join(c if c.isprintable() else " " for c in value.encode("utf-8", "replace").decode("utf-8"))

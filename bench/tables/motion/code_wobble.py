@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -55,8 +56,8 @@ class Total:
     def add_pair(self, one: Frame, other: Frame) -> None:
         """A frame and the next."""
         both = one.counts & other.counts
-        change = np.linalg.norm(other.error[both] - one.error[both], axis=1)
-        jumped = np.any(other.codes[both] != one.codes[both], axis=1)
+        change = _length(other.error - one.error)[both]
+        jumped = reduce(np.logical_or, (other.codes != one.codes).T)[both]
         self.pairs += len(change)
         self.changes += float(np.sum(change**2))
         self.jumps += int(np.count_nonzero(jumped))
@@ -134,16 +135,23 @@ def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) 
 def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.ndarray, total: Total) -> Frame:
     codes, decoded = trip(n, view)
     n, decoded = _unit(n.astype(np.float64)), decoded.astype(np.float64)
-    valid = np.isfinite(decoded).all(axis=1) & np.any(decoded != 0, axis=1)
-    decoded = np.where(valid[:, None], _unit(np.where(valid[:, None], decoded, n)), -n)
+    length = _length(decoded)
+    valid = np.isfinite(length) & (length > 0)
+    decoded = np.where(valid[:, None], decoded / np.where(valid, length, 1.0)[:, None], -n)
     counts = in_domain(domain, n, view)
     total.invalid += int(np.count_nonzero(~valid & counts))
     # In the space that the surface is fixed in: the difference is small, and turning it loses nothing.
     return Frame((decoded - n) @ matrix, codes, counts)
 
 
+def _length(v: np.ndarray) -> np.ndarray:
+    """Of rows, by columns: NumPy takes four times as long to add up each row of three."""
+    x, y, z = v.T
+    return np.sqrt(x * x + y * y + z * z)
+
+
 def _unit(v: np.ndarray) -> np.ndarray:
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
+    return v / _length(v)[:, None]
 
 
 def in_domain(domain: str, n: np.ndarray, view: np.ndarray) -> np.ndarray:
