@@ -65,7 +65,7 @@ FAULTS = (
         "return length2 > TINY && length2 < 1.0 / TINY ? v : vec3(0.0, 0.0, 1.0);",
         "return length2 > TINY ? v : vec3(0.0, 0.0, 1.0);",
         "test_parity.py",
-        "direction",
+        "means_nothing",
     ),
     Fault(
         "rgb9e5-carry",
