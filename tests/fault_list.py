@@ -82,7 +82,7 @@ FAULTS = (
         "swapped argument",
         "exp2_of(number * log2_of(far / near));",
         "exp2_of(number * log2_of(near / far));",
-        "test_depth.py",
+        "test_parity.py",
         "logarithmic",
     ),
     Fault(
@@ -246,8 +246,8 @@ FAULTS = (
         "off by one",
         "magnitude = _share(select(is_negative, integer - jnp.uint32(half + 1), integer), half)",
         "magnitude = _share(select(is_negative, integer - jnp.uint32(half), integer), half)",
-        "test_depth.py",
-        "signed",
+        "test_parity.py",
+        "linear_sign",
     ),
     Fault(
         "far-plane-in-own-units",

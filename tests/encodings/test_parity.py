@@ -43,7 +43,7 @@ def test_after_storage_more_codes_are_the_same(gl, kind, codec):
         assert found.agrees, str(found)
 
 
-@pytest.mark.parametrize("kind, encoding", EVERY)
+@pytest.mark.parametrize("kind, encoding", [param for param in EVERY if PARITY[param.values[0]].guarded])
 def test_what_means_nothing_has_the_same_code_in_both_languages(gl, kind, encoding):
     """NaN, infinities and vectors without a direction: codes are numbers."""
     for case in PARITY[kind].cases(encoding):
@@ -82,4 +82,4 @@ def test_there_is_something_to_swap():
     assert {name: count for name, count in counts.items() if count <= LEAST_SWAPS[name]} == {}
 
 
-LEAST_SWAPS = {"normal": 40}
+LEAST_SWAPS = {"normal": 40, "depth": 30}

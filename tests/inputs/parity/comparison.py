@@ -63,7 +63,7 @@ class Parity:
         compared: (device, case) -> encoder and decoder before storage.
         cases: what an encoding is compared as; itself, or itself with each camera or format. A swap of two arguments
             is tried in the first case.
-        guarded: (device, case) -> the encoder of inputs that mean nothing, such as NaN; empty where all inputs count.
+        guarded: (device, case) -> the encoder of inputs that mean nothing, such as NaN; None where the kind has none.
         codecs, more_codecs: what is compared after storage by the quick test and by the slow one.
         stored: (device, codec, whether the slow test asks) -> codes after storage.
         shared: by encoding, files of functions that several share, or FILE:FUNCTION, whose swaps that encoding notices.
@@ -72,7 +72,7 @@ class Parity:
 
     compared: Callable[[Any, Any], list[Comparison]]
     cases: Callable[[Any], Sequence[Any]] = lambda encoding: (encoding,)
-    guarded: Callable[[Any, Any], list[Comparison]] = lambda _, __: []
+    guarded: Callable[[Any, Any], list[Comparison]] | None = None
     codecs: Sequence[Any] = ()
     more_codecs: Sequence[Any] = ()
     stored: Callable[[Any, Any, bool], list[Comparison]] = lambda _, __, ___: []

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import NORMAL, Kind
+from normalbench.encodings.codecs.kind import DEPTH, NORMAL, Kind
 
-from . import normals
+from . import depth, normals
 from .comparison import Parity
 
-PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY}
+PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY}
