@@ -91,7 +91,7 @@ FAULTS = (
         "lost guard",
         "biased = Vec4(shrunk.x, shrunk.y, shrunk.z, least)\n",
         "biased = Vec4(shrunk.x, shrunk.y, shrunk.z, q.w)\n",
-        "test_frame_encodings.py",
+        "test_parity.py test_frame_encodings.py",
         "qtangent",
         "test_frames_command.py",
     ),

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import DEPTH, NORMAL, Kind
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, NORMAL, Kind
 
-from . import depth, normals
+from . import depth, frames, normals
 from .comparison import Parity
 
-PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY}
+PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY, FRAME: frames.PARITY}
