@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import DEPTH, FRAME, NORMAL, Kind
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, LIGHT, NORMAL, Kind
 
-from . import depth, frames, normals
+from . import depth, frames, light, normals
 from .comparison import Parity
 
-PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY, FRAME: frames.PARITY}
+PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY, FRAME: frames.PARITY, LIGHT: light.PARITY}
