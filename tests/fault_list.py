@@ -101,7 +101,7 @@ FAULTS = (
         "wrong constant",
         "return e * abs(e) * range\n",
         "return e * abs(e)\n",
-        "test_motion_encodings.py",
+        "test_parity.py test_motion_encodings.py",
         "sqrt",
     ),
     Fault(
@@ -110,7 +110,7 @@ FAULTS = (
         "off by one",
         "roundEven(texel[i] * (2.0 * storage_scale[i] + 1.0)) - storage_scale[i]",
         "roundEven(texel[i] * (2.0 * storage_scale[i] + 1.0)) - storage_scale[i] - 1.0",
-        "test_motion_encodings.py",
+        "test_parity.py test_motion_encodings.py",
         "centred",
     ),
     Fault(

@@ -2,9 +2,15 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import DEPTH, FRAME, LIGHT, NORMAL, Kind
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
 
-from . import depth, frames, light, normals
+from . import depth, frames, light, motion, normals
 from .comparison import Parity
 
-PARITY: Mapping[Kind, Parity] = {NORMAL: normals.PARITY, DEPTH: depth.PARITY, FRAME: frames.PARITY, LIGHT: light.PARITY}
+PARITY: Mapping[Kind, Parity] = {
+    NORMAL: normals.PARITY,
+    DEPTH: depth.PARITY,
+    FRAME: frames.PARITY,
+    LIGHT: light.PARITY,
+    MOTION: motion.PARITY,
+}
