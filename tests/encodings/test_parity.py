@@ -1,7 +1,9 @@
 """The two languages agree: before storage to a few units in the last place, after it code for code."""
 
+import numpy as np
 import pytest
 from mutants import mutants
+from parity.comparison import Comparison
 from parity.kinds import PARITY
 
 from normalbench.encodings.catalogue import BY_KIND
@@ -31,6 +33,11 @@ def test_after_storage_the_codes_are_the_same(gl, kind, codec):
         assert found.agrees, str(found)
 
 
+def test_every_encoding_is_compared_after_storage():
+    compared = {(kind, codec.encoding) for kind, codec in (param.values for param in codecs("codecs"))}
+    assert [e.name for kind, e in (param.values for param in EVERY) if (kind, e) not in compared] == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind, codec", codecs("more_codecs"))
 def test_after_storage_more_codes_are_the_same(gl, kind, codec):
@@ -45,6 +52,23 @@ def test_what_means_nothing_has_the_same_code_in_both_languages(gl, kind, encodi
     for case in PARITY[kind].cases(encoding):
         for found in PARITY[kind].guarded(gl, case):
             assert found.agrees, str(found)
+
+
+@pytest.mark.parametrize(
+    "apart, same, agrees",
+    [
+        ([0.0, 2.0], [True, True], True),
+        ([0.0, 2.1], [True, True], False),
+        ([0.0, np.inf], [True, True], False),
+        ([0.0, np.nan], [True, True], False),
+        ([0.0, 0.0], [True, False], False),
+    ],
+)
+def test_a_comparison_fails_where_one_is_too_far_apart_or_too_few_are_the_same(apart, same, agrees):
+    """At most 2 units apart, and 60 % the same; what is not a number is too far apart."""
+    rows = np.zeros((2, 1))
+    found = Comparison("a codec", rows, rows, rows, np.array(apart), 2.0, same=np.array(same), share=0.6)
+    assert found.agrees == agrees, str(found)
 
 
 def swaps() -> list:

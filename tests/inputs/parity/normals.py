@@ -99,7 +99,8 @@ def one_side(encoding: Encoding, side: int, given, by_jax, by_gl, conditions) ->
 
 
 def compared(gl, encoding: Encoding) -> list[Comparison]:
-    n, view, codes, given, normals, encode_condition, decode_condition = expected(encoding)
+    # A precise variant has the maps of the encoding whose file it shares; how it rounds shows after storage.
+    n, view, codes, given, normals, encode_condition, decode_condition = expected(ENCODINGS[encoding.prefix])
     gl_codes, gl_normals = exact_values(gl, encoding, widened(n), widened(view), widened(given))
     gl_codes = gl_codes[:, : codes.shape[1]]
     if encoding.searches:
