@@ -109,13 +109,16 @@ def decoded(encoding: FrameEncoding, codes: np.ndarray) -> np.ndarray:
 @cache
 def expected(encoding: FrameEncoding):
     """Frames and normals without tangents, their codes by JAX, codes to decode, and what JAX makes of those."""
-    frames = np.concatenate([hard_frames(), hard_frames()[:64] * np.float32([1, 1, 1, 1, 0, 0, 0, 0])])
+    corners = np.array(list(itertools.product((-1.0, 0.0, 0.5, 1.0), repeat=4)), np.float32)
+    bare = hard_frames()[:64] * np.float32([1, 1, 1, 1, 0, 0, 0, 0])
+    frames = np.concatenate([hard_frames(), bare, hard_frames()[: len(corners)]])
     codes = encoded(encoding, frames)
-    # What storages hand back, all over the frames.
+    # What storages hand back, all over the frames, and corners, edges and centre of the code space.
     given = codes.copy()
     fitting = [codec for codec in CODECS if codec.encoding is encoding]
     for start, codec in enumerate(fitting):
         given[start :: len(fitting)] = rows(codec.store(planes(Vec4, given[start :: len(fitting)])))
+    given[-len(corners) :] = corners
     return frames, codes, given, decoded(encoding, given)
 
 
