@@ -23,14 +23,14 @@ def codecs(which: str) -> list:
 def test_before_storage_the_languages_differ_by_no_more_than_the_encoding_states(gl, kind, encoding):
     for case in PARITY[kind].cases(encoding):
         for found in PARITY[kind].compared(gl, case):
-            assert found.agrees, str(found)
+            assert found.agrees, found
 
 
 @pytest.mark.parametrize("kind, codec", codecs("codecs"))
 def test_after_storage_the_codes_are_the_same(gl, kind, codec):
     """But for few where float32 falls on either side of a tie; the module of the kind says how few."""
     for found in PARITY[kind].stored(gl, codec, False):
-        assert found.agrees, str(found)
+        assert found.agrees, found
 
 
 def test_every_encoding_is_compared_after_storage():
@@ -43,7 +43,7 @@ def test_every_encoding_is_compared_after_storage():
 def test_after_storage_more_codes_are_the_same(gl, kind, codec):
     """As above, of more inputs or in more storages."""
     for found in PARITY[kind].stored(gl, codec, True):
-        assert found.agrees, str(found)
+        assert found.agrees, found
 
 
 @pytest.mark.parametrize("kind, encoding", [param for param in EVERY if PARITY[param.values[0]].guarded])
@@ -51,7 +51,7 @@ def test_what_means_nothing_has_the_same_code_in_both_languages(gl, kind, encodi
     """NaN, infinities and vectors without a direction: codes are numbers."""
     for case in PARITY[kind].cases(encoding):
         for found in PARITY[kind].guarded(gl, case):
-            assert found.agrees, str(found)
+            assert found.agrees, found
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_a_comparison_fails_where_one_is_too_far_apart_or_too_few_are_the_same(a
     """At most 2 units apart, and 60 % the same; what is not a number is too far apart."""
     rows = np.zeros((2, 1))
     found = Comparison("a codec", rows, rows, rows, np.array(apart), 2.0, same=np.array(same), share=0.6)
-    assert found.agrees == agrees, str(found)
+    assert found.agrees == agrees, found
 
 
 def swaps() -> list:
@@ -90,7 +90,7 @@ def test_swapping_two_arguments_is_noticed(gl, monkeypatch, kind, encoding, file
         found = parity.compared(gl, parity.cases(encoding)[0])
     except ShaderError:
         return  # the types disagree: nobody can ship that
-    assert not all(one.agrees for one in found), [str(one) for one in found]
+    assert not all(one.agrees for one in found), found
 
 
 def test_there_is_something_to_swap():

@@ -12,7 +12,7 @@ import numpy as np
 ULP = 2.0**-23
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """What the two languages made of the same inputs.
 
@@ -47,7 +47,7 @@ class Comparison:
     def _share(self) -> float:
         return float(np.mean(self.apart <= self.allowed if self.same is None else self.same))
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         i = int(np.argmax(self.apart))
         details = "".join(f", {name} {values[i]!r}" for name, values in self.details.items())
         story = f"{self.what} of {self.given[i]!r}: JAX {self.by_jax[i]!r}, GLSL {self.by_gl[i]!r}{details}"
