@@ -49,10 +49,10 @@ class Comparison:
 
     def __repr__(self) -> str:
         i = int(np.argmax(self.apart))
-        details = "".join(f", {name} {values[i]!r}" for name, values in self.details.items())
+        details = "".join(f", {name} {values[i]:.9g}" for name, values in self.details.items())
         story = f"{self.what} of {self.given[i]!r}: JAX {self.by_jax[i]!r}, GLSL {self.by_gl[i]!r}{details}"
         story += f"; {self.apart[i]:.2f} units apart, allowed {self.allowed:g}"
-        return f"{story}; {self._share:.4%} are the same, wanted {self.share:.2%}. {self.reason}"
+        return f"{story}; {self._share:.4%} are the same, wanted {self.share:.2%}; {self.reason}".rstrip("; ")
 
 
 @dataclass(frozen=True)
