@@ -68,6 +68,23 @@ def storage_kind(storage: Storage) -> int:
     return KINDS.index(storage.kind)
 
 
+def rounding_defines(
+    device: Device, storage: Storage, rounding: str = "nearest", channels: Sequence[str] = ()
+) -> tuple[str, dict[str, object]]:
+    """Who rounds what is written into a storage, and the macros of `storage_defines` for that.
+
+    Args:
+        rounding: one of ROUNDINGS.
+        channels: how each channel rounds, where not all of them round so.
+
+    Returns:
+        "device" where the format's own conversion rounds so, else "shader"; and the macros.
+    """
+    is_native = not storage.is_packed and device.native_rounding(storage.target) == rounding
+    roundings = channels or [rounding] * storage.channels
+    return "device" if is_native else "shader", storage_defines(storage, roundings, not is_native)
+
+
 def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: bool) -> dict[str, object]:
     """The macros that make `storage.glsl` speak of a storage; `roundings` is of each of its channels."""
     channels = [i % storage.channels for i in range(4)]
@@ -107,10 +124,9 @@ class CodecPasses(Passes):
     def __init__(self, device: Device, codec: Codec):
         encoding, storage = codec.encoding, codec.storage
         self._before = CodecPasses(device, encoding.before) if encoding.before else None
-        is_native = not storage.is_packed and device.native_rounding(storage) == codec.rounding
-        self.rounded_by = "device" if is_native else "shader"
-        roundings = [codec.rounding_of(channel) for channel in range(storage.channels)]
-        defines = encoding_defines(replace(encoding, before=None)) | storage_defines(storage, roundings, not is_native)
+        channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding, channels)
+        defines = encoding_defines(replace(encoding, before=None)) | rounds
         formats = {"texels": storage.target} | ({"signed_depths": R32F} if encoding.sign_bits else {})
         shaders, names = ("encode.frag", "decode.frag"), {"ENCODING": encoding.glsl}
         super().__init__(device, shaders, defines, names, formats, encoding.tables)

@@ -9,10 +9,8 @@ from ...encodings.codecs.frame_codec import FrameCodec
 from ...encodings.codecs.frame_encoding import FrameEncoding
 from ...encodings.storages.storage import STORAGES
 from ..gl.device import Device
-from .codec_passes import storage_defines
+from .codec_passes import rounding_defines
 from .harness import Passes, check_functions, exact
-
-ROUNDING = "nearest"
 
 
 def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
@@ -47,10 +45,8 @@ class FramePasses(Passes):
 
     def __init__(self, device: Device, codec: FrameCodec):
         encoding, storage = codec.encoding, codec.storage
-        is_native = not storage.is_packed and device.native_rounding(storage) == ROUNDING
-        self.rounded_by = "device" if is_native else "shader"
-        roundings = [ROUNDING] * storage.channels
-        defines = frame_defines(encoding, codec.least) | storage_defines(storage, roundings, not is_native)
+        self.rounded_by, rounds = rounding_defines(device, storage)
+        defines = frame_defines(encoding, codec.least) | rounds
         shaders, names = ("frame_encode.frag", "frame_decode.frag"), {"FRAME_ENCODING": encoding.glsl}
         super().__init__(device, shaders, defines, names, {"texels": storage.target})
 

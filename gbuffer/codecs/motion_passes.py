@@ -8,10 +8,8 @@ from ...encodings import vec
 from ...encodings.codecs.motion_codec import MotionCodec, MotionEncoding
 from ...encodings.storages.storage import STORAGES
 from ..gl.device import Device
-from .codec_passes import storage_defines
+from .codec_passes import rounding_defines
 from .harness import Passes, check_functions, exact, set_uniforms
-
-ROUNDING = "nearest"
 
 
 def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, object]:
@@ -43,11 +41,8 @@ class MotionPasses(Passes):
 
     def __init__(self, device: Device, codec: MotionCodec):
         storage = codec.storage
-        is_native = device.native_rounding(storage.target) == ROUNDING
-        self.rounded_by = "device" if is_native else "shader"
-        roundings = [ROUNDING] * storage.channels
-        defines = motion_defines(codec.encoding, codec.needs_range)
-        defines |= storage_defines(storage, roundings, not is_native)
+        self.rounded_by, rounds = rounding_defines(device, storage)
+        defines = motion_defines(codec.encoding, codec.needs_range) | rounds
         shaders, names = ("motion_encode.frag", "motion_decode.frag"), {"MOTION_ENCODING": codec.encoding.glsl}
         super().__init__(device, shaders, defines, names, {"texels": storage.target})
 

@@ -1,14 +1,13 @@
-"""Light codes: the languages agree before storage, formats store as emulated, and codes hold what they say."""
+"""Light codes: what they hold, and that formats store as emulated."""
 
-import itertools
-from functools import cache
 from pathlib import Path
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from mutants import swapped_calls
+from parity.comparison import ULP, rows
+from parity.light import apart, given_texels, lights, planes
 
 from normalbench.bench.options.light_names import light_buffers_named
 from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
@@ -20,139 +19,9 @@ from normalbench.encodings.storages.rounding import from_srgb, scale_of, store_s
 from normalbench.encodings.storages.storage import LIGHT_STORAGES, R11G11B10F, SRGB8_A8
 from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
 from normalbench.gbuffer.codecs.light_passes import exact_light, light_defines
-from normalbench.gbuffer.gl import shader
-from normalbench.gbuffer.gl.shader import ShaderError, Source
+from normalbench.gbuffer.gl.shader import Source
 
-ROOT = Path(__file__).parents[2]
-ULP = 2.0**-23
 EVERY = sorted(LIGHT_BUFFERS)
-SPECIAL = np.float32([0, -0.0, 1e-45, 1e-39, 2.0**-126, -1, -1e30, np.nan, np.inf, -np.inf, 3e38, 65408, 65504, 65536])
-
-
-def planes(array: np.ndarray) -> Vec4:
-    return Vec4(*(jnp.asarray(np.ascontiguousarray(c)) for c in array.T))
-
-
-def rows(planes) -> np.ndarray:
-    return np.stack([np.asarray(c) for c in planes], axis=1)
-
-
-def lights(count: int = 2**15) -> np.ndarray:
-    """Light from below what a float holds to beyond what a half does, special numbers in every channel, and numbers at
-    and beside powers of two, shared exponents' ties and the steps of RGBM's multiplier; float32 (count, 4)."""
-    rng = np.random.default_rng(0)
-    wide = np.exp2(rng.uniform(-150, 127, (count, 1)) * rng.uniform(0, 1, (count, 1)) + rng.uniform(-9, 0, (count, 4)))
-    edges = np.concatenate([2.0 ** np.arange(-26, 17), 511.5 * 2.0 ** np.arange(-24, 7), np.arange(256) * 6 / 255])
-    edges = np.concatenate(
-        [edges.astype(np.float32)] + [np.nextafter(np.float32(edges), s, dtype=np.float32) for s in (0, 9e9)]
-    )
-    beside = np.concatenate([np.stack([edges, 0.3 * edges, edges * 0, edges], 1), np.stack([edges] * 4, 1)])
-    special = np.array(list(itertools.product(SPECIAL, repeat=2)), np.float32)
-    special = np.concatenate([special[:, [0, 1, 1, 0]], special[:, [1, 1, 0, 0]]])
-    return np.concatenate([special, beside, wide]).astype(np.float32)
-
-
-def given_texels(encoding, texels: np.ndarray) -> np.ndarray:
-    """Texels to decode, as the format gives them back: any bytes, or floats that were stored."""
-    if encoding.storage.kind == "float":
-        return texels
-    codes = np.random.default_rng(1).integers(0, 256, texels.shape)
-    corners = np.array(list(itertools.product((0, 1, 128, 255), repeat=4)))
-    codes[: len(corners)] = corners
-    return codes.astype(np.float32) * np.float32(1 / 255)
-
-
-@cache
-def expected(name: str):
-    encoding, light = LIGHT_BUFFERS[name], lights()
-    texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
-    given = given_texels(encoding, texels)
-    return light, texels, given, decoded(name, given), decoded(name, texels)
-
-
-@cache
-def compiled(name: str):
-    return jax.jit(LIGHT_BUFFERS[name].decode)
-
-
-def decoded(name: str, texels: np.ndarray) -> np.ndarray:
-    return rows(compiled(name)(planes(texels)))
-
-
-def apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """How far light is apart, in units in the last place of the brightest channel."""
-    return in_ulps(one, other, np.maximum(np.abs(one).max(axis=1), 2.0**-100))
-
-
-def in_ulps(one: np.ndarray, other: np.ndarray, of: np.ndarray) -> np.ndarray:
-    """The largest difference in units in the last place of a number. What is below 2^-126 may be 0 in either language;
-    what is not a number is as far as can be."""
-    difference = np.abs(one.astype(np.float64) - other).max(axis=1)
-    ulps = np.where(difference < 2.0**-126, 0, difference) / of / ULP
-    return np.where(np.all(np.isfinite(other), axis=1), ulps, np.inf)
-
-
-def disagreement(gl, name: str) -> list[tuple[float, str]]:
-    """The worst difference of encode and decode, with its story.
-
-    Texels of an encoder agree if they are near each other, or stand for light that is: beside a step of a shared
-    multiplier or exponent two codes far apart do.
-    """
-    light, texels, given, light_of_given, light_of_texels = expected(name)
-    gl_texels, gl_light = exact_light(gl, LIGHT_BUFFERS[name], light, given)
-    as_texels = (
-        np.abs(texels.astype(np.float64) - gl_texels).max(axis=1) / np.maximum(1, np.abs(texels).max(axis=1)) / ULP
-    )
-    as_texels = np.where(np.all(np.isfinite(gl_texels), axis=1), as_texels, np.inf)
-    encode = np.minimum(as_texels, apart(light_of_texels, decoded(name, gl_texels)))
-    decode = apart(light_of_given, gl_light)
-    i, j = int(np.argmax(encode)), int(np.argmax(decode))
-    return [
-        (
-            float(encode[i]),
-            f"{name}_encode {light[i]!r}: JAX {texels[i]!r}, GLSL {gl_texels[i]!r}, {encode[i]:.1f} ulp",
-        ),
-        (
-            float(decode[j]),
-            f"{name}_decode {given[j]!r}: JAX {light_of_given[j]!r}, GLSL {gl_light[j]!r}, {decode[j]:.1f} ulp",
-        ),
-    ]
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_before_storage_the_languages_differ_by_no_more_ulps_than_the_encoding_states(gl, name):
-    for (ulps, story), allowed in zip(disagreement(gl, name), LIGHT_BUFFERS[name].encoding.ulps, strict=True):
-        assert ulps <= allowed, f"{story}; allowed {allowed}: {LIGHT_BUFFERS[name].encoding.ulps_reason}"
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_no_light_makes_a_texel_that_is_no_number(gl, name):
-    """Denormals, infinities, NaN and negative light: texels are finite in both languages, and so is their light."""
-    light, texels, *_ = expected(name)
-    gl_texels, _ = exact_light(gl, LIGHT_BUFFERS[name], light, texels)
-    for language, found in (("JAX", texels), ("GLSL", gl_texels), ("decoded", decoded(name, texels))):
-        bad = ~np.isfinite(found).all(axis=1)
-        assert not bad.any(), f"{name} by {language}: {light[bad][0]!r} gives {found[bad][0]!r}"
-
-
-def mutants() -> list:
-    found = []
-    for name in EVERY:
-        text = LIGHT_BUFFERS[name].glsl.read_text()
-        found += [pytest.param(name, changed, id=f"{name}: {what}") for what, changed in swapped_calls(text)]
-    return found
-
-
-@pytest.mark.parametrize("name, text", mutants())
-def test_swapping_two_arguments_is_noticed(gl, monkeypatch, name, text):
-    original = shader.read_shader
-    monkeypatch.setattr(shader, "read_shader", lambda p: text if p == LIGHT_BUFFERS[name].glsl else original(p))
-    try:
-        found = disagreement(gl, name)
-    except ShaderError:
-        return
-    allowed = LIGHT_BUFFERS[name].encoding.ulps
-    assert any(ulps > most for (ulps, _), most in zip(found, allowed, strict=True)), [story for _, story in found]
 
 
 @pytest.mark.parametrize("name", LIGHT_NAMES)

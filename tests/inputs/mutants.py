@@ -2,6 +2,8 @@
 
 import itertools
 import re
+from collections.abc import Iterable
+from pathlib import Path
 
 COMMUTATIVE = {"dot", "max", "min"}
 CALL = re.compile(r"\b([A-Za-z_]\w*)\(")
@@ -55,3 +57,17 @@ def part_of(text: str, function: str) -> tuple[int, int]:
         return 0, len(text)
     start = text.index(function)
     return start, text.find("\n", start)
+
+
+def mutants(glsl: Path, shared: Iterable[str] = ()) -> list[tuple[str, Path, str]]:
+    """(what, file, its text) for each two arguments exchanged in an encoding's file, and in those it shares: FILE or
+    FILE:FUNCTION in the folder above."""
+    found = []
+    for spec in ("", *shared):
+        name, _, function = spec.partition(":")
+        file = glsl.parents[1] / name if name else glsl
+        text = file.read_text()
+        start, end = part_of(text, function)
+        swapped = swapped_calls(text[start:end])
+        found += [(what, file, text[:start] + changed + text[end:]) for what, changed in swapped]
+    return found

@@ -15,7 +15,7 @@ from ...defines.materials import CONSTANTS
 from ...gl.device import BY_ALPHA, Device, bind, read_pixels
 from ...gl.handles import VertexArray
 from ...gl.raw import blend_by
-from ..codec_passes import Decoded, encoding_defines, storage_defines
+from ..codec_passes import Decoded, encoding_defines, rounding_defines
 from ..harness import Textures, set_uniforms, uploaded
 
 # Texels along a side of a patch: two levels of mips.
@@ -89,10 +89,10 @@ class MixPasses:
 
     def __init__(self, device: Device, codec: Codec, meetings: Meetings, samples: int):
         encoding, storage = codec.encoding, codec.storage
-        is_native = not storage.is_packed and device.native_rounding(storage) == codec.rounding
-        roundings = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        _, rounds = rounding_defines(device, storage, codec.rounding, channels)
         self.samples = device.given_samples(samples)
-        self._defines = encoding_defines(encoding) | storage_defines(storage, roundings, not is_native)
+        self._defines = encoding_defines(encoding) | rounds
         self._defines |= {"SAMPLES": self.samples, "FILTER_COSINE": CONSTANTS["FILTER_COSINE"]}
         self._names = {"ENCODING": encoding.glsl}
         self._device, self.meetings, self._size = device, meetings, meetings.size

@@ -1,0 +1,69 @@
+"""Codes of normals: both back ends have the same errors, and every direction comes back."""
+
+import numpy as np
+import pytest
+from directions import NOT_DIRECTIONS, hard_directions, view_positions
+from parity.comparison import planes
+from parity.normals import ACROSS, PACKED, codecs
+
+from normalbench.bench.normals.normal_sets import hemisphere, playground, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
+
+WHOLE = [name for name, storage in STORAGES.items() if not storage.is_packed and name != "rgba32f"]
+
+
+def params(*given, marks=(), **named) -> list:
+    return [pytest.param(codec, id=codec.name, marks=marks) for codec in codecs(*given, **named)]
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_stereographic_scale_is_one_field_for_both_languages():
+    """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
+    psnr = {}
+    for scale in (1.0, 1.7777):
+        codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])
+        for backend in ("jax", "glsl"):
+            row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
+            psnr[scale, backend] = row["psnr_db"]
+        assert abs(psnr[scale, "jax"] - psnr[scale, "glsl"]) <= 0.02, psnr
+    assert psnr[1.0, "jax"] > psnr[1.7777, "jax"] + 3, psnr
+
+
+# Every storage with one encoding, every encoding in one storage, every rounding.
+FIRST = [
+    *params(["rgba8"]),
+    *params([*WHOLE[1:], *PACKED], names=["octahedral"]),
+    *params(["rgba8", "rg16f"], ["truncate"], names=["octahedral", "spheremap"]),
+    *params(["rgba8"], ["truncate_half"], names=["octahedral", "spheremap"]),
+]
+# Of all pairs a third: each encoding in every third storage, each storage with every third encoding.
+REST = [
+    *params(WHOLE, marks=pytest.mark.slow)[::3],
+    *params(["rgba8", "rg16f"], ["truncate"], marks=pytest.mark.slow),
+    *params(["rgba8"], ["truncate_half"], marks=pytest.mark.slow),
+    *params(PACKED, ROUNDINGS, names=ACROSS, marks=pytest.mark.slow)[::2],
+]
+
+
+@pytest.mark.parametrize("codec", {param.id: param for param in (*REST, *FIRST)}.values())
+@pytest.mark.usefixtures("gl")
+def test_the_two_back_ends_give_the_same_psnr(codec):
+    for normals in (sphere(2**17), playground()):
+        by_jax, by_gl = (
+            quality.measure(quality.Case(codec, normals, backend))["psnr_db"] for backend in ("jax", "glsl")
+        )
+        assert abs(by_jax - by_gl) <= 0.02, f"{codec.name} on {normals.name}: JAX {by_jax} dB, GLSL {by_gl} dB"
+
+
+@pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "rgba32f"])
+@pytest.mark.parametrize("name", sorted(ENCODINGS))
+def test_every_direction_comes_back_finite(name, storage):
+    codec = Codec(ENCODINGS[name], STORAGES[storage])
+    n = np.concatenate([hard_directions(), NOT_DIRECTIONS])
+    decoded = np.asarray(vec.to_array(codec.round_trip(vec.from_array(n), planes(vec.Vec3, view_positions(len(n))))))
+    bad = ~np.isfinite(decoded).all(axis=1)
+    assert not bad.any(), f"{codec.name}: {n[bad][0]!r} comes back as {decoded[bad][0]!r}"

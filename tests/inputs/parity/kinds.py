@@ -1,0 +1,16 @@
+"""How each kind of encoding is compared in the two languages."""
+
+from collections.abc import Mapping
+
+from normalbench.encodings.codecs.kind import DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
+
+from . import depth, frames, light, motion, normals
+from .comparison import Parity
+
+PARITY: Mapping[Kind, Parity] = {
+    NORMAL: normals.PARITY,
+    DEPTH: depth.PARITY,
+    FRAME: frames.PARITY,
+    LIGHT: light.PARITY,
+    MOTION: motion.PARITY,
+}
