@@ -40,7 +40,7 @@ def _settings(name: str) -> Iterator[None]:
     import matplotlib
 
     # Without a height for titles matplotlib lays out all labels anew, six times a chart, to see what is in the way.
-    chosen = {"svg.fonttype": "none", "svg.hashsalt": name, "axes.titley": 1.0}
+    chosen: Any = {"svg.fonttype": "none", "svg.hashsalt": name, "axes.titley": 1.0}
     with warnings.catch_warnings(), matplotlib.rc_context(chosen):
         warnings.filterwarnings("ignore", message=".*missing from.*font")
         warnings.filterwarnings("ignore", message="constrained_layout not applied")

@@ -86,6 +86,8 @@ def test_swapping_two_arguments_is_noticed(gl, monkeypatch, kind, encoding, file
     """The comparison is strict enough: no swap of two arguments in any GLSL function of an encoding goes unseen."""
     original, parity = shader.read_shader, PARITY[kind]
     monkeypatch.setattr(shader, "read_shader", lambda path: text if path == file else original(path))
+    # What is read once is read anew.
+    monkeypatch.setattr(shader, "_own_lines", shader._lines)
     try:
         found = parity.compared(gl, parity.cases(encoding)[0])
     except ShaderError:
