@@ -6,15 +6,15 @@ catalogue, so that an encoding that cannot be imported is said in one line.
 
 from __future__ import annotations
 
+import atexit
 import os
 import re
 import signal
 import sys
-from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
 from types import FrameType
-from typing import Annotated, Any, NoReturn
+from typing import IO, Annotated, Any, NoReturn
 
 import typer
 from typer.exceptions import Abort, TyperException
@@ -372,8 +372,8 @@ def _without_output(words: list[str]) -> None:
 
 
 def program() -> NoReturn:
-    """`main` as a process of its own, which an interruption ends at once: what is computed in other threads cannot be
-    stopped, and the interpreter should not tidy up beneath them."""
+    """`main` as a process of its own, which ends once its output is written: the interpreter would tidy up a million
+    objects first, and beneath what is computed in other threads, which cannot be stopped."""
     try:
         status = main()
     except SystemExit as end:
@@ -381,9 +381,19 @@ def program() -> NoReturn:
     # What is left is to tidy up, which takes less time than it takes to say that it was interrupted.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
-    if ending and isinstance(status, int):
-        for stream in filter(None, (sys.stdout, sys.stderr)):
-            with suppress(OSError, ValueError):
-                stream.flush()
+    if not ending:
+        atexit._run_exitfuncs()
+    unwritten = [stream for stream in (sys.stdout, sys.stderr) if stream and not _is_flushed(stream)]
+    if isinstance(status, int) and (ending or not unwritten):
         os._exit(status)
+    # Python says what cannot be written, and that the command failed.
     sys.exit(status)
+
+
+def _is_flushed(stream: IO[str]) -> bool:
+    """Whether a stream took all that was written to it."""
+    try:
+        stream.flush()
+    except (OSError, ValueError):
+        return False
+    return True
