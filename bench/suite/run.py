@@ -143,6 +143,7 @@ def _measured_and_shown(
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
         shown = _measure_all(run, asks, said, where, second)
+        shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
         keep_times(where, run.folder)
         _complete(run, shown, second.drawn if second else {})
@@ -171,7 +172,7 @@ def _measure_all(
     shown = Shown([*first, *rest])
     beside = [ask for ask in rest if ask.table.is_measured_beside]
     if second and is_worth_it(ask.table for ask in rest):
-        second.measure(run, beside, _taken(said, beside))
+        second.measure(run, {"measure": (beside, _taken(said, beside)), "write": (first, _taken(said, first))})
     for ask in first:
         shown.add(ask, measured(ask, run, where))
     if second and is_worth_it(ask.table for ask in rest):

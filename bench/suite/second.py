@@ -50,18 +50,19 @@ class Second:
         self._ended = Event()
         self._reader = Thread(target=self._read, daemon=True)
 
-    def measure(self, run: Run, asks: Sequence[Asked], said: Mapping[str, Any]) -> None:
+    def measure(self, run: Run, what: Mapping[str, tuple[Sequence[Asked], Mapping[str, Any]]]) -> None:
         """Have it measure tables into a run.
 
         Args:
-            said: the options that were given.
+            what: tables and the options that were given: those to "measure", and those that this process measures, of
+                which it is to "write" the files.
         """
         self._run = run
-        steps = ((ask.table.name, step) for ask in asks for step in with_parts(ask.steps))
+        steps = ((ask.table.name, step) for ask in what["measure"][0] for step in with_parts(ask.steps))
         self._steps = {key_text(name, step.key): (name, step) for name, step in steps}
         self._reader.start()
-        tables = [ask.table.name for ask in asks]
-        given = {"folder": str(run.folder), "tables": tables, "said": said, "told": sorted(told)}
+        orders = {do: {"tables": [ask.table.name for ask in asks], "said": said} for do, (asks, said) in what.items()}
+        given = {"folder": str(run.folder), "told": sorted(told), **orders}
         pipe = self._process.stdin
         assert pipe
         # What ends early says why in another way; a pipe that closes tries again to write what it holds.

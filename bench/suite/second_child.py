@@ -22,7 +22,7 @@ from typing import IO, Any
 from ..machine.devices import require_jax
 from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..output.errors import MissingError, UsageError, told
-from ..results.measuring import measured
+from ..results.measuring import Asked, measured
 from ..results.plain import key_text, plain
 from ..results.runs import read_run
 from ..tables.registry import TABLES
@@ -39,6 +39,10 @@ class Sent:
         run = read_run(folder)
         self._rows = {key_text(one["table"], one["key"]): one["rows"] for one in (*run.steps, *run.parts)}
         self._out = out
+
+    def again(self, folder: Path) -> Sent:
+        """With what the first process has kept since."""
+        return Sent(folder, self._out)
 
     def find(self, table: str, step: Step) -> list[Row] | None:
         """The rows of a step that were kept before; None where there are none."""
@@ -57,16 +61,30 @@ class Sent:
 
 
 def measure(given: Mapping[str, Any], sent: Sent) -> None:
-    """The tables that are asked for, one after the other."""
-    request = RunOptions(tables=",".join(given["tables"]), **given["said"])
-    asks = asked_of(request, Path(given["folder"]))
+    """The tables that are asked for, one after the other; then what the first process has measured is written."""
+    folder = Path(given["folder"])
+    asks = _asked(given["measure"], folder)
     keep_what_is_imported()
     for ask in asks:
         done = measured(ask, sent)
         ask.table.work.write(done, lambda _: None)
         sent.send({"written": ask.table.name})
         give_back_what_a_table_needed()
-    sent.send({"drawn": draw_ahead(Path(given["folder"]))})
+    _write_others(_asked(given["write"], folder), sent.again(folder))
+    sent.send({"drawn": draw_ahead(folder)})
+
+
+def _asked(order: Mapping[str, Any], folder: Path) -> list[Asked]:
+    """What is asked of tables; nothing of none."""
+    return asked_of(RunOptions(tables=",".join(order["tables"]), **order["said"]), folder) if order["tables"] else []
+
+
+def _write_others(asks: Sequence[Asked], sent: Sent) -> None:
+    """The files of tables that the first process has measured by now."""
+    for ask in asks:
+        if all(sent.find(ask.table.name, step) is not None for step in ask.steps):
+            ask.table.work.write(measured(ask, sent), lambda _: None)
+            sent.send({"written": ask.table.name})
 
 
 def _import_what_is_needed() -> None:

@@ -8,13 +8,14 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from normalbench.bench.machine.children import environment
 from normalbench.bench.results.measuring import HERE, Asked
 from normalbench.bench.results.runs import read_run
-from normalbench.bench.suite import report, second
+from normalbench.bench.suite import report, second, second_child
 from normalbench.bench.suite import run as run_of
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured
@@ -130,6 +131,18 @@ def test_the_answer_comes_first(cores, monkeypatch):
     tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
     run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE, None)
     assert seen[:2] == ["pick", "pick is shown"], seen
+
+
+@pytest.mark.parametrize("rows", [[{"psnr_db": 47.5}], None])
+def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows):
+    """The files of the answer; where a row of it is still missing they are left to the first process."""
+    written, sent = [], []
+    work = SimpleNamespace(write=lambda done, _: written.append(done))
+    ask = SimpleNamespace(table=SimpleNamespace(name="pick", work=work), steps=["a step"])
+    journal = SimpleNamespace(find=lambda *_: rows, send=sent.append)
+    monkeypatch.setattr(second_child, "measured", lambda *_: rows)
+    second_child._write_others([ask], journal)
+    assert (written, sent) == (([rows], [{"written": "pick"}]) if rows else ([], []))
 
 
 def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
