@@ -542,7 +542,7 @@ FAULTS = (
         "largest=max(self.figures.largest, exact.largest)",
         "largest=exact.largest",
         "test_metrics.py",
-        "numpys or together or cut_up",
+        "numpys or largest_angle",
     ),
     Fault(
         "article-mse-of-what-is-covered",

@@ -95,6 +95,16 @@ def test_a_row_equals_numpys(count, degrees):
 DECODED = Meter(jax.jit(lambda block: block.view))
 
 
+@pytest.mark.parametrize("at", [7, CHUNK + 7])
+def test_the_largest_angle_is_that_of_all_chunks(at):
+    """Whichever of two chunks has it."""
+    n = random_directions(CHUNK + 99)
+    degrees = np.where(np.arange(len(n)) == at, 20.0, 1.0)
+    got = measured(DECODED, from_arrays("", "", n, turned(n, degrees).astype(np.float32), np.ones(len(n), bool)))
+    assert got.angle_max_deg == pytest.approx(20.0, rel=1e-5)
+    np.testing.assert_array_equal(got.worst.normal, n[at])
+
+
 def test_the_background_counts_for_the_articles_measure_alone():
     n = random_directions(1000)
     other = turned(n, np.full(1000, 2.0)).astype(np.float32)
