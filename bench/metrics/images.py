@@ -14,7 +14,7 @@ def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]
         the error, and how many pixels are no number; each of those counts as 1 in every channel.
     """
     finite = np.isfinite(image)
-    # Along three channels NumPy looks for what is not finite in ten times the time that it takes to see that all is.
+    # An image seldom has such a pixel, and looking at each one's three channels takes NumPy long.
     if finite.all():
         return float(np.mean((image - reference) ** 2)), 0
     broken = ~finite.all(axis=-1, keepdims=True)

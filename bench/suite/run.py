@@ -171,24 +171,24 @@ def _measure_all(
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
     beside = [ask for ask in rest if ask.table.is_measured_beside]
-    if second and is_worth_it(ask.table for ask in rest):
-        second.measure(run, {"measure": (beside, _taken(said, beside)), "write": (first, _taken(said, first))})
+    helping = second if is_worth_it(ask.table for ask in rest) else None
+    if helping:
+        helping.measure(run, {"measure": (beside, _taken(said, beside)), "write": (first, _taken(said, first))})
     for ask in first:
         shown.add(ask, measured(ask, run, where))
-    if second and is_worth_it(ask.table for ask in rest):
-        _measure_others(run, rest, shown, second)
+    if helping:
+        _measure_others(run, [ask for ask in rest if ask not in beside], beside, shown, helping)
+    # All that the second process did not get to, because something killed it or there is none.
     for ask in rest:
         if ask.table.name not in shown.done:
             shown.add(ask, measured(ask, run, where))
     return shown
 
 
-def _measure_others(run: Run, asks: Sequence[Asked], shown: Shown, second: Second) -> None:
-    """The tables that the second process does not measure, at the same time; and its own, but for those that it did not
-    get to because something killed it."""
-    beside = [ask for ask in asks if ask.table.is_measured_beside]
+def _measure_others(run: Run, asks: Iterable[Asked], beside: Sequence[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process does not measure; those that it measures `beside` are shown once it has."""
     # What takes times is measured when nothing else runs.
-    for ask in sorted((ask for ask in asks if ask not in beside), key=_takes_times):
+    for ask in sorted(asks, key=_takes_times):
         if _takes_times(ask):
             second.wait()
         shown.add(ask, measured(ask, run))

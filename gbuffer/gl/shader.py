@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from functools import cache, lru_cache
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache, wraps
 from pathlib import Path
+from typing import TypeVar
 
 from ...encodings.codecs.files import file_text
 
@@ -17,6 +18,7 @@ _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
 # "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's; "stdin:12:" or "0:12:" glslang's.
 _PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
 
+T = TypeVar("T")
 Line = tuple[str, Path, int]
 # A line with what it includes: nothing, or the match of _INCLUDE.
 Parsed = tuple[Line, re.Match[str] | None]
@@ -66,7 +68,7 @@ class Source:
     def _expand(self, path: Path) -> list[Line]:
         self._seen.add(path)
         lines: list[Line] = []
-        for line, match in (_own_lines if _is_own(path) else _lines)(path):
+        for line, match in _lines(path):
             lines += self._include(*line[1:], match) if match else [line]
         return lines
 
@@ -74,7 +76,7 @@ class Source:
         if match["name"] and match["name"] not in self._names:
             raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
         named = match["name"]
-        target = Path(self._names[named]).resolve() if named else _target(path, match["file"])
+        target = Path(self._names[named]).resolve() if named else _beside(path, match["file"])
         return [] if target in self._seen else self._expand(target)
 
     def explain(self, log: str) -> str:
@@ -96,6 +98,25 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(re.findall(r"\w+", text))
 
 
+@cache
+def _is_own(path: Path) -> bool:
+    """Whether a file, its path resolved, is one of this room's or of the encodings."""
+    return any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
+
+
+def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
+    """A function of a path and more, kept for the program's own files. They stay as they are, and frames ask for the
+    same shaders again and again."""
+    kept = cache(function)
+
+    @wraps(function)
+    def call(path: Path, *more: str) -> T:
+        return (kept if _is_own(path) else function)(path, *more)
+
+    return call
+
+
+@_once_of_own
 def _lines(path: Path) -> list[Parsed]:
     """The lines of a shader's file. Raises ShaderError."""
     lines: list[Parsed] = []
@@ -106,27 +127,11 @@ def _lines(path: Path) -> list[Parsed]:
     return lines
 
 
-# The program's own files stay as they are: frames ask for the same shaders again and again.
-_own_lines = cache(_lines)
-
-
-@cache
-def _is_own(path: Path) -> bool:
-    """Whether a file, its path resolved, is one of this room's or of the encodings."""
-    return any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
-
-
-def _target(path: Path, file: str) -> Path:
-    """The file that a shader at `path` includes, its path resolved."""
-    return (_own_target if _is_own(path) else _beside)(path, file)
-
-
+@_once_of_own
 def _beside(path: Path, file: str) -> Path:
+    """The file that a shader at `path` includes, its path resolved."""
     near = path.parent / file
     return (near if near.is_file() else Path(shaders().get(file, near))).resolve()
-
-
-_own_target = cache(_beside)
 
 
 def read_shader(path: Path) -> str:

@@ -39,7 +39,7 @@ def _settings(name: str) -> Iterator[None]:
     """Text stays text, names in the file are the same each time, and a letter that a font lacks is the reader's."""
     import matplotlib
 
-    # Without a height for titles matplotlib lays out all labels anew, six times a chart, to see what is in the way.
+    # Without a height for titles matplotlib lays out all labels anew at each drawing, to see what is in the way.
     chosen: Any = {"svg.fonttype": "none", "svg.hashsalt": name, "axes.titley": 1.0}
     with warnings.catch_warnings(), matplotlib.rc_context(chosen):
         warnings.filterwarnings("ignore", message=".*missing from.*font")

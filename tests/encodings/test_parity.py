@@ -87,7 +87,7 @@ def test_swapping_two_arguments_is_noticed(gl, monkeypatch, kind, encoding, file
     original, parity = shader.read_shader, PARITY[kind]
     monkeypatch.setattr(shader, "read_shader", lambda path: text if path == file else original(path))
     # What is read once is read anew.
-    monkeypatch.setattr(shader, "_own_lines", shader._lines)
+    monkeypatch.setattr(shader, "_lines", shader._lines.__wrapped__)
     try:
         found = parity.compared(gl, parity.cases(encoding)[0])
     except ShaderError:

@@ -145,7 +145,7 @@ def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.
 
 
 def _length(v: np.ndarray) -> np.ndarray:
-    """Of rows, by columns: NumPy takes four times as long to add up each row of three."""
+    """Of rows, by columns: to add up each row of three NumPy takes longer."""
     x, y, z = v.T
     return np.sqrt(x * x + y * y + z * z)
 
