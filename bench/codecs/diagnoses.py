@@ -32,6 +32,8 @@ LENGTH = 0.01
 POLE_SHARE, POLE_DEG = 0.5, 0.06
 # How much farther off than usual a direction is at a seam or a pole: encodings of few codes are never exact.
 UNUSUAL = 30.0
+# By what the angles of z < 0 are larger than those of z >= 0 where an encoding is made for these alone.
+FAR_BETTER = 2.0
 AXES = "xyz"
 CLIPPED = "storages clip what is beyond [-1, 1]"
 
@@ -87,13 +89,13 @@ def diagnoses(trip: Trip, domain: str) -> list[str]:
     Args:
         domain: one of DOMAINS; empty where directions of none come back.
     """
-    # Where nothing comes back well, where it nearly does.
-    held = trip.in_domain(domain or guessed(trip, NEARLY_DEG))
+    likely = domain or _likely(trip)
+    held = trip.in_domain(likely)
     ranges = list(_ranges(trip, held))
     if domain:
         return [*_other_half(trip, domain), *_seam(held), *_poles(held), *_lengths(held), *ranges]
     # What is clipped comes back elsewhere, whatever else is right.
-    turned = [] if any(CLIPPED in said for said in ranges) else list(_turned(trip)) or [_no_pair(held)]
+    turned = [] if any(CLIPPED in said for said in ranges) else list(_turned(trip)) or [_no_pair(held, likely)]
     return [*turned, *_lengths(held), *ranges]
 
 
@@ -102,6 +104,16 @@ def guessed(trip: Trip, within: float = SAME_DEG) -> str:
     nowhere."""
     is_same = trip.angles() < within
     return next((name for name, which in DOMAINS.items() if is_same[which(trip)].mean() > MOST), "")
+
+
+def _likely(trip: Trip) -> str:
+    """The domain where nothing comes back well: where it nearly does, or else those that come back far better than the
+    rest."""
+    nearly = guessed(trip, NEARLY_DEG)
+    if nearly:
+        return nearly
+    behind, angles = trip.n[:, 2] < 0, trip.angles()
+    return "hemisphere" if FAR_BETTER * angles[~behind].mean() < angles[behind].mean() else "sphere"
 
 
 def is_biased(codes: np.ndarray) -> bool:
@@ -144,6 +156,10 @@ def _turned(trip: Trip) -> Iterator[str]:
             lost = f"with {what}" if what else f"{np.median(trip.of(half).angles()):.3g} degrees off"
             yield f"directions with {AXES[axis]} {sign} 0 come back {lost}: {trip.of(half).worst}"
             return
+    # Of an encoding of a hemisphere the rest comes back anywhere.
+    front = trip.in_domain("hemisphere")
+    if what := _axes_of(front):
+        yield f"directions with z >= 0 come back with {what}: {front.worst}"
 
 
 def _axes_of(trip: Trip) -> str:
@@ -164,9 +180,10 @@ def _said(order: Sequence[int], signs: Sequence[int]) -> str:
     return " and ".join([*said, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])
 
 
-def _no_pair(trip: Trip) -> str:
-    mean = trip.angles().mean()
-    return f"encode and decode are not a pair: {mean:.3g} degrees apart on average without any storage; {trip.worst}"
+def _no_pair(held: Trip, domain: str) -> str:
+    where = {"hemisphere": " of directions with z >= 0", "view": " of directions that face the viewer"}.get(domain, "")
+    apart = f"{held.angles().mean():.3g} degrees apart on average{where} without any storage"
+    return f"encode and decode are not a pair: {apart}; {held.worst}"
 
 
 def _seam(trip: Trip) -> Iterator[str]:

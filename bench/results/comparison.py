@@ -21,6 +21,8 @@ LINES = 20
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
+# And of a figure that only one of the runs has.
+NOT_MEASURED, NEW = "not measured", "new"
 
 
 def compared(before: Done, after: Done) -> list[Row]:
@@ -70,11 +72,13 @@ def _change(
 
 
 def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
+    gives_reason = bool(table) and any(row.get(c.name) for c in table.of_role(Role.REASON) for row in (one, other))
     for column in dict.fromkeys([*one, *other]):
         known = table.column(column) if table else None
         before, after = one.get(column), other.get(column)
         if _is_compared(table, known) and not same(before, after):
-            yield _change(name, table, one, called, column, before, after, severity_of(known, before, after))
+            severity = severity_of(known, before, after, gives_reason)
+            yield _change(name, table, one, called, column, before, after, severity)
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
@@ -88,15 +92,16 @@ def _is_compared(table: Table | None, known: Column | None) -> bool:
     return not table or (known is not None and known.role in (Role.FIGURE, Role.REASON))
 
 
-def severity_of(column: Column | None, before: Any, after: Any) -> float:
+def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bool) -> float:
     """How much worse a figure has become, as the logarithm of a ratio; below 0 where it is better, 0 for neither.
 
-    A figure that is gone is infinitely worse, one that is new infinitely better.
+    A figure that could not be measured any more is infinitely worse, one that now can be is infinitely better. Without
+    a reason it was not looked for, as the supremum of a code that is no longer the best.
     """
     if not column or not column.better:
         return 0.0
     if before is None or after is None:
-        return math.inf if after is None else -math.inf
+        return 0.0 if not gives_reason else math.inf if after is None else -math.inf
     if not all(isinstance(value, int | float) for value in (before, after)):
         return 0.0
     grows = _growth(column, before, after)
@@ -120,7 +125,7 @@ def difference(before: Any, after: Any) -> str:
     """By how much a figure differs, as text."""
     if isinstance(before, int | float) and isinstance(after, int | float):
         return f"{after - before:+.3g}"
-    return "another"
+    return NOT_MEASURED if after is None else NEW if before is None else "another"
 
 
 def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:

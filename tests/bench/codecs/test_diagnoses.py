@@ -93,6 +93,18 @@ WRONG = {
     "a scale on one side": (HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1), "are not a pair: 0.791 degrees"),
     "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
     "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
+    "swapped axes of a half": (
+        FLAT.replace("return n.xy", "return n.yx"),
+        "directions with z >= 0 come back with x and y swapped",
+    ),
+    "a flipped axis of a half": (
+        STEREO.replace("vec3(2.0 * e,", "vec3(2.0 * e * vec2(-1, 1),"),
+        "directions with z >= 0 come back with x reversed",
+    ),
+    "a wrong scale of a half": (
+        STEREO.replace("return n.xy", "return 0.5 * n.xy"),
+        "degrees apart on average of directions with z >= 0 without any storage; (",
+    ),
     "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
     "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
     "NaN": (

@@ -53,6 +53,22 @@ def test_steps_that_one_run_lacks_are_named():
     assert change["verdict"] == "gone" and compared(run_of(b), run_of(a, b))[0]["verdict"] == ""
 
 
+def picked(**figures) -> Done:
+    row = {"storage": "rg8", "encoding": "stereographic", "angle_sup_deg": None, "skipped": None}
+    return Done(MACHINE, [{"table": "pick", "key": {}, "rows": [row | figures]}])
+
+
+@pytest.mark.parametrize(
+    ("why", "lost", "found"),
+    [({}, ("not measured", ""), ("new", "")), ({"skipped": "no GL"}, ("not measured", "worse"), ("new", "better"))],
+)
+def test_a_figure_that_was_not_looked_for_is_not_worse_unless_the_row_says_why(why, lost, found):
+    measured = picked(angle_sup_deg=0.95)
+    for runs, expected in (((measured, picked(**why)), lost), ((picked(**why), measured), found)):
+        changes = {change["column"]: (change["change"], change["verdict"]) for change in compared(*runs)}
+        assert changes["angle_sup_deg"] == expected and changes.keys() <= {"angle_sup_deg", "skipped"}
+
+
 def test_new_rows_and_rows_that_are_gone_are_not_said_in_one_line():
     rows = [{"encoding": name, "storage": storage} for name in ("xy", "xyz") for storage in ("rg8", "rgba8")]
     done = [
