@@ -12,8 +12,9 @@ BIN = .venv/bin
 bench: .venv/ready
 	$(BIN)/normalbench run
 
+# One more than two cores: a test that waits for a command or a browser leaves its core to another.
 test: .venv/ready
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 3
 
 slow: .venv/ready
 	$(BIN)/python -m pytest -n 2 -m slow

@@ -8,7 +8,7 @@ import pickle
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -141,7 +141,7 @@ def write_report(
     """
     check_writable(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
-    with tempfile.TemporaryDirectory(prefix="normalbench-") as other:
+    with nullcontext("") if charts else tempfile.TemporaryDirectory(prefix="normalbench-") as other:
         beside = target.parent / charts if charts else Path(other)
         for one in (beside, target.parent / pictures):
             check_folder(one)
