@@ -43,12 +43,19 @@ def keep_programs() -> None:
 
 def programs_folder() -> Path:
     """Where compiled programs lie: a folder for each version of JAX and kind of processor, which they are made for."""
+    return cache.folder() / "programs" / cache.key_of(jax.__version__, *processor_kind())[:16]
+
+
+def processor_kind() -> list[str]:
+    """What tells a kind of processor from others that need other programs."""
     try:
         lines = CPU.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         lines = []
-    kind = sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))})
-    return cache.folder() / "programs" / cache.key_of(jax.__version__, platform.machine(), *kind)[:16]
+    return [
+        platform.machine(),
+        *sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}),
+    ]
 
 
 def found_device() -> tuple[Device | None, str]:

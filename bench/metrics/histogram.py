@@ -29,6 +29,11 @@ def bin_of(angle_deg: float) -> int:
     return min(max((int(np.float32(angle_deg).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN, 0), BINS - 1)
 
 
+def lower_edge(number: int) -> float:
+    """The least angle of a bin; that of the first is 0."""
+    return float(np.uint32(number + FIRST_BIN << BIN_SHIFT).view(np.float32)) if number else 0.0
+
+
 def tally(bins):
     """How many normals lie in each bin, int32 of shape (BINS + 1,). Integers: the order in which they are counted does
     not matter."""

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -34,6 +34,9 @@ INVALID_BIT = 24
 # An angle in float32 below this share of another one is the smaller of the two in float64 as well.
 SAME_ANGLE = 0.999
 
+# What gives a chunk of normals.
+Load = Callable[[], Any]
+
 
 def idle() -> None:
     """What is done at each chunk when nobody watches."""
@@ -52,19 +55,20 @@ def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
     return select(finite, decoded, -n), finite
 
 
-def _errors(n: Vec3, decoded: Vec3, covered):
-    """Per normal: squared error (float32), the article's squared error with 2^INVALID_BIT added where the decode is not
-    a number (int32), and angle (float32).
-
-    Such a decode counts as the opposite direction.
-    """
+def errors(n: Vec3, decoded: Vec3, covered):
+    """Per normal: squared error, the article's squared error, a whole number, and angle, all float32; and whether the
+    decode is not a number, which then counts as the opposite direction."""
     decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
     # The article's difference image was |n - n'| in eight bits per channel.
     eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
-    invalid = jnp.asarray(~finite & covered, jnp.int32) << INVALID_BIT
     angle = jnp.where(covered, angle_between(n, decoded), 0.0)
-    return dot(difference, difference), jnp.asarray(dot(eighths, eighths), jnp.int32) + invalid, angle
+    return dot(difference, difference), dot(eighths, eighths), angle, ~finite & covered
+
+
+def _packed(squared, article, angle, invalid):
+    """The same in three: 2^INVALID_BIT is added to the article's where the decode is not a number; int32."""
+    return squared, jnp.asarray(article, jnp.int32) + (jnp.asarray(invalid, jnp.int32) << INVALID_BIT), angle
 
 
 class Decoded(NamedTuple):
@@ -96,7 +100,7 @@ def _traced_scan(chunk: Decoded):
 
     def step(carry: Figures, block: Decoded):
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
-        squared, article, angle = jax.lax.optimization_barrier(_errors(*block))
+        squared, article, angle = jax.lax.optimization_barrier(_packed(*errors(*block)))
         article = _added(jnp.zeros(SUM_LANES, jnp.int32), article).astype(jnp.int64)
         added = Figures(
             squared=_added(carry.squared, squared),
@@ -127,10 +131,25 @@ def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | 
     # What comes back as it was has an angle of 0: the first of these stands for all.
     moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
     some = np.concatenate([[0], np.flatnonzero(moved)])
-    normals, found = (np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found))
-    angles = _angles(normals, found)
+    return worst_of(*(np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found)))
+
+
+def worst_of(normals: np.ndarray, decoded: np.ndarray) -> Worst | None:
+    """The normal with the largest angle, the first of them; None of none.
+
+    Args:
+        normals, decoded: float32 of shape (count, 3).
+    """
+    if not len(normals):
+        return None
+    angles = _angles(normals, decoded)
     first = int(np.argmax(angles))
-    return Worst(normals[first], found[first], float(angles[first]))
+    return Worst(normals[first], decoded[first], float(angles[first]))
+
+
+def is_smaller(largest: float, met_deg: float) -> bool:
+    """Whether the largest angle of a chunk, in float32, is below one that another chunk has."""
+    return largest < SAME_ANGLE * met_deg
 
 
 def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
@@ -145,10 +164,23 @@ def _on_device(plane: Any) -> Any:
     return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
 
 
+class Measures(Protocol):
+    """What measures chunks of normals."""
+
+    @property
+    def compiler(self) -> str:
+        """What compiled it."""
+        ...
+
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+        """What they add up to, in one part or several; as for `Meter.one`."""
+        ...
+
+
 class Once:
     """A load that is done once, by whoever asks first, and kept for the others."""
 
-    def __init__(self, load: Callable[[], Any]):
+    def __init__(self, load: Load):
         self._load, self._lock = load, Lock()
 
     def __call__(self) -> Any:
@@ -172,11 +204,16 @@ class Meter:
     def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
         self._decode, self._given = decode, given
 
+    @property
+    def compiler(self) -> str:
+        """What compiled it."""
+        return "XLA"
+
     def decoded(self, block: Any) -> Vec3:
         """What a block is decoded as."""
         return self._decode(block, *self._given)
 
-    def one(self, load: Callable[[], Any], met_deg: float = 0.0, device: Any = None) -> Part:
+    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> Part:
         """One chunk's part of the statistics, by one of JAX's devices. Its worst normal is not looked for where an
         angle of `met_deg`, which another chunk has, is larger than all of its own."""
         with jax.enable_x64(True), jax.default_device(device):
@@ -184,11 +221,15 @@ class Meter:
             decoded = self.decoded(chunk)
             found = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
         figures, histogram, bins = Figures(*found[0].tolist()), *found[1:]
-        if figures.largest < SAME_ANGLE * met_deg:
+        if is_smaller(figures.largest, met_deg):
             return figures, histogram, None
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
-    def total(self, loads: Iterable[Callable[[], Any]], tick: Callable[[], None] = idle) -> Total:
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+        """The parts of several chunks; as for `one`."""
+        return [self.one(load, met_deg, device) for load in loads]
+
+    def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> Total:
         """What the chunks of a set, shared among the cores, add up to.
 
         Args:
@@ -198,26 +239,41 @@ class Meter:
         """
         return measure_together([self], loads, lambda _: tick())[0]
 
-    def measure(self, loads: Iterable[Callable[[], Any]], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
+    def measure(self, loads: Iterable[Load], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
         """Statistics of a set of so many normals, background included; the rest is as for `total`."""
         return statistics(pixels, self.total(loads, tick))
 
 
 def measure_together(
-    meters: Sequence[Meter],
-    loads: Iterable[Callable[[], Any]],
+    meters: Sequence[Measures],
+    loads: Iterable[Load],
     tick: Callable[[int], None],
+    at_once: int = 1,
 ) -> list[Total]:
     """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
 
-    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
+    Chunks are dealt to all devices that JAX has, so many at once. The rest is as for `Meter.total`.
     """
     totals = [Total() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
-    chunks = zip(map(Once, loads), itertools.cycle(jax.local_devices()), strict=False)
-    work = ((*each, *chunk) for chunk in chunks for each in zip(meters, totals, strict=True))
-    for part in on_all_cores(lambda item: item[0].one(item[2], item[1].met_deg, item[3]), work):
+    dealt = zip(in_groups(map(Once, loads), at_once), itertools.cycle(jax.local_devices()), strict=False)
+    work = ((*each, *group) for group in dealt for each in zip(meters, totals, strict=True))
+
+    def measured(item: tuple[Measures, Total, list[Load], Any]) -> tuple[int, list[Part]]:
+        meter, total, chunks, device = item
+        return len(chunks), meter.parts(chunks, total.met_deg, device)
+
+    for count, parts in on_all_cores(measured, work):
         index = next(whose)
-        totals[index].add(part)
-        tick(index)
+        for part in parts:
+            totals[index].add(part)
+        for _ in range(count):
+            tick(index)
     return totals
+
+
+def in_groups(loads: Iterable[Load], size: int) -> Iterator[list[Load]]:
+    """Loads, so many at a time."""
+    iterator = iter(loads)
+    while group := list(itertools.islice(iterator, size)):
+        yield group

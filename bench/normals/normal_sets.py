@@ -16,6 +16,9 @@ import numpy as np
 
 from ...encodings.elementary import sincos_pi
 from ...encodings.vec import Vec3, from_array, sqrt
+from ..native.elementwise import NotElementwiseError
+from ..native.fill import Fill
+from ..native.library import LARGE, NoCompilerError
 from ..options.counts import DEFAULT_COUNT
 
 CHUNK_WIDTH = 512
@@ -98,31 +101,54 @@ def _unit_interval(index, step: int, offset):
     return (fixed.astype(jnp.float64) + 0.5) * 2.0**-32
 
 
-@partial(jax.jit, static_argnames="whole")
-def _uniform(start, count, offsets, *, whole: bool) -> Chunk:
+def _direction(lane, start, offset_u, offset_v, *, whole: bool) -> Vec3:
     """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes).
 
     Computed in float64 and rounded once, so that x, y and z carry independent rounding errors as any normal does: some
     encodings subtract z from 1, and live or die by them.
     """
-    lane = jnp.arange(CHUNK, dtype=jnp.uint32)
-    u, v = (_unit_interval(start + lane, step, offset) for step, offset in zip(STEPS, offsets, strict=True))
+    u, v = (_unit_interval(start + lane, step, by) for step, by in zip(STEPS, (offset_u, offset_v), strict=True))
     # 1 - z^2 as a product, which does not cancel near the poles.
     z, r = (1.0 - 2.0 * u, 2.0 * sqrt(u * (1.0 - u))) if whole else (u, sqrt((1.0 - u) * (1.0 + u)))
     # An angle in half turns, in [-1, 1].
     sine, cosine = sincos_pi(2.0 * (v - jnp.round(v)))
-    n = Vec3(*(c.astype(jnp.float32) for c in (cosine * r, sine * r, z)))
+    return Vec3(*(c.astype(jnp.float32) for c in (cosine * r, sine * r, z)))
+
+
+@partial(jax.jit, static_argnames="whole")
+def _uniform(start, count, *offsets, whole: bool) -> Chunk:
+    lane = jnp.arange(CHUNK, dtype=jnp.uint32)
+    n = _direction(lane, start, *offsets, whole=whole)
     return Chunk(n, _straight_ahead(n.z), lane < count)
+
+
+@cache
+def _fill(whole: bool) -> Fill | None:
+    """What makes directions faster than XLA's code; None where nothing can be compiled."""
+    try:
+        return Fill(partial(_direction, whole=whole), [np.dtype(np.uint32)] * 3)
+    except (NoCompilerError, NotElementwiseError):
+        return None
+
+
+@cache
+def _ahead() -> Vec3:
+    """View positions of a chunk."""
+    return Vec3(*map(np.asarray, _straight_ahead(jnp.zeros(CHUNK, jnp.float32))))
 
 
 def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> NormalSet:
     offsets = np.random.default_rng(seed).integers(0, 2**32, 2, dtype=np.uint32)
 
     def chunk(start: int) -> Chunk:
+        turn, first = divmod(start, TURN)
+        shifted = ((int(o) + turn * by) % TURN for o, by in zip(offsets, SHIFTS, strict=True))
+        if count >= LARGE and (fill := _fill(whole)):
+            return Chunk(fill(CHUNK, first, *shifted), _ahead(), np.arange(CHUNK) < count - start)
         with jax.enable_x64(True):
-            turn, first = divmod(start, TURN)
-            shifted = tuple(np.uint32((int(o) + turn * by) % TURN) for o, by in zip(offsets, SHIFTS, strict=True))
-            return _uniform(np.uint32(first), np.uint32(min(count - start, CHUNK)), shifted, whole=whole)
+            return _uniform(
+                np.uint32(first), np.uint32(min(count - start, CHUNK)), *map(np.uint32, shifted), whole=whole
+            )
 
     return NormalSet(name, title, (4 if whole else 2) * math.pi, count, None, seed, chunk)
 

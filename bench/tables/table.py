@@ -19,7 +19,7 @@ from typing import Any
 
 Row = dict[str, Any]
 # What a step may be measured with, besides JAX: see `Work.needs`.
-GL, VULKAN, COMPILERS = "GL device", "Vulkan device", "compilers"
+GL, VULKAN, COMPILERS, C_COMPILER = "GL device", "Vulkan device", "compilers", "C compiler"
 # By the back end of a step. Codes in half precision are computed on a Vulkan device in place of GL.
 BACKENDS_NEED: Mapping[str, frozenset[str]] = MappingProxyType(
     {"jax": frozenset(), "glsl": frozenset({GL, VULKAN}), "wgsl": frozenset({VULKAN})}
@@ -210,8 +210,8 @@ class Work:
         listing: the instructions that a step's row was counted in, as text; None where there are none.
         lacking: what this machine turned out to lack; makes the exit status 3.
         missing: why `run` leaves the table out on this machine; empty where it does not.
-        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS. Workers that have another one, or none,
-            do not measure it.
+        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have another
+            one, or none, do not measure it.
         is_timed: whether a clock is read for a step's rows: then nothing else is measured on its machine meanwhile.
         stays: whether measuring leaves behind what `write` takes, so that no other process can do it.
     """

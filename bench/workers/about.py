@@ -13,9 +13,10 @@ from typing import Any
 
 from ..machine.devices import found_device
 from ..machine.vulkan import adapters
+from ..native import library
 from ..output.sources import sources
 from ..results.machine import compilers, processor
-from ..tables.table import COMPILERS, GL, VULKAN
+from ..tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 
 # What figures depend on: workers have the versions of the process that asks.
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex", "flip-evaluator")
@@ -71,4 +72,10 @@ def _compilers() -> str:
     return "; ".join(f"{name}: {what}" for name, what in compilers().items())
 
 
-CAN: Mapping[str, Callable[[], str]] = MappingProxyType({GL: _gl, VULKAN: _vulkan, COMPILERS: _compilers})
+def _c_compiler() -> str:
+    return library.compiler() or "none"
+
+
+CAN: Mapping[str, Callable[[], str]] = MappingProxyType(
+    {GL: _gl, VULKAN: _vulkan, COMPILERS: _compilers, C_COMPILER: _c_compiler}
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from types import MappingProxyType
@@ -27,9 +27,13 @@ from ...code import trip as wgsl_trip
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
 from ...codecs.user_encodings import NoTwinError
+from ...machine.cores import on_all_cores
 from ...metrics.code_limits import AREAS, effective_bits
-from ...metrics.meter import Decoded, Meter, idle, measure_together
+from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
 from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
+from ...native.elementwise import NotElementwiseError
+from ...native.library import LARGE, NoCompilerError
+from ...native.meter import NativeMeter
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ...output.errors import MissingError
 from ...worst_case import exact_figures
@@ -46,6 +50,11 @@ UNUSED = -1.0
 
 Row = dict[str, Any]
 Tick = Callable[[], None]
+
+
+def is_compiled(backend: str, count: int) -> bool:
+    """Whether rows of so many normals are measured by the C compiler's code, where there is a compiler and it can."""
+    return backend == "jax" and count >= LARGE
 
 
 @dataclass(frozen=True)
@@ -67,6 +76,16 @@ class Case:
         return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
     @property
+    def is_compiled(self) -> bool:
+        """As `is_compiled` says of it."""
+        return is_compiled(self.backend, self.normal_set.count)
+
+    @property
+    def at_once(self) -> int:
+        """How many chunks are measured without being asked for the next."""
+        return 4 if self.is_compiled else 1
+
+    @property
     def domain(self) -> str | None:
         """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
         of a set that is not uniform."""
@@ -77,20 +96,28 @@ class Case:
 
 
 @cache
-def _meter(codec: Codec) -> Meter:
+def meter_of(codec: Codec, is_compiled: bool) -> Measures:
+    """What measures a codec; compiled by the C compiler if asked for, where there is one that can."""
     like, scales = shared(codec.storage, codec.encoding.components)
+    if is_compiled:
+        with suppress(NoCompilerError, NotElementwiseError):
+            return NativeMeter(_trip(codec.encoding, like, codec.rounding), scales)
     return Meter(_program(codec.encoding, like, codec.rounding), scales)
+
+
+def _trip(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
+    """A round trip that fixed-point formats share: they give it their scales. It is compiled once for all."""
+
+    def round_trip(n: Vec3, view: Vec3, *scales: Scale) -> Vec3:
+        return Codec(encoding, fixed(like, scales), rounding).round_trip(n, view)
+
+    return round_trip
 
 
 @cache
 def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
-    """What decodes a chunk. Fixed-point formats share it and give it their scales: it is compiled once for all."""
-
-    def decode(chunk: Chunk, *scales: Scale) -> Vec3:
-        codec = Codec(encoding, fixed(like, scales), rounding)
-        return codec.round_trip(chunk.n, chunk.view)
-
-    return jax.jit(decode)
+    trip = _trip(encoding, like, rounding)
+    return jax.jit(lambda chunk, *scales: trip(chunk.n, chunk.view, *scales))
 
 
 def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
@@ -99,10 +126,11 @@ def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
     Args:
         n, view: unit normals and view positions, float32 of shape (count, 3).
     """
-    meter, found = _meter(codec), []
+    like, scales = shared(codec.storage, codec.encoding.components)
+    decode, found = _program(codec.encoding, like, codec.rounding), []
     with jax.enable_x64(True):
         for load in from_arrays("", "", n, view, np.ones(len(n), bool)).loads():
-            found.append(np.stack([np.asarray(plane).ravel() for plane in meter.decoded(load())], axis=1))
+            found.append(np.stack([np.asarray(plane).ravel() for plane in decode(load(), *scales)], axis=1))
     return np.concatenate(found)[: len(n)]
 
 
@@ -123,18 +151,24 @@ def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
 class Decoding:
     """A case about to be measured: with what, on which chunks, and what the row says of how."""
 
-    meter: Meter
-    loads: Iterable[Callable[[], Any]]
+    meter: Measures
+    loads: Iterable[Load]
     how: Mapping[str, str]
+    at_once: int = 1
+
+    def total(self, tick: Tick = idle) -> Total:
+        """What its chunks add up to."""
+        return measure_together([self.meter], self.loads, lambda _: tick(), self.at_once)[0]
 
 
 @contextmanager
 def _by_jax(case: Case) -> Iterator[Decoding]:
-    yield Decoding(_meter(case.codec), case.normal_set.loads(), _how_by_jax())
+    meter = meter_of(case.codec, case.is_compiled)
+    yield Decoding(meter, case.normal_set.loads(), _how_by_jax(meter), case.at_once)
 
 
-def _how_by_jax() -> dict[str, str]:
-    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+def _how_by_jax(meter: Measures) -> dict[str, str]:
+    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation", "compiled_by": meter.compiler}
 
 
 @contextmanager
@@ -205,7 +239,7 @@ def measure(case: Case, tick: Tick = idle) -> Row:
     """
     try:
         with BACKENDS[case.backend](case) as found:
-            total = found.meter.total(found.loads, tick)
+            total = found.total(tick)
     except UNMEASURABLE as error:
         return _described(case) | {"skipped": str(error)}
     return _row(case, total, found.how)
@@ -257,7 +291,7 @@ def worst(case: Case) -> Worst | None:
     """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
     try:
         with BACKENDS[case.backend](case) as found:
-            return found.meter.measure(found.loads, case.normal_set.count).worst
+            return found.total().worst
     except UNMEASURABLE:
         return None
 
@@ -297,14 +331,16 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
 
 def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
     shared = [case for case in group if case.backend == "jax" and exact_figures.has_twin(case.codec.encoding)]
-    measured: dict[int, Total] = {}
+    measured: dict[int, tuple[Total, Measures]] = {}
     if shared:
-        meters = [_meter(case.codec) for case in shared]
-        found = measure_together(meters, shared[0].normal_set.loads(), lambda index: tick(shared[index]))
-        measured = {id(case): total for case, total in zip(shared, found, strict=True)}
+        meters = [*on_all_cores(lambda case: meter_of(case.codec, case.is_compiled), shared)]
+        loads, at_once = shared[0].normal_set.loads(), shared[0].at_once
+        totals = measure_together(meters, loads, lambda index: tick(shared[index]), at_once)
+        measured = {id(case): (total, meter) for case, total, meter in zip(shared, totals, meters, strict=True)}
     for case in group:
         if id(case) in measured:
-            yield _row(case, measured[id(case)], _how_by_jax())
+            total, meter = measured[id(case)]
+            yield _row(case, total, _how_by_jax(meter))
         else:
             yield measure(case, lambda case=case: tick(case))
 

@@ -177,6 +177,12 @@ COLUMNS = (
     shared.EXACT,
     shared.DEVICE,
     shared.ROUNDED_BY,
+    Column(
+        "compiled_by",
+        "What compiled the JAX functions: XLA or, from 4194304 normals on, this machine's C compiler.",
+        HOW,
+        shown=False,
+    ),
     shared.SEED,
     shared.SKIPPED,
 )

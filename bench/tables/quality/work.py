@@ -18,7 +18,7 @@ from ...options.counts import check_seed, checked_count
 from ...output.errors import UsageError, leave_out
 from ...output.writing import check_folder, without
 from ..charts import backends_of, drawing, having, one_backend
-from ..table import PART, Measured, Row, Sheet, Step, Tick, Work
+from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
@@ -199,6 +199,12 @@ def _worst(step: Step) -> Any:
     return measure.worst(step.case)
 
 
+def _needs(step: Step) -> frozenset[str]:
+    backend, count = step.key["backend"], step.key.get("count", 0)
+    compiled = {C_COMPILER} if measure.is_compiled(backend, count) else set()
+    return BACKENDS_NEED[backend] | compiled
+
+
 WORK = Work(
     steps=steps,
     check=_check,
@@ -213,4 +219,5 @@ WORK = Work(
     write=_write,
     subjects=pictures.subjects,
     worst=_worst,
+    needs=_needs,
 )

@@ -19,9 +19,11 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES
 from ...codecs.user_encodings import NoTwinError
 from ...machine.cores import on_all_cores
-from ...metrics.meter import Meter
+from ...metrics.meter import in_groups
 from ...metrics.moments import FAST_BLOCK, squared_errors
+from ...native.meter import NativeMeter
 from ...normals.directions import CORES, Input, make_input
+from ..quality import measure as quality
 from . import c_baseline
 from . import numpy_baseline as baseline
 from .table import TABLE
@@ -31,6 +33,8 @@ WHOLE = FAST_BLOCK * CORES
 STORAGE = "rgba8"
 BLOCK = 2**14
 LONG_ENOUGH = 1.0
+# Seconds between turns: OpenMP's threads wait awake for a few milliseconds, and would take a core from the next one.
+PAUSE = 0.01
 # To read the input an encoding of C's is compiled with it.
 ANY_IN_C = next(iter(c_baseline.ENCODINGS))
 
@@ -59,6 +63,7 @@ def least_times(works: Sequence[Task]) -> list[float]:
     times: list[list[float]] = [[] for _ in works]
     while len(times[0]) < 3 or sum(map(sum, times)) < LONG_ENOUGH * len(works):
         for work, taken in zip(works, times, strict=True):
+            time.sleep(PAUSE)
             begin = time.perf_counter()
             work()
             taken.append(time.perf_counter() - begin)
@@ -88,11 +93,14 @@ def _by_shards(function: Callable[..., object], data: Input) -> list[object]:
 
 
 def _project(case: Case, data: Input) -> Task:
-    codec = Codec(case.encoding, STORAGES[STORAGE])
+    row = quality.Case(Codec(case.encoding, STORAGES[STORAGE]), data.normal_set(), "jax")
     if case.statistics == "row":
-        meter, normals = Meter(jax.jit(lambda b: codec.round_trip(b.n, b.view))), data.normal_set()
-        return lambda: meter.measure(normals.loads(), len(data.n))
-    errors = squared_errors(codec)
+        return lambda: quality.measure(row)
+    meter = quality.meter_of(row.codec, row.is_compiled)
+    if isinstance(meter, NativeMeter):
+        groups = [*in_groups(row.normal_set.loads(), row.at_once)]
+        return lambda: [*on_all_cores(meter.moments, groups)]
+    errors = squared_errors(row.codec)
     return lambda: _by_shards(errors, data)
 
 

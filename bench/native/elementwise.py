@@ -1,0 +1,228 @@
+"""A JAX function of numbers in C.
+
+Only functions that treat each element of their arrays alike can be written so. JAX traces them; each of its operations
+becomes one line of C. Numbers have the types that they have in JAX, and elements no array.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import numpy as np
+from jax.extend import core
+
+TYPES: Mapping[str, str] = MappingProxyType(
+    {
+        "bool": "_Bool",
+        "uint8": "uint8_t",
+        "uint16": "uint16_t",
+        "int32": "int32_t",
+        "uint32": "uint32_t",
+        "int64": "int64_t",
+        "uint64": "uint64_t",
+        "float16": "_Float16",
+        "float32": "float",
+        "float64": "double",
+    }
+)
+INFIX: Mapping[str, str] = MappingProxyType(
+    {
+        "add": "+",
+        "sub": "-",
+        "mul": "*",
+        "div": "/",
+        "gt": ">",
+        "ge": ">=",
+        "lt": "<",
+        "le": "<=",
+        "eq": "==",
+        "ne": "!=",
+        "and": "&",
+        "or": "|",
+        "shift_left": "<<",
+    }
+)
+# Functions of <tgmath.h>, which chooses by type.
+CALLS: Mapping[str, str] = MappingProxyType({"abs": "fabs", "sqrt": "sqrt", "floor": "floor"})
+# What gives its argument as it is.
+SAME = ("broadcast_in_dim", "optimization_barrier", "squeeze")
+# What a traced array holds; any number will do.
+LANES = 8
+
+
+class NotElementwiseError(Exception):
+    """A JAX function that cannot be written in C here, and which of its operations cannot."""
+
+
+def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
+    """A JAX function as `void name(arguments..., *results)`.
+
+    Args:
+        name: what it is called in C.
+        function: of arrays and scalars, a pytree each; its results are a pytree.
+        arguments: like those of the function, with a NumPy type in place of each array.
+
+    Raises:
+        NotElementwiseError: for an operation that has no line of C, or that mixes elements.
+    """
+    shaped = jax.tree.map(lambda dtype: jax.ShapeDtypeStruct((LANES,), dtype), arguments)
+    with jax.enable_x64(True):
+        traced = jax.make_jaxpr(function)(*shaped)
+    writer = _Writer()
+    taken = [f"a{at}" for at in range(len(traced.in_avals))]
+    results = writer.results(traced, taken)
+    given = [f"{_type(aval)} {name}" for aval, name in zip(traced.in_avals, taken, strict=True)]
+    given += [f"{_type(aval)} *r{at}" for at, aval in enumerate(traced.out_avals)]
+    stores = [f"*r{at} = {result};" for at, result in enumerate(results)]
+    lines = "".join(f"    {line}\n" for line in (*writer.lines, *stores))
+    # Inlined into whatever calls it: by itself the compiler does so up to a size, and loops with calls are slow.
+    return f"__attribute__((always_inline)) static inline void {name}({', '.join(given)}) {{\n{lines}}}\n"
+
+
+def _type(aval: Any) -> str:
+    return c_type(aval.dtype)
+
+
+def c_type(dtype: Any) -> str:
+    """The type of a NumPy number in C. Raises NotElementwiseError where there is none."""
+    name = np.dtype(dtype).name
+    if name not in TYPES:
+        raise NotElementwiseError(f"numbers of type {name}")
+    return TYPES[name]
+
+
+def _literal(value: Any) -> str:
+    """A number of NumPy in C, with its type."""
+    value = np.asarray(value)
+    if value.ndim:
+        raise NotElementwiseError("an array of constants")
+    if value.dtype.kind == "f" and np.isfinite(value):
+        said = float(value).hex()
+    elif value.dtype.kind == "f":
+        said = "NAN" if np.isnan(value) else "-INFINITY" if value < 0 else "INFINITY"
+    else:
+        said = str(int(value))
+    return f"(({c_type(value.dtype)}){said})"
+
+
+class _Writer:
+    """Lines of C, as a traced function is gone through."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def results(self, traced: core.ClosedJaxpr, arguments: Sequence[str]) -> list[str]:
+        """What the results of a traced function are called, given what its arguments are."""
+        names: dict[Any, str] = dict(zip(traced.jaxpr.invars, arguments, strict=True))
+        names |= {var: _literal(value) for var, value in zip(traced.jaxpr.constvars, traced.consts, strict=True)}
+
+        def named(atom: Any) -> str:
+            return _literal(atom.val) if isinstance(atom, core.Literal) else names[atom]
+
+        for equation in traced.jaxpr.eqns:
+            found = self._of(equation, [*map(named, equation.invars)])
+            names |= dict(zip(equation.outvars, found, strict=True))
+        return [*map(named, traced.jaxpr.outvars)]
+
+    def _of(self, equation: Any, given: list[str]) -> Iterable[str]:
+        operation = equation.primitive.name
+        if operation == "jit":
+            return self.results(equation.params["jaxpr"], given)
+        if operation in SAME:
+            return given[:1] if len(equation.outvars) == 1 else given
+        _check_types(equation)
+        return [self._kept(_type(equation.outvars[0].aval), _expression(equation, given))]
+
+    def _kept(self, kind: str, expression: str) -> str:
+        name = f"t{len(self.lines)}"
+        self.lines.append(f"const {kind} {name} = {expression};")
+        return name
+
+
+def _check_types(equation: Any) -> None:
+    """Half floats are converted, and not computed with: C may keep more digits of a result than they have."""
+    if equation.primitive.name != "convert_element_type" and any(
+        var.aval.dtype == np.float16 for var in (*equation.invars, *equation.outvars)
+    ):
+        raise NotElementwiseError(f"{equation.primitive.name} of half floats")
+
+
+def _expression(equation: Any, given: Sequence[str]) -> str:
+    operation = equation.primitive.name
+    if operation in INFIX:
+        return f"{given[0]} {INFIX[operation]} {given[1]}"
+    if operation in CALLS and equation.outvars[0].aval.dtype.kind == "f":
+        return f"{CALLS[operation]}({given[0]})"
+    if operation not in OTHERS:
+        raise NotElementwiseError(operation)
+    return OTHERS[operation](equation, *given)
+
+
+def _converted(equation: Any, value: str) -> str:
+    """A conversion. To integers JAX keeps within their range, and NaN is 0; C leaves both open."""
+    source, target = equation.invars[0].aval.dtype, equation.outvars[0].aval.dtype
+    if source.kind == "f" and target.kind in "iu":
+        bounds = np.iinfo(target).min, np.iinfo(target).max
+        (low, least), (high, most) = ((_literal(source.type(b)), _literal(target.type(b))) for b in bounds)
+        within = f"{value} <= {low} ? {least} : {value} >= {high} ? {most} : ({c_type(target)}){value}"
+        return f"{value} != {value} ? 0 : {within}"
+    return f"({c_type(target)}){value}"
+
+
+def _selected(_: Any, which: str, *cases: str) -> str:
+    if len(cases) != 2:
+        raise NotElementwiseError("a choice of more than two")
+    return f"{which} ? {cases[1]} : {cases[0]}"
+
+
+def _rounded(equation: Any, value: str) -> str:
+    if equation.params["rounding_method"] != jax.lax.RoundingMethod.TO_NEAREST_EVEN:
+        raise NotElementwiseError("rounding away from zero")
+    return f"nearbyint({value})"
+
+
+def _limited(sign: str, equation: Any, value: str, other: str) -> str:
+    """The smaller or the larger of two integers; of floats JAX's choice depends on NaN."""
+    if equation.outvars[0].aval.dtype.kind == "f":
+        raise NotElementwiseError(equation.primitive.name)
+    return f"{value} {sign} {other} ? {value} : {other}"
+
+
+def _shifted(equation: Any, value: str, by: str) -> str:
+    """Zeros move in from above."""
+    dtype = equation.outvars[0].aval.dtype
+    if dtype.kind == "u":
+        return f"{value} >> {by}"
+    return f"({c_type(dtype)})(({c_type('u' + dtype.name)}){value} >> {by})"
+
+
+def _viewed(equation: Any, value: str) -> str:
+    source, target = (var.aval.dtype for var in (equation.invars[0], equation.outvars[0]))
+    if source.itemsize != target.itemsize:
+        raise NotElementwiseError("a view of another size")
+    return f"VIEWED({c_type(source)}, {c_type(target)}, {value})"
+
+
+def _inverted(equation: Any, value: str) -> str:
+    return f"!{value}" if equation.outvars[0].aval.dtype.kind == "b" else f"~{value}"
+
+
+OTHERS: Mapping[str, Callable[..., str]] = MappingProxyType(
+    {
+        "bitcast_convert_type": _viewed,
+        "convert_element_type": _converted,
+        "is_finite": lambda _, value: f"fabs({value}) < INFINITY",
+        "max": partial(_limited, ">"),
+        "min": partial(_limited, "<"),
+        "neg": lambda _, value: f"-{value}",
+        "not": _inverted,
+        "round": _rounded,
+        "select_n": _selected,
+        "shift_right_arithmetic": lambda _, value, by: f"{value} >> {by}",
+        "shift_right_logical": _shifted,
+    }
+)

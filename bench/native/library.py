@@ -1,0 +1,131 @@
+"""C source as a library of this process: compiled for this machine, and kept in the user's cache folder."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import hashlib
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from ..machine.devices import processor_kind
+from ..output import cache as kept
+
+# Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.
+FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fwrapv", "-fPIC", "-shared", "-w")
+HEADERS = ("stddef.h", "stdint.h", "string.h", "tgmath.h")
+# The bits of a number as a number of another type.
+VIEWED = """#define VIEWED(source, target, value) \\
+    ({ source from_ = (value); target to_; memcpy(&to_, &from_, sizeof to_); to_; })
+"""
+COMPILING_S = 60
+# From so many normals on it pays to compile, which takes a fifth of a second.
+LARGE = 2**22
+NONE = "no C compiler: install one that is called cc (Debian: gcc)"
+DIGEST = hashlib.sha256().digest_size
+
+
+class NoCompilerError(Exception):
+    """There is no C compiler, or it cannot compile."""
+
+
+@cache
+def compiler() -> str:
+    """What the C compiler calls itself; empty where there is none."""
+    if not shutil.which("cc"):
+        return ""
+    try:
+        return (_said("--version").splitlines() or [""])[0]
+    except NoCompilerError:
+        return ""
+
+
+def source(name: str, function: str, given: Sequence[str], **numbers: int) -> str:
+    """A file of this folder as C source that `library` can compile.
+
+    Args:
+        name: the file's.
+        function: what it calls, as `c_function` writes it.
+        given: the types of what the function takes of the array `given`.
+        numbers: further macros.
+    """
+    known = {name.upper(): str(number) for name, number in numbers.items()}
+    known["GIVEN"] = "".join(f", ({kind})given[{at}]" for at, kind in enumerate(given))
+    lines = [
+        *(f"#include <{header}>" for header in HEADERS),
+        *(f"#define {name} {what}" for name, what in known.items()),
+    ]
+    return "\n".join((*lines, VIEWED, function, Path(__file__).with_name(name).read_text(encoding="utf-8")))
+
+
+@cache
+def library(source: str) -> ctypes.CDLL:
+    """C source, compiled.
+
+    Raises:
+        NoCompilerError: it cannot be compiled here.
+    """
+    if not compiler():
+        raise NoCompilerError(NONE)
+    path = kept.folder() / "native" / f"{kept.key_of(source, *FLAGS, compiler(), *processor_kind())}.so"
+    if not kept.is_off() and _is_whole(path):
+        return _loaded(path)
+    with tempfile.TemporaryDirectory() as folder:
+        made = _compiled(source, Path(folder) / path.name)
+        if not kept.is_off():
+            _keep(made, path)
+        return _loaded(made)
+
+
+def _keep(made: Path, path: Path) -> None:
+    """Have the next process find a library, all of it or none. A folder that cannot be written is no error."""
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+            shutil.copyfile(made, Path(folder) / path.name)
+            (Path(folder) / path.name).replace(path)
+
+
+def _compiled(source: str, path: Path) -> Path:
+    """The library, followed by the digest of its bytes: linkers pass over what follows."""
+    _said(*FLAGS, "-x", "c", "-", "-o", str(path), "-lm", given=source)
+    data = path.read_bytes()
+    path.write_bytes(data + hashlib.sha256(data).digest())
+    return path
+
+
+def _is_whole(path: Path) -> bool:
+    """Whether a library is there as it was written. A damaged one would end the process that loads it."""
+    try:
+        data = path.read_bytes()
+    except OSError:
+        return False
+    return hashlib.sha256(data[:-DIGEST]).digest() == data[-DIGEST:]
+
+
+def _loaded(path: Path) -> ctypes.CDLL:
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        raise NoCompilerError(str(error)) from error
+
+
+def _said(*arguments: str, given: str = "") -> str:
+    try:
+        return subprocess.run(
+            ["cc", *arguments], input=given, capture_output=True, text=True, timeout=COMPILING_S, check=True
+        ).stdout
+    except (OSError, subprocess.SubprocessError) as error:
+        said = [*(getattr(error, "stderr", "") or "").splitlines(), str(error)]
+        raise NoCompilerError(f"cc: {next((line for line in said if 'error' in line), said[-1])}") from error
+
+
+def address(array: np.ndarray) -> ctypes.c_void_p:
+    """Where an array lies, for a function of a library; the array must outlive the call."""
+    return ctypes.c_void_p(array.__array_interface__["data"][0])

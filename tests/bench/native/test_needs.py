@@ -1,0 +1,17 @@
+"""Which steps need the same C compiler wherever they are measured."""
+
+from normalbench.bench.native.library import LARGE
+from normalbench.bench.tables.quality.work import WORK
+from normalbench.bench.tables.table import C_COMPILER, GL, VULKAN, Step
+from normalbench.bench.workers.about import CAN
+
+
+def needs(**key) -> frozenset[str]:
+    return WORK.needs(Step(key, None, ""))
+
+
+def test_large_rows_by_jax_need_the_c_compiler():
+    assert needs(backend="jax", count=LARGE) == {C_COMPILER}
+    assert needs(backend="jax", count=LARGE - 1) == frozenset()
+    assert needs(backend="glsl", count=LARGE) == {GL, VULKAN}
+    assert CAN[C_COMPILER]()
