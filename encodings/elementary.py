@@ -61,7 +61,9 @@ def _horner(coefficients, s):
 
 def atan2_pi(y, x):
     """atan2(y, x) / pi in [-1, 1], within 2 units in the last place of 1; 0 at the origin."""
-    y, x = jnp.asarray(y), jnp.asarray(x)
+    y = jnp.asarray(y)
+    # A number in Python has the type of what it goes with.
+    x = jnp.asarray(x, y.dtype)
     if x.dtype != jnp.float32:
         a = select((x == 0.0) & (y == 0.0), 0.0, jnp.arctan2(abs(y), x) / math.pi)
         return select(y < 0.0, -a, a)

@@ -75,6 +75,17 @@ def test_the_angle_is_the_arc_tangent_within_two_units():
     assert float(atan2_pi(jnp.float32(0), jnp.float32(-1))) == 1
 
 
+@pytest.mark.parametrize("is_wide", [False, True])
+def test_a_number_of_python_does_not_make_the_angle_another_function(is_wide):
+    """Rows are measured where Python's numbers are float64: beside a float32 they still take the polynomial that GLSL
+    has, and not JAX's function."""
+    y = jnp.linspace(-3, 3, 999, dtype=jnp.float32)
+    with jax.enable_x64(is_wide):
+        got, traced = jax.jit(lambda y: atan2_pi(y, 1.0))(y), str(jax.make_jaxpr(lambda y: atan2_pi(y, 1.0))(y))
+    assert got.dtype == jnp.float32 and " atan2 " not in traced
+    np.testing.assert_array_equal(got, jax.jit(atan2_pi)(y, jnp.ones_like(y)))
+
+
 def test_sine_and_cosine_are_within_two_units():
     a = np.linspace(-1, 1, 400_001).astype(np.float32)
     for got, f in zip(jax.jit(sincos_pi)(jnp.asarray(a)), (np.sin, np.cos), strict=True):
