@@ -17,6 +17,12 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+# Threads that wait for the next call, by how many there are: to start and end them takes longer than a chunk of normals.
+_waiting: dict[int, list[ThreadPoolExecutor]] = {}
+# A forked process has none of them.
+os.register_at_fork(after_in_child=_waiting.clear)
+
+
 def on_all_cores(
     function: Callable[[Item], T], items: Iterable[Item], stop: Callable[[], None] = lambda: None
 ) -> Iterator[T]:
@@ -25,15 +31,18 @@ def on_all_cores(
     for, after `stop`, which may cut it short."""
     # Half of the threads wait: for the kernel to clear memory, and for the one that asks for the results.
     threads, ahead = 2 * cores(), deque()
-    with ThreadPoolExecutor(threads) as pool:
-        try:
-            for item in items:
-                ahead.append(pool.submit(function, item))
-                if len(ahead) >= threads:
-                    yield ahead.popleft().result()
-            while ahead:
+    others = _waiting.setdefault(threads, [])
+    pool = others.pop() if others else ThreadPoolExecutor(threads)
+    try:
+        for item in items:
+            ahead.append(pool.submit(function, item))
+            if len(ahead) >= threads:
                 yield ahead.popleft().result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            stop()
-            raise
+        while ahead:
+            yield ahead.popleft().result()
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        stop()
+        pool.shutdown()
+        raise
+    others.append(pool)

@@ -58,19 +58,20 @@ class NotElementwiseError(Exception):
     """A JAX function that cannot be written in C here, and which of its operations cannot."""
 
 
-def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
+def c_function(name: str, function: Callable[..., Any], *arguments: Any, is_wide: bool = False) -> str:
     """A JAX function as `void name(arguments..., *results)`.
 
     Args:
         name: what it is called in C.
         function: of arrays and scalars, a pytree each; its results are a pytree.
         arguments: like those of the function, with a NumPy type in place of each array.
+        is_wide: whether numbers of Python have 64 bits, as with `jax.enable_x64`.
 
     Raises:
         NotElementwiseError: for an operation that has no line of C, or that mixes elements.
     """
     shaped = jax.tree.map(lambda dtype: jax.ShapeDtypeStruct((LANES,), dtype), arguments)
-    with jax.enable_x64(True):
+    with jax.enable_x64(is_wide):
         traced = jax.make_jaxpr(function)(*shaped)
     writer = _Writer()
     taken = [f"a{at}" for at in range(len(traced.in_avals))]

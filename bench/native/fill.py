@@ -25,7 +25,7 @@ class Fill:
     """
 
     def __init__(self, made: Callable[..., Vec3], types: Sequence[np.dtype]):
-        function = c_function("made", made, LANE, *types)
+        function = c_function("made", made, LANE, *types, is_wide=True)
         self._library = library(source("fill.c", function, [*map(c_type, types)]))
 
     def __call__(self, count: int, *given: int) -> Vec3:

@@ -22,8 +22,8 @@ pytestmark = pytest.mark.skipif(not library.compiler(), reason="no C compiler")
 
 # What is written for each element of a table, or by a loop, is measured by XLA's code.
 BY_XLA = {"best_fit", "best_fit_searched", "optimised_rings", "spherical_fibonacci", "spherical_lut"}
-# A root of what cancels next to -z: whether a product is rounded before it is added shows.
-CANCELS = {"spheremap": 1e-3, "cryengine3": 1e-4}
+# A root of what cancels next to -z: whether a product is rounded before it is added shows, by hundredths of a degree.
+CANCELS, CANCELLED_DEG = {"spheremap": 1e-3, "cryengine3": 1e-4}, 1e-2
 
 
 def both(function, normals: NormalSet, given=()):
@@ -34,16 +34,16 @@ def both(function, normals: NormalSet, given=()):
     return [statistics(normals.count, total) for total in totals]
 
 
-def assert_same(found, expected, relative=2e-6):
+def assert_same(found, expected, relative=2e-6, largest_deg=5e-6):
     """Figures of two compilers, which round a product before it is added, or not: a few normals get another code, and
     angles differ by a unit in the last place of a component."""
     exact = ("count", "pixels", "invalid")
     assert [getattr(found, name) for name in exact] == [getattr(expected, name) for name in exact]
     assert found.mse == pytest.approx(expected.mse, rel=relative, abs=1e-13)
     assert found.article_mse == pytest.approx(expected.article_mse, rel=max(relative, 1e-3), abs=1e-9)
-    for name, least in (("mean", relative), ("rms", relative), ("p99", 2e-4), ("max", 2e-5)):
+    for name, least, apart in (("mean", 0, 5e-6), ("rms", 0, 5e-6), ("p99", 2e-4, 5e-6), ("max", 2e-5, largest_deg)):
         here, there = (getattr(one, f"angle_{name}_deg") for one in (found, expected))
-        assert here == pytest.approx(there, rel=max(relative, least), abs=5e-6), f"angle_{name}_deg"
+        assert here == pytest.approx(there, rel=max(relative, least), abs=apart), f"angle_{name}_deg"
 
 
 def codecs_of(name: str) -> list[Codec]:
@@ -65,7 +65,7 @@ def test_rows_are_those_of_xla(name, at):
         meters = [quality.meter_of(codec, is_compiled) for is_compiled in (True, False)]
         assert [meter.compiler for meter in meters] == [library.compiler(), "XLA"]
         found, expected = (statistics(CHUNK, t) for t in measure_together(meters, normals.loads(), lambda _: None))
-        assert_same(found, expected, CANCELS.get(name, 2e-6))
+        assert_same(found, expected, *((CANCELS[name], CANCELLED_DEG) if name in CANCELS else ()))
         if name not in CANCELS:
             assert found.worst.angle_deg == pytest.approx(expected.worst.angle_deg, rel=2e-5, abs=2e-6), codec.name
 
