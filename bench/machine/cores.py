@@ -17,7 +17,7 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-# Threads that wait for the next call, by how many there are: to start and end them takes longer than a chunk of normals.
+# Threads that wait for the next call, by how many there are: to start and end them takes as long as a chunk of normals.
 _waiting: dict[int, list[ThreadPoolExecutor]] = {}
 # A forked process has none of them.
 os.register_at_fork(after_in_child=_waiting.clear)
