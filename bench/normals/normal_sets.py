@@ -173,10 +173,7 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
     """
     count = covered.size
     background = count - int(np.count_nonzero(covered)) - (not_finite or 0)
-    chunks = [
-        _padded_chunk(*(np.asarray(a).reshape(count, -1)[start : start + CHUNK] for a in (n, view, covered)))
-        for start in range(0, count, CHUNK)
-    ]
+    chunks = _chunks(*(np.asarray(a).reshape(count, -1) for a in (n, view, covered)))
     return NormalSet(
         name,
         title,
@@ -190,12 +187,16 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
     )
 
 
-def _padded_chunk(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> Chunk:
-    """Part of a set as a whole chunk; what is missing does not count."""
-    missing = CHUNK - len(n)
+def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]:
+    """A set as whole chunks; what is missing of the last does not count."""
+    count, missing = len(n), -len(n) % CHUNK
     n, view = (np.pad(np.asarray(a, np.float32), ((0, missing), (0, 0)), mode="edge") for a in (n, view))
-    planes = (jnp.asarray(np.ascontiguousarray(plane)) for plane in view.T)
-    return Chunk(from_array(n), Vec3(*planes), jnp.asarray(np.pad(covered[:, 0], (0, missing))))
+    planes = Chunk(
+        Vec3(*map(np.array, from_array(n))), Vec3(*np.ascontiguousarray(view.T)), np.pad(covered[:, 0], (0, missing))
+    )
+    # NumPy has large arrays in large pages, which C reads faster; JAX would copy them.
+    kept = np.asarray if count >= LARGE else jnp.asarray
+    return [jax.tree.map(lambda a, at=at: kept(a[at : at + CHUNK]), planes) for at in range(0, count, CHUNK)]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:
