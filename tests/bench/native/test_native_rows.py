@@ -117,6 +117,17 @@ def test_the_worst_normal_is_that_of_xla():
     assert found.worst.angle_deg == 0.0
 
 
+@pytest.mark.parametrize("at", [7, CHUNK + 7])
+def test_the_worst_normal_is_that_of_all_chunks(at):
+    """Whichever of two chunks of a part has it."""
+    n = random_directions(CHUNK + 99)
+    turned = np.where(np.arange(len(n))[:, None] == at, n[:, [1, 2, 0]], n * np.float32([1, 1, 0.99]))
+    normals = from_arrays("", "", n, turned.astype(np.float32), np.ones(len(n), bool))
+    ((figures, _, worst),) = NativeMeter(lambda _, view: view).parts([*normals.loads()])
+    np.testing.assert_array_equal(worst.normal, n[at])
+    assert figures.largest == pytest.approx(worst.angle_deg, rel=1e-5)
+
+
 @pytest.mark.parametrize("make", [sphere, hemisphere])
 @pytest.mark.parametrize("start", [0, 7 * CHUNK, TURN - CHUNK, TURN, 5 * TURN + CHUNK])
 def test_large_sets_are_filled_with_the_same_normals(make, start, monkeypatch):

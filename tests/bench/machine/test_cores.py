@@ -1,0 +1,39 @@
+"""Work shared among threads: the same ones from call to call, and others where one was interrupted."""
+
+import threading
+
+import pytest
+
+from normalbench.bench.machine.cores import on_all_cores
+
+
+def threads_used() -> set[int]:
+    barrier = threading.Barrier(2, timeout=10)
+    return {*on_all_cores(lambda _: (barrier.wait(), threading.get_ident())[1], range(2))}
+
+
+def test_threads_are_kept_for_the_next_call():
+    assert threads_used() & threads_used()
+
+
+def test_a_call_within_a_call_has_threads_of_its_own():
+    assert [*on_all_cores(lambda i: sum(on_all_cores(lambda j: i * j, range(20))), range(20))] == [
+        190 * i for i in range(20)
+    ]
+
+
+def failing(_: int) -> int:
+    raise ValueError("wrong")
+
+
+@pytest.mark.parametrize("interrupted", [failing, None])
+def test_after_an_interruption_others_are_asked(interrupted):
+    """One of the function, and one of whoever takes the results."""
+    if interrupted:
+        with pytest.raises(ValueError, match="wrong"):
+            list(on_all_cores(interrupted, range(20)))
+    else:
+        results = on_all_cores(lambda i: i, range(20))
+        next(results)
+        results.close()
+    assert [*on_all_cores(lambda i: i + 1, range(20))] == [*range(1, 21)]
