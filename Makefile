@@ -6,6 +6,8 @@
 
 PYTHON ?= python3
 BIN = .venv/bin
+# Modules are compiled once, not by each of the many processes that tests start, whatever the shell says.
+export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: bench test slow setup lint
 
