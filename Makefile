@@ -1,13 +1,16 @@
 # make bench   set up what is missing, then measure the default suite
 # make test    set up what is missing, then run the tests that take little time
 # make slow    the other tests: whole runs, tables of the manual measured anew, exhaustive searches
+# make check   both at once, in less time than one after the other
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
 PYTHON ?= python3
 BIN = .venv/bin
+# Modules are compiled once, not by each of the many processes that tests start, whatever the shell says.
+export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: bench test slow setup lint
+.PHONY: bench test slow check setup lint
 
 bench: .venv/ready
 	$(BIN)/normalbench run
@@ -17,7 +20,10 @@ test: .venv/ready
 	$(BIN)/python -m pytest -n 3
 
 slow: .venv/ready
-	$(BIN)/python -m pytest -n 2 -m slow
+	$(BIN)/python -m pytest -n 3 -m slow
+
+check: .venv/ready
+	$(BIN)/python -m pytest -n 3 -m "slow or not slow"
 
 setup: .venv/ready
 

@@ -1,6 +1,7 @@
 """Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
 
 import fcntl
+import gc
 import json
 import os
 import shutil
@@ -33,6 +34,16 @@ jax.config.update("jax_numpy_dtype_promotion", "strict")
 def pytest_configure(config):
     if os.environ.get("CI"):
         config.option.normalbench_require_gl = True
+
+
+def pytest_collection_finish():
+    """What there is by now stays to the end: looking through it for garbage again and again took a thirtieth."""
+    gc.collect()
+    gc.freeze()
+
+
+def pytest_sessionfinish():
+    gc.unfreeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

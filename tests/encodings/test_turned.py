@@ -57,7 +57,7 @@ def test_both_languages_turn_alike(gl, name, values):
 @pytest.mark.parametrize("name", CAN_TURN)
 def test_a_turned_encoding_is_as_good_on_the_sphere(name):
     """The error of uniform directions does not depend on the axis, but for what sampling makes of it."""
-    n = directions(2**17)
+    n = directions(2**15)
     rms = []
     for encoding in (ENCODINGS[name], variant(ENCODINGS[name], {"axis": "x", "sign": "-1"})):
         storage = STORAGES["rgba8"] if encoding.components == 3 else STORAGES["rg8"]

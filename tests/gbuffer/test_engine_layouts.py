@@ -1,6 +1,7 @@
 """The layouts of engines: their codes have the errors that were measured for them outside, and all of them render."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -83,19 +84,21 @@ def test_a_presets_code_has_the_axes_measured_outside(name):
     assert abs(got - wanted) <= max(0.01 * wanted, 0.6e-3), f"{got:.5f}, {wanted} outside"
 
 
+@cache
+def image_of(gl, pipeline: str, layout: str) -> np.ndarray:
+    one = plan(LAYOUTS[layout], light_targets=1 if pipeline == "deferred" else 2)
+    check(gl, PIPELINES[pipeline], one)
+    with rendering(gl, PIPELINES[pipeline], GLOSS, one) as made:
+        made.draw()
+        return made.image()
+
+
 @pytest.mark.slow
-@pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", ENGINES)
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
 def test_every_engines_layout_renders(gl, pipeline, name):
     """The image is finite, lit, and near the one from 32-bit floats."""
-    images, targets = [], 1 if pipeline == "deferred" else 2
-    for layout in (LAYOUTS[name], LAYOUTS["fp32"]):
-        one = plan(layout, light_targets=targets)
-        check(gl, PIPELINES[pipeline], one)
-        with rendering(gl, PIPELINES[pipeline], GLOSS, one) as made:
-            made.draw()
-            images.append(made.image())
+    images = [image_of(gl, pipeline, layout) for layout in (name, "fp32")]
     assert np.isfinite(images[0]).all() and images[1].max() > 0.1
     apart = np.sqrt(np.mean((np.clip(images[0], 0, 1) - np.clip(images[1], 0, 1)) ** 2))
     assert apart < 0.03, f"{apart:.4f} RMS"

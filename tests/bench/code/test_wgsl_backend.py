@@ -48,7 +48,7 @@ def test_three_back_ends_agree_within_two_hundredths_of_a_decibel(encoding):
     """Every storage of 16 bits or fewer a number, on uniform directions."""
     apart = []
     sets = normal_sets.NORMAL_SETS["hemisphere" if ENCODINGS[encoding].domain == "hemisphere" else "sphere"]
-    normals = sets(65536, 0)
+    normals = sets(2**14, 0)
     for codec in (codec for codec in codecs_named(encoding, TO_16_BITS, "nearest") if codec.fits):
         rows = [row_of(codec, backend, normals) for backend in ("jax", "glsl", "wgsl")]
         for one, other in itertools.combinations(rows, 2):

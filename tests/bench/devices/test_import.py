@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import devices as made
 import pytest
 
+from normalbench.bench.cli import app as cli
 from normalbench.bench.output.journal import Journal
 from normalbench.bench.results import runs
 from normalbench.bench.results.runs import read_run
@@ -20,13 +22,20 @@ from normalbench.bench.tables.registry import TABLES
 OTHER = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.5.0)"
 
 
-@pytest.fixture
-def folder(run, tmp_path):
-    """A small run."""
-    folder = tmp_path / "run"
+@pytest.fixture(scope="module")
+def made_once(tmp_path_factory):
+    """A small run, of which each test has a copy."""
+    folder = tmp_path_factory.mktemp("small") / "run"
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
-    assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["normalbench", "run", "--tables", "quality", *words, "-o", str(folder)])
+        assert cli.main() == 0
     return folder
+
+
+@pytest.fixture
+def folder(made_once, tmp_path):
+    return Path(shutil.copytree(made_once, tmp_path / "run"))
 
 
 def content_of(folder: Path) -> dict[str, bytes]:

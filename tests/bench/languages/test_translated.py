@@ -105,11 +105,13 @@ def in_hlsl(name: str) -> str:
 @pytest.mark.usefixtures("radv")
 def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
     """To the instruction, on two generations of GPUs."""
-    files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in PLAIN]
+    # Slang is given HLSL's text, and takes a second for each.
+    names = PLAIN if ending == "hlsl" else PLAIN[:2]
+    files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in names]
     row = ("--isa", "--stage", "fragment", "--family", "polaris10,navi21", "--storage", "rg8", "--format", "json")
-    _, out, _ = run("cost", "--encoding", ",".join([*files, *PLAIN]), *row)
+    _, out, _ = run("cost", "--encoding", ",".join([*files, *names]), *row)
     found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
-    for name, operation, family in itertools.product(PLAIN, ("encode", "decode"), ("polaris10", "navi21")):
+    for name, operation, family in itertools.product(names, ("encode", "decode"), ("polaris10", "navi21")):
         own, glsl = (found[each, operation, family] for each in (f"own_{name}", name))
         assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
 

@@ -21,7 +21,9 @@ from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured
 
 # The first process measures `effects`, the second one the others.
-SMALL = ("run", "--tables", "depth,effects,frames", "--effect", "water", "--encoding", "octahedral")
+CODE = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+SMALL = ("run", "--tables", "mix,effects,quality", "--effect", "water", *CODE)
+CHARTS = {"mix", "effects", "angles-0", "sphere-16-bits"}
 
 
 @pytest.fixture
@@ -47,8 +49,8 @@ def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
     files = [{str(p.relative_to(tmp_path / n)) for p in (tmp_path / n).rglob("*")} for n in ("1", "2")]
     assert files[0] == files[1] and "report.html" in files[1]
     # What the first process has measured by then, the second one draws as well.
-    assert set(drawn[1]) == {"depth", "effects"} and set(drawn[2]) <= {"effects"}, drawn
-    assert (tmp_path / "1/charts/depth.png").read_bytes() == (tmp_path / "2/charts/depth.png").read_bytes()
+    assert set(drawn[1]) == CHARTS and set(drawn[2]) <= {"effects"}, drawn
+    assert (tmp_path / "1/charts/mix.png").read_bytes() == (tmp_path / "2/charts/mix.png").read_bytes()
     assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
 
 
@@ -59,7 +61,7 @@ def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cor
     monkeypatch.setattr(second, "CHILD", [sys.executable, "-c", "raise SystemExit('broken')"])
     status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
     assert status == 0 and read_run(tmp_path / "run").finished, err
-    assert set(read_run(tmp_path / "run").tables) == {"depth", "effects", "frames"}
+    assert set(read_run(tmp_path / "run").tables) == {"mix", "effects", "quality"}
     assert err == "normalbench: broken\n"
 
 
@@ -68,7 +70,7 @@ def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
     """Where their folder is a file, the second process leaves it to the first to say so."""
     cores(2)
     folder = tmp_path / "run"
-    assert run("run", "--tables", "depth", "-o", str(folder))[0] == 0
+    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
     shutil.rmtree(folder / "charts")
     (folder / "charts").touch()
     status, _, err = run(*SMALL, "-o", str(folder))
@@ -150,7 +152,7 @@ def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
     drawn = []
     kept = report._write_chart
     monkeypatch.setattr(report, "_write_chart", lambda one, folder: drawn.append(one.name) or kept(one, folder))
-    assert run("run", "--tables", "vectors", "-o", str(tmp_path / "run"))[0] == 0
+    assert run("run", "--tables", "quality", *CODE, "-o", str(tmp_path / "run"))[0] == 0
     assert sorted(drawn) == sorted({path.stem for path in (tmp_path / "run/charts").iterdir()})
 
 

@@ -328,9 +328,12 @@ def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
     assert film_uri(damaged) == film_uri(large) == film_uri(tmp_path / "none.png") == ""
 
 
-def test_a_page_holds_its_charts_and_its_animation(run, tmp_path):
+def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
     """And `compare` finds no difference between a run and itself."""
     one = tmp_path / "one"
+    # `run` has no options for these.
+    for name, value in (("frames", 8), ("count", 2048), ("size", "96x72"), ("lights", 2)):
+        monkeypatch.setitem(MotionOptions.__init__.__kwdefaults__, name, value)
     words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1")
     status, _, err = run(*words, "-o", str(one))
     assert status == 0, err

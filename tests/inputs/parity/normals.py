@@ -169,7 +169,7 @@ PARITY = Parity(
     compared,
     guarded=guarded,
     codecs=[*codecs(["rgba8", "rgb10a2", "rg16f"]), *ALIKE],
-    more_codecs=[*codecs(["rgba8", "rgb10a2", "rg16f", "rg8_snorm", "rg16", "rg16_snorm", "r11g11b10f"]), *ALIKE],
+    more_codecs=codecs(["rgba8", "rgb10a2", "rg16f", "rg8_snorm", "rg16", "rg16_snorm", "r11g11b10f"]),
     stored=stored,
     # Whose comparison sees the shared functions that no other encoding of this list would notice.
     shared={
