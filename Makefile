@@ -1,7 +1,6 @@
 # make bench   set up what is missing, then measure the default suite
-# make test    set up what is missing, then run the tests that take little time
+# make test    set up what is missing, then run the tests that take little time; with ALL=1 the slow ones too
 # make slow    the other tests: whole runs, tables of the manual measured anew, exhaustive searches
-# make check   both at once, in less time than one after the other
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
@@ -10,20 +9,17 @@ BIN = .venv/bin
 # Modules are compiled once, not by each of the many processes that tests start, whatever the shell says.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: bench test slow check setup lint
+.PHONY: bench test slow setup lint
 
 bench: .venv/ready
 	$(BIN)/normalbench run
 
 # One more than two cores: a test that waits for a command or a browser leaves its core to another.
 test: .venv/ready
-	$(BIN)/python -m pytest -n 3
+	$(BIN)/python -m pytest -n 3 $(if $(ALL),-m "slow or not slow")
 
 slow: .venv/ready
 	$(BIN)/python -m pytest -n 3 -m slow
-
-check: .venv/ready
-	$(BIN)/python -m pytest -n 3 -m "slow or not slow"
 
 setup: .venv/ready
 
