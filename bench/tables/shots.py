@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,14 +35,25 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
     """
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
-        for step in steps:
-            shot: Shot = step.case
-            row, drawn = shot.bench.measure(shot.case)
-            if shot.images and drawn:
-                write(shot.images, row, drawn, shot.bench.reference(shot.case))
-            del drawn
-            give_back_what_is_freed()
-            tick(step.name)
-            yield [row]
+        writing: Future[list[Row]] | None = None
+        # The pictures of one step are written while the next is rendered, which leaves much of a core idle.
+        with ThreadPoolExecutor(1) as pool:
+            for step in steps:
+                shot: Shot = step.case
+                row, drawn = shot.bench.measure(shot.case)
+                pictures = (drawn, shot.bench.reference(shot.case)) if shot.images and drawn else None
+                if writing:
+                    yield writing.result()
+                writing = pool.submit(written, shot.images, row, pictures)
+                del drawn, pictures
+                give_back_what_is_freed()
+                tick(step.name)
+            if writing:
+                yield writing.result()
+
+    def written(images: Path | None, row: Row, pictures: tuple[Any, Any] | None) -> list[Row]:
+        if images and pictures:
+            write(images, row, *pictures)
+        return [row]
 
     return measure

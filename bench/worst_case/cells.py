@@ -8,6 +8,8 @@ relies on that: what is then measured is the error that this normal itself makes
 from __future__ import annotations
 
 import itertools
+import math
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +23,9 @@ MOST_CELLS, MOST_POINTS, MOST_NUMBERS = 2**24, 2**18, 2**16
 INSIDE, HALVINGS = 1e-9, 60
 CLIMBERS, CLIMBS = 2**11, 150
 COLUMNS, KEPT = 2**12, 2**8
+# Parts of a hull, and how far from the middle of their faces corners are: times the side of a square that is as large
+# as a corner's share of the sphere.
+BANDS, REACH = 16, 2.0
 
 
 def way_to_corners(exact: ExactCodec) -> str:
@@ -129,12 +134,44 @@ def _corners_of(exact: ExactCodec, tables: list[np.ndarray], cells: np.ndarray) 
 
 def _across_faces(exact: ExactCodec) -> np.ndarray:
     """The directions that are equally far from three codes next to each other: across the faces of the codes' hull."""
-    from scipy.spatial import ConvexHull
-
     numbers = [exact.codec.numbers(i) for i in range(exact.size)]
     code = np.stack([c.ravel() for c in np.meshgrid(*numbers, indexing="ij")])
-    directions = _distinct(exact.normals(code).round(12))
-    return ConvexHull(directions.T).equations[:, :3].T.copy()
+    return across_faces(_distinct(exact.normals(code).round(12)))
+
+
+def across_faces(directions: np.ndarray) -> np.ndarray:
+    """Of different directions, shape (3, count), those across the faces of their hull.
+
+    Bands of z are hulls of their own, for every core has one to find. What they give are faces of the whole hull. That
+    they give all of them is known from Euler's formula: a hull of n corners has 2 n - 4 triangles.
+    """
+    edges = np.linspace(-1.0, 1.0, BANDS + 1)
+    bands = zip(edges, (*edges[1:-1], np.inf), strict=False)
+    found = np.concatenate(list(on_all_cores(partial(_across_band, directions), bands)), axis=1)
+    is_whole = found.shape[1] == 2 * directions.shape[1] - 4
+    return found if is_whole else _hull(directions)[:3]
+
+
+def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarray:
+    """The directions in a band of z across those faces whose corners are near."""
+    reach = REACH * math.sqrt(4 * math.pi / directions.shape[1])
+    latitudes, (low, high) = np.arcsin(directions[2]), np.arcsin(np.minimum(band, 1.0))
+    is_near = (latitudes >= low - reach) & (latitudes <= high + reach)
+    try:
+        faces = _hull(directions[:, is_near])
+    except (RuntimeError, ValueError):  # too few corners for a hull, or all of them in one plane
+        return np.empty((3, 0))
+    # No corner that is nearer was left out: the face is one of the whole hull.
+    is_near = faces[3] <= -math.cos(reach)
+    return faces[:3, is_near & (faces[2] >= band[0]) & (faces[2] < band[1])]
+
+
+def _hull(directions: np.ndarray) -> np.ndarray:
+    """The triangles of a hull of directions, shape (4, count): their normals, and less the cosines of the angles from
+    these to the corners."""
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(directions.T).equations.T
 
 
 def _distinct(directions: np.ndarray) -> np.ndarray:

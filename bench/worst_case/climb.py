@@ -74,8 +74,10 @@ def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float
         starts: where to begin; the worst `count` of them are climbed from, a multiple of `ground.lanes`.
         first_sizes: the size of the first step of each round, in the error.
     """
+    starts = starts.best(count).filled(count)
     for size in first_sizes:
-        starts = _climb(ground, starts.best(count).filled(count), size).best(KEPT)
+        # A second block with the same starts would climb as the first one does.
+        starts = _climb(ground, starts, size).best(KEPT).filled(max(KEPT, ground.lanes))
     angle, moved, last = ground.degrees(starts.chords[0]), math.inf, starts.best(1)
     for _ in range(LAST_ROUNDS):
         last = _climb(ground, last.filled(ground.lanes), np.geomspace(1e-9, 1.0, ground.lanes)).best(1)

@@ -53,6 +53,9 @@ def unit(n: Vec3) -> Vec3:
     return Vec3(*(select((long > NEAR_AXIS) & (abs(c) < long), c * scale, c) for c in n))
 
 
+_unit = jax.jit(unit)
+
+
 class _Programs:
     """What is compiled of an encoding, for every fixed-point format of a kind: they are given its scales."""
 
@@ -138,7 +141,9 @@ class ExactCodec:
         like, self._scales = shared(codec.storage, codec.encoding.components, np.float64)
         self._programs = _compiled(codec.encoding, like, codec.rounding, is_half)
         self.codec, self.is_half, self.size = codec, is_half, self._programs.size
-        self.block = SHORT if codec.encoding.searches else BLOCK
+        # Precise rounding decodes four codes for each normal.
+        whole = BLOCK // 4 if codec.encoding.is_precise else BLOCK
+        self.block = SHORT if codec.encoding.searches else whole
 
     @property
     def free(self) -> list[int]:
@@ -213,7 +218,7 @@ class ExactCodec:
     def unit(self, n: np.ndarray) -> tuple[float, float, float]:
         """One normal, shape (3,), as `chords` takes it."""
         with jax.enable_x64(True):
-            x, y, z = (float(c) for c in unit(Vec3(*n)))
+            x, y, z = (float(c) for c in _unit(Vec3(*n)))
         return x, y, z
 
     def angle_deg(self, n: np.ndarray) -> float:

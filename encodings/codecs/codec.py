@@ -103,8 +103,10 @@ class Codec:
         every, levels = self.storage.numbers(component), self.encoding.levels_of(component)
         if not levels:
             return every
-        nearest = np.abs(every - np.linspace(-1.0, 1.0, levels)[:, None]).argmin(axis=1)
-        return every[nearest]
+        wanted = np.linspace(-1.0, 1.0, levels)
+        above = np.clip(np.searchsorted(every, wanted), 1, len(every) - 1)
+        is_above = every[above] - wanted < wanted - every[above - 1]
+        return every[above - ~is_above]
 
     def rounding_of(self, component: int) -> str:
         """How a component rounds: one of few values to the nearest, whatever the others do."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
 
 from ..gl.device import Device
 from ..gl.handles import Buffer, Texture
-from ..scenes.mesh import Mesh, tangents, wound
+from ..scenes.mesh import Mesh
 from ..scenes.scene import KINDS, LIGHT_KINDS, Light, Scene
 
 INSTANCES, ORDER, LIGHTS, MATERIALS = 0, 1, 2, 3
@@ -101,9 +102,7 @@ class SceneBuffers:
         return self._device.owned(self._moment, self._device.context.buffer(data.tobytes() or bytes(16)))
 
     def _upload_mesh(self, mesh: Mesh) -> tuple[Buffer, Buffer]:
-        vertices = np.concatenate([mesh.positions, mesh.normals, tangents(mesh), mesh.uv], axis=1)
-        given = vertices.astype(np.float32), wound(mesh).astype(np.int32)
-        corners, triangles = (self._device.context.buffer(data.tobytes() or bytes(16)) for data in given)
+        corners, triangles = (self._device.context.buffer(data.tobytes() or bytes(16)) for data in mesh.uploaded)
         return self._device.owned(self._stack, corners), self._device.owned(self._stack, triangles)
 
     def _instances(self, view: np.ndarray) -> np.ndarray:
@@ -218,12 +217,17 @@ def sun_matrix(scene: Scene) -> np.ndarray:
     return matrix
 
 
-def _bump_texture(device: Device, size: int = 256) -> Texture:
-    """A normal map, tiling: round pits, as slopes along u and v up to about 0.7."""
+def _bump_texture(device: Device) -> Texture:
+    return device.mipmapped(bumps())
+
+
+@cache
+def bumps(size: int = 256) -> np.ndarray:
+    """A normal map, tiling: round pits, as slopes along u and v up to about 0.7; float16 of shape (size, size, 2)."""
     u, v = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size)
     cells = 4
     x, y = (u * cells) % 1 - 0.5, (v * cells) % 1 - 0.5
     radius = np.hypot(x, y)
     ring = np.where(radius < 0.42, np.sin(np.pi * radius / 0.42), 0.0)
     slopes = 0.7 * np.stack([x, y], axis=-1) / np.maximum(radius, 1e-9)[..., None] * ring[..., None]
-    return device.mipmapped(slopes.astype(np.float16))
+    return slopes.astype(np.float16)

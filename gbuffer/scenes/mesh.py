@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -28,6 +29,15 @@ class Mesh:
     triangles: np.ndarray
     uv: np.ndarray
     authored: np.ndarray | None = None
+
+    @cached_property
+    def uploaded(self) -> tuple[np.ndarray, np.ndarray]:
+        """What a device is given, kept for further frames: vertices, float32, and triangles as `wound` has them, int32.
+
+        A vertex is its position, its normal, its tangent with the bitangent's sign, and its uv.
+        """
+        vertices = np.concatenate([self.positions, self.normals, tangents(self), self.uv], axis=1)
+        return vertices.astype(np.float32), wound(self).astype(np.int32)
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
         """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""

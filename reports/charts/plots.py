@@ -36,10 +36,15 @@ def drawn_off_screen() -> Any:
 def save(figure: Any, *files: tuple[Path, str]) -> None:
     """Write a figure to each path as its format, one of FORMATS, and be done with it. Raises OSError."""
     from matplotlib import pyplot
+    from matplotlib.backend_bases import get_registered_canvas_class
 
     try:
+        figure.dpi = DPI
         for path, ending in files:
-            figure.savefig(path, format=ending, dpi=DPI)
+            # savefig would draw everything once more, to nowhere, where it lays out or has laid out a figure.
+            canvas = get_registered_canvas_class(ending)(figure)
+            getattr(canvas, f"print_{ending}")(path)
+            figure.dpi = DPI
             # What is laid out once stays where it is.
             figure.set_layout_engine("none")
     finally:

@@ -86,7 +86,8 @@ def histogram_specs(rows: Sequence[Row]) -> list[Spec]:
     Args:
         rows: as `charts.histogram_chart` takes them.
     """
-    points = [point | {"line": _line_of(row, rows)} for row in rows for point in _outline(row)]
+    lines = [_line_of(row, rows) for row in rows]
+    points = [point | {"line": line} for row, line in zip(rows, lines, strict=True) for point in _outline(row)]
     choices = ["all", *map(str, sorted({row["bits"] for row in rows}))]
     bits = {"name": "bits", "value": "all", "bind": {"input": "select", "options": choices, "name": "Bits shown "}}
     x = {

@@ -20,6 +20,20 @@ def params(*given, marks=(), **named) -> list:
     return [pytest.param(codec, id=codec.name, marks=marks) for codec in codecs(*given, **named)]
 
 
+@pytest.mark.parametrize("where", ["rgb10a2", "rgba8_snorm", "rgba16f", "rgba16_snorm", "r11g11b10f"])
+@pytest.mark.parametrize("name", ["spherical_fibonacci", "signed_octahedral"])
+def test_a_number_of_few_values_has_those_nearest_to_it(name, where):
+    """Of a storage's numbers; of two that are as near the lower one."""
+    codec = Codec(ENCODINGS[name], STORAGES[where])
+    few = [i for i in range(codec.encoding.components) if codec.encoding.levels_of(i)]
+    assert few
+    for component in few:
+        every = codec.storage.numbers(component)
+        wanted = np.linspace(-1, 1, codec.encoding.levels_of(component))
+        expected = [every[np.abs(every - number).argmin()] for number in wanted]
+        np.testing.assert_array_equal(codec.numbers(component), expected)
+
+
 @pytest.mark.usefixtures("gl")
 def test_the_stereographic_scale_is_one_field_for_both_languages():
     """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""

@@ -34,6 +34,18 @@ def test_the_teapots_normals_point_out():
     assert np.all(np.sum(pot.normals[belly, :2] * pot.positions[belly, :2], axis=1) > 0)
 
 
+def test_what_a_device_is_given_of_a_mesh_is_made_once(monkeypatch):
+    """Position, normal, tangent and uv of each vertex; the next frame gives it the same."""
+    ball = shapes.sphere(2.0, 8, 4)
+    vertices, triangles = ball.uploaded
+    expected = np.concatenate([ball.positions, ball.normals, shapes.tangents(ball), ball.uv], axis=1)
+    np.testing.assert_array_equal(vertices, expected.astype(np.float32))
+    np.testing.assert_array_equal(triangles, shapes.wound(ball))
+    assert vertices.dtype == np.float32 and triangles.dtype == np.int32
+    monkeypatch.setattr(shapes, "tangents", None)
+    assert ball.uploaded[0] is vertices
+
+
 def test_patches_meet():
     """Where patches meet they share all four control points of the edge: along the profile and around it."""
     turned = control_points()[:24].reshape(6, 4, 4, 4, 3)

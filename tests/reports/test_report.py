@@ -343,6 +343,17 @@ def test_a_histogram_says_its_unit():
     plots.save(figure)
 
 
+def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
+    """And laid out in the first one."""
+    figure = charts.histogram_chart([quality_row("xy")])
+    drawn, draw = [], type(figure).draw
+    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or draw(self, renderer))
+    plots.save(figure, *((tmp_path / f"chart.{ending}", ending) for ending in ("svg", "png", "pdf")))
+    assert len(drawn) == 3 and drawn[1] == plots.DPI
+    with Image.open(tmp_path / "chart.png") as image:
+        assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
+
+
 def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
     row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
     figure = plots.lights_figure([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])

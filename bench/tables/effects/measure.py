@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
@@ -99,6 +101,8 @@ class Bench:
         self._device, self._repeats, self._rays, self._with_flip = device, repeats, rays, with_flip
         self._references: dict[Case, Drawn] = {}
         self._methods: dict[Case, Row] = {}
+        # Cases of one scene follow each other, and a head takes longer to make than to render.
+        self._scene = lru_cache(maxsize=1)(_made)
 
     def reference(self, case: Case) -> Drawn:
         """The frame of a case's reference."""
@@ -128,7 +132,7 @@ class Bench:
         return row, drawn
 
     def _drawn(self, case: Case) -> Drawn:
-        scene = case.maker.make(case.setting)
+        scene = self._scene(case.maker, case.setting)
         with rendering(self._device, case.pipeline, scene, case.plan) as made:
             made.draw()
             position, direction, *_ = made.gbuffer()
@@ -152,13 +156,17 @@ class Bench:
         return self._methods[case]
 
     def _by_rays(self, case: Case) -> Row:
-        scene = case.maker.make(case.setting)
+        scene = self._scene(case.maker, case.setting)
         try:
             found = method_error(self._device, case.effect, scene, case.plan.size, rays=self._rays)
         except MissingError as error:
             tell(f"method_rms stays empty: {error}")
             return {}
         return {"method_rms": found.rms, "method_mean": found.mean}
+
+
+def _made(maker: SceneMaker, setting: Setting) -> Scene:
+    return maker.make(setting)
 
 
 def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:

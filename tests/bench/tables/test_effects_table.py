@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.metrics.totals import psnr_db
 from normalbench.bench.options.effect_names import effects_named
 from normalbench.bench.results.measuring import Nothing, asked, measured
-from normalbench.bench.tables.effects.measure import drawn_at, in_order
+from normalbench.bench.tables.effects import work as effects_work
+from normalbench.bench.tables.effects.measure import Bench, drawn_at, in_order
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
@@ -85,6 +87,22 @@ def test_an_exact_layout_loses_nothing_and_more_bits_lose_less(rows):
     depth = by["linear/packed16"]
     assert depth["normal_max_deg"] == 0 and 0 < depth["effect_rms"] < by["rg8"]["effect_rms"]
     assert (depth["encoding"], depth["storage"], depth["normal_bits"]) == (None, None, None)
+
+
+def test_a_scene_is_made_once_for_all_rows_of_it(gl):
+    """Two codes and their reference: three frames of one scene."""
+    made = []
+
+    def room(setting):
+        made.append(setting)
+        return SCENES["room"].make(setting)
+
+    options = {"effect": EFFECT, "size": "96x72", "lights": 2, "storage": "rg8,rgb10a2", "depth": "none"}
+    cases = effects_work.cases(TABLES["effects"].options(**options, encoding="octahedral"), gl)
+    maker = replace(cases[0].maker, make=room)
+    bench = Bench(gl, repeats=0, rays=0, with_flip=False)
+    rows = [bench.measure(replace(case, maker=maker))[0] for case in cases]
+    assert [row["storage"] for row in rows] == ["rg8", "rgb10a2"] and made == [Setting(lights=2)]
 
 
 def test_times_are_of_the_effects_passes(rows):

@@ -11,7 +11,8 @@ from exact_codes import fibonacci, nearest_of, storage
 
 from normalbench.bench.normals.normal_sets import axes, sphere
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.worst_case import cells
+from normalbench.bench.worst_case import cells, climb
+from normalbench.bench.worst_case.climb import KEPT, WAYS, Ground, Starts, highest
 from normalbench.bench.worst_case.exact_codec import BLOCK, ExactCodec, ahead, degrees, unit
 from normalbench.bench.worst_case.search import spread, worst_case
 from normalbench.encodings.catalogue import ENCODINGS
@@ -151,6 +152,58 @@ def test_directions_that_are_there_twice_are_taken_once():
     directions = random.integers(-2, 3, (3, 500)).astype(float)
     found, expected = cells._distinct(directions), np.unique(directions, axis=1)
     assert found.shape == expected.shape and {*map(tuple, found.T)} == {*map(tuple, expected.T)}
+
+
+def uneven(count: int) -> np.ndarray:
+    """Directions that no z is left out of, all but one in a sector of 20 degrees."""
+    z, turn = np.random.default_rng(4).uniform([[-1], [0]], [[1], [np.pi / 9]], (2, count))
+    r = np.sqrt(1 - z * z)
+    return np.stack([*(r * [np.cos(turn), np.sin(turn)]), z])[:, np.argsort(z)]
+
+
+def three_rings(count: int) -> np.ndarray:
+    """Directions on three circles around z, the bands between them empty."""
+    z = np.repeat([-0.97, 0.0, 0.97], count)
+    turn = np.random.default_rng(5).uniform(0, 2 * np.pi, 3 * count)
+    r = np.sqrt(1 - z * z)
+    return np.stack([r * np.cos(turn), r * np.sin(turn), z])
+
+
+GIVEN = {"even": fibonacci(2000).T, "uneven": uneven(2000), "rings": three_rings(500)}
+
+
+@pytest.mark.parametrize("directions", GIVEN.values(), ids=GIVEN)
+def test_a_hull_in_bands_has_every_face(directions):
+    """Where directions lie far apart no band sees all corners of a face; then there is one hull."""
+    found, whole = cells.across_faces(directions), cells._hull(directions)[:3]
+    assert found.shape == whole.shape
+    found, whole = (side[:, np.lexsort(side.round(9))] for side in (found, whole))
+    assert found == pytest.approx(whole, abs=1e-9)
+
+
+def test_faces_are_found_in_bands_where_directions_are_even(monkeypatch):
+    """16 hulls of a part each, and none of the whole."""
+    seen, hull = [], cells._hull
+    monkeypatch.setattr(cells, "_hull", lambda directions: seen.append(directions.shape[1]) or hull(directions))
+    cells.across_faces(fibonacci(20000).T)
+    assert len(seen) == cells.BANDS and max(seen) < 20000 / 8
+
+
+def test_a_second_round_climbs_from_each_place_once(monkeypatch):
+    """A second block of the same starts would climb as the first one does."""
+    counts, climb_from = [], climb._climb_from
+    monkeypatch.setattr(climb, "_climb_from", lambda *args: counts.append(len(args[1].chords)) or climb_from(*args))
+    ways = np.geomspace(1e-3, 1.0, WAYS)[:, None] * (-1.0) ** np.arange(WAYS)[:, None]
+    ground = Ground(
+        chords=lambda places: -((places[0] - 1.0) ** 2),
+        around=lambda places, sizes, _: (places[0] + ways * sizes)[None],
+        errors=np.ones_like,
+        degrees=float,
+        lanes=KEPT,
+    )
+    found, _ = highest(ground, Starts(np.full(4 * KEPT, -1.0), np.zeros((1, 4 * KEPT))), 4 * KEPT, (1.0, 0.1))
+    assert found.places[0] == pytest.approx(1.0) and set(counts) == {KEPT}
+    assert len(counts) < 4 + 4, f"{len(counts)} blocks were climbed over"
 
 
 @pytest.mark.parametrize("is_half", [False, True])
