@@ -43,11 +43,10 @@ INFIX: Mapping[str, str] = MappingProxyType(
         "ne": "!=",
         "and": "&",
         "or": "|",
-        "shift_left": "<<",
     }
 )
 # Functions of <tgmath.h>, which chooses by type.
-CALLS: Mapping[str, str] = MappingProxyType({"abs": "fabs", "sqrt": "sqrt", "floor": "floor"})
+CALLS: Mapping[str, str] = MappingProxyType({"abs": "fabs", "ceil": "ceil", "floor": "floor", "sqrt": "sqrt"})
 # What gives its argument as it is.
 SAME = ("broadcast_in_dim", "optimization_barrier", "squeeze")
 # What a traced array holds; any number will do.
@@ -58,21 +57,23 @@ class NotElementwiseError(Exception):
     """A JAX function that cannot be written in C here, and which of its operations cannot."""
 
 
-def c_function(name: str, function: Callable[..., Any], *arguments: Any, is_wide: bool = False) -> str:
+def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
     """A JAX function as `void name(arguments..., *results)`.
 
     Args:
         name: what it is called in C.
-        function: of arrays and scalars, a pytree each; its results are a pytree.
+        function: of arrays, a pytree each; its results are a pytree of arrays. Numbers of Python in it have 64 bits, as
+            where rows are measured.
         arguments: like those of the function, with a NumPy type in place of each array.
-        is_wide: whether numbers of Python have 64 bits, as with `jax.enable_x64`.
 
     Raises:
         NotElementwiseError: for an operation that has no line of C, or that mixes elements.
     """
     shaped = jax.tree.map(lambda dtype: jax.ShapeDtypeStruct((LANES,), dtype), arguments)
-    with jax.enable_x64(is_wide):
+    with jax.enable_x64(True):
         traced = jax.make_jaxpr(function)(*shaped)
+    if any(aval.shape != (LANES,) for aval in traced.out_avals):
+        raise NotElementwiseError("a result of another shape")
     writer = _Writer()
     taken = [f"a{at}" for at in range(len(traced.in_avals))]
     results = writer.results(traced, taken)
@@ -96,7 +97,13 @@ def c_type(dtype: Any) -> str:
     return TYPES[name]
 
 
-def _literal(value: Any) -> str:
+class _Constant(str):
+    """A number in C, and what it is."""
+
+    value: float
+
+
+def _literal(value: Any) -> _Constant:
     """A number of NumPy in C, with its type."""
     value = np.asarray(value)
     if value.ndim:
@@ -107,7 +114,9 @@ def _literal(value: Any) -> str:
         said = "NAN" if np.isnan(value) else "-INFINITY" if value < 0 else "INFINITY"
     else:
         said = str(int(value))
-    return f"(({c_type(value.dtype)}){said})"
+    written = _Constant(f"(({c_type(value.dtype)}){said})")
+    written.value = value.item()
+    return written
 
 
 class _Writer:
@@ -139,6 +148,8 @@ class _Writer:
         return [self._kept(_type(equation.outvars[0].aval), _expression(equation, given))]
 
     def _kept(self, kind: str, expression: str) -> str:
+        if isinstance(expression, _Constant):
+            return expression
         name = f"t{len(self.lines)}"
         self.lines.append(f"const {kind} {name} = {expression};")
         return name
@@ -154,6 +165,8 @@ def _check_types(equation: Any) -> None:
 
 def _expression(equation: Any, given: Sequence[str]) -> str:
     operation = equation.primitive.name
+    if operation == "div" and equation.outvars[0].aval.dtype.kind != "f":
+        raise NotElementwiseError("a quotient of integers")  # by 0 it ends the process
     if operation in INFIX:
         return f"{given[0]} {INFIX[operation]} {given[1]}"
     if operation in CALLS and equation.outvars[0].aval.dtype.kind == "f":
@@ -166,6 +179,8 @@ def _expression(equation: Any, given: Sequence[str]) -> str:
 def _converted(equation: Any, value: str) -> str:
     """A conversion. To integers JAX keeps within their range, and NaN is 0; C leaves both open."""
     source, target = equation.invars[0].aval.dtype, equation.outvars[0].aval.dtype
+    if isinstance(value, _Constant) and target.kind != "b" and abs(value.value) < 2**31:
+        return _literal(np.asarray(value.value, source).astype(target))
     if source.kind == "f" and target.kind in "iu":
         bounds = np.iinfo(target).min, np.iinfo(target).max
         (low, least), (high, most) = ((_literal(source.type(b)), _literal(target.type(b))) for b in bounds)
@@ -193,12 +208,16 @@ def _limited(sign: str, equation: Any, value: str, other: str) -> str:
     return f"{value} {sign} {other} ? {value} : {other}"
 
 
-def _shifted(equation: Any, value: str, by: str) -> str:
-    """Zeros move in from above."""
+def _shifted(operator: str, kind: str, equation: Any, value: str, by: str) -> str:
+    """A shift. C leaves open what one by all bits or more gives.
+
+    Args:
+        kind: the kind of integers that C shifts so; others are taken for these.
+    """
     dtype = equation.outvars[0].aval.dtype
-    if dtype.kind == "u":
-        return f"{value} >> {by}"
-    return f"({c_type(dtype)})(({c_type('u' + dtype.name)}){value} >> {by})"
+    if not isinstance(by, _Constant) or not 0 <= by.value < 8 * dtype.itemsize:
+        raise NotElementwiseError("a shift by a number that is not known")
+    return f"({c_type(dtype)})(({c_type(kind + dtype.name.lstrip('u'))}){value} {operator} {by})"
 
 
 def _viewed(equation: Any, value: str) -> str:
@@ -223,7 +242,8 @@ OTHERS: Mapping[str, Callable[..., str]] = MappingProxyType(
         "not": _inverted,
         "round": _rounded,
         "select_n": _selected,
-        "shift_right_arithmetic": lambda _, value, by: f"{value} >> {by}",
-        "shift_right_logical": _shifted,
+        "shift_left": partial(_shifted, "<<", "u"),
+        "shift_right_arithmetic": partial(_shifted, ">>", ""),
+        "shift_right_logical": partial(_shifted, ">>", "u"),
     }
 )

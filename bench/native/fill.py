@@ -25,8 +25,8 @@ class Fill:
     """
 
     def __init__(self, made: Callable[..., Vec3], types: Sequence[np.dtype]):
-        function = c_function("made", made, LANE, *types, is_wide=True)
-        self._library = library(source("fill.c", function, [*map(c_type, types)]))
+        function = c_function("made", made, LANE, *types)
+        self._library = library(source("fill.c", function, [*map(c_type, types)]), "fill")
 
     def __call__(self, count: int, *given: int) -> Vec3:
         """The normals of numbers 0 to count - 1."""

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..machine.children import finished
 from ..machine.devices import processor_kind
 from ..output import cache as kept
 
@@ -24,7 +25,7 @@ HEADERS = ("stddef.h", "stdint.h", "string.h", "tgmath.h")
 VIEWED = """#define VIEWED(source, target, value) \\
     ({ source from_ = (value); target to_; memcpy(&to_, &from_, sizeof to_); to_; })
 """
-COMPILING_S = 60
+COMPILING_S = 30
 # From so many normals on it pays to compile, which takes a fifth of a second.
 LARGE = 2**22
 NONE = "no C compiler: install one that is called cc (Debian: gcc)"
@@ -64,23 +65,39 @@ def source(name: str, function: str, given: Sequence[str], **numbers: int) -> st
     return "\n".join((*lines, VIEWED, function, Path(__file__).with_name(name).read_text(encoding="utf-8")))
 
 
-@cache
-def library(source: str) -> ctypes.CDLL:
+def library(text: str, *functions: str) -> ctypes.CDLL:
     """C source, compiled.
+
+    Args:
+        text: the source.
+        functions: what it must define.
 
     Raises:
         NoCompilerError: it cannot be compiled here.
     """
+    made = _made(text, functions)
+    if isinstance(made, str):
+        raise NoCompilerError(made)
+    return made
+
+
+@cache
+def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
+    """A library, or why there is none: what failed is not tried again."""
     if not compiler():
-        raise NoCompilerError(NONE)
-    path = kept.folder() / "native" / f"{kept.key_of(source, *FLAGS, compiler(), *processor_kind())}.so"
-    if not kept.is_off() and _is_whole(path):
-        return _loaded(path)
-    with tempfile.TemporaryDirectory() as folder:
-        made = _compiled(source, Path(folder) / path.name)
-        if not kept.is_off():
-            _keep(made, path)
-        return _loaded(made)
+        return NONE
+    path = kept.folder() / "native" / f"{kept.key_of(text, *FLAGS, compiler(), *processor_kind())}.so"
+    try:
+        if not kept.is_off() and _is_whole(path):
+            return _loaded(path, functions)
+        with tempfile.TemporaryDirectory() as folder:
+            made = _compiled(text, Path(folder))
+            found = _loaded(made, functions)
+            if not kept.is_off():
+                _keep(made, path)
+            return found
+    except (NoCompilerError, OSError) as error:
+        return str(error)
 
 
 def _keep(made: Path, path: Path) -> None:
@@ -92,9 +109,11 @@ def _keep(made: Path, path: Path) -> None:
             (Path(folder) / path.name).replace(path)
 
 
-def _compiled(source: str, path: Path) -> Path:
+def _compiled(text: str, folder: Path) -> Path:
     """The library, followed by the digest of its bytes: linkers pass over what follows."""
-    _said(*FLAGS, "-x", "c", "-", "-o", str(path), "-lm", given=source)
+    written, path = folder / "library.c", folder / "library.so"
+    written.write_text(text, encoding="utf-8")
+    _said(*FLAGS, str(written), "-o", str(path), "-lm")
     data = path.read_bytes()
     path.write_bytes(data + hashlib.sha256(data).digest())
     return path
@@ -109,21 +128,32 @@ def _is_whole(path: Path) -> bool:
     return hashlib.sha256(data[:-DIGEST]).digest() == data[-DIGEST:]
 
 
-def _loaded(path: Path) -> ctypes.CDLL:
+def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
+    found = ctypes.CDLL(str(path))
+    if missing := [name for name in functions if not hasattr(found, name)]:
+        raise NoCompilerError(f"cc: {', '.join(missing)} is not in what it made")
+    return found
+
+
+# Set once the compiler did not end.
+_hangs: list[str] = []
+
+
+def _said(*arguments: str) -> str:
+    """What the C compiler prints. Raises NoCompilerError where it fails, and from then on where it did not end."""
+    if _hangs:
+        raise NoCompilerError(_hangs[0])
     try:
-        return ctypes.CDLL(str(path))
+        done = finished(["cc", *arguments], COMPILING_S)
+    except subprocess.TimeoutExpired as error:
+        _hangs.append(f"cc did not end within {COMPILING_S} s")
+        raise NoCompilerError(_hangs[0]) from error
     except OSError as error:
-        raise NoCompilerError(str(error)) from error
-
-
-def _said(*arguments: str, given: str = "") -> str:
-    try:
-        return subprocess.run(
-            ["cc", *arguments], input=given, capture_output=True, text=True, timeout=COMPILING_S, check=True
-        ).stdout
-    except (OSError, subprocess.SubprocessError) as error:
-        said = [*(getattr(error, "stderr", "") or "").splitlines(), str(error)]
-        raise NoCompilerError(f"cc: {next((line for line in said if 'error' in line), said[-1])}") from error
+        raise NoCompilerError(f"cc: {error}") from error
+    if done.returncode:
+        said = [*done.stderr.splitlines(), f"exit status {done.returncode}"]
+        raise NoCompilerError(f"cc: {next((line for line in said if 'error' in line), said[-1])}")
+    return done.stdout
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:

@@ -51,7 +51,7 @@ def _row() -> ctypes.CDLL:
         return squared, article, angle, *(jnp.asarray(one, jnp.int32) for one in (invalid, bins_of(angle, True)))
 
     function = c_function("errors_of", errors_of, FLOATS, FLOATS)
-    made = library(source("row.c", function, (), bins=BINS, block=BLOCK))
+    made = library(source("row.c", function, (), bins=BINS, block=BLOCK), "row", "moments", "in_bin")
     made.in_bin.restype = ctypes.c_size_t
     return made
 
@@ -71,7 +71,8 @@ class NativeMeter:
         types = [type(one)(*[FLOAT] * len(one)) for one in given]
         self._given = np.array([number for one in given for number in one], np.float64)
         function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
-        self._library = library(source("decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK))
+        text = source("decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
+        self._library = library(text, "decode")
         decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
         self._codec, self._row = ctypes.byref(_Codec(decode, address(self._given))), _row()
 

@@ -79,9 +79,27 @@ static float largest(const float *a) {
     return VIEWED(uint32_t, float, top);
 }
 
+// Numbers below the normal ones are 0, as for JAX and on GPUs; returns how the processor was set before.
+static unsigned flush(void) {
+#ifdef __SSE__
+    unsigned was = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(was | 0x8040);
+    return was;
+#else
+    return 0;
+#endif
+}
+
+static void set_back(unsigned was) {
+#ifdef __SSE__
+    __builtin_ia32_ldmxcsr(was);
+#endif
+}
+
 // Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins. The largest angle of each
 // block goes into `tops`.
 void row(const Codec *codec, const Chunk *chunk, double *figures, int64_t *counts, float *tops) {
+    unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
@@ -101,11 +119,13 @@ void row(const Codec *codec, const Chunk *chunk, double *figures, int64_t *count
         tops[first / BLOCK] = top;
         for (size_t k = 0; k < BLOCK; k++) counts[block.bin[k]]++;
     }
+    set_back(was);
 }
 
 // The normals of a bin among blocks whose largest angle is `least` or more: six numbers each into `found`, the normal
 // and its decode. Of those that are decoded as they were only the first is there. Returns how many there are.
 size_t in_bin(const Codec *codec, const Chunk *chunk, const float *tops, float least, int bin, float *found) {
+    unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
     size_t have = 0;
@@ -123,11 +143,13 @@ size_t in_bin(const Codec *codec, const Chunk *chunk, const float *tops, float l
             have++;
         }
     }
+    set_back(was);
     return have;
 }
 
 // Adds to figures[0] the squared errors of a chunk; the largest of them and what was there is in figures[1] then.
 void moments(const Codec *codec, const Chunk *chunk, double *figures) {
+    unsigned was = flush();
     float decoded[3][BLOCK], squared[BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
         codec->decode(chunk->plane, codec->given, first, decoded);
@@ -142,4 +164,5 @@ void moments(const Codec *codec, const Chunk *chunk, double *figures) {
         figures[0] += summed(squared);
         figures[1] = top > figures[1] ? top : figures[1];
     }
+    set_back(was);
 }

@@ -143,7 +143,9 @@ class Codec:
 
     def round_trip(self, n: Vec3, view: Vec3) -> Vec3:
         """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised."""
-        return self.encoding.decode(self.stored(n, view), view)
+        decoded = self.encoding.decode(self.stored(n, view), view)
+        # A component that is a number of Python, or of another type, becomes one for each normal.
+        return Vec3(*(jnp.broadcast_to(jnp.asarray(c, n.z.dtype), jnp.shape(n.z)) for c in decoded))
 
 
 def _nearer(a, b):

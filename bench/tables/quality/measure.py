@@ -259,7 +259,10 @@ def merged(case: Case, rows: Sequence[Row]) -> Row:
     total = Total()
     for row in rows:
         total.add_total(total_of(row[TOTAL]))
-    return _row(case, total, {name: value for name, value in rows[0].items() if name != TOTAL})
+    how = {name: value for name, value in rows[0].items() if name != TOTAL}
+    # A command that goes on where there is another compiler, or none, mixes them.
+    compilers = dict.fromkeys(name for row in rows if (name := row.get("compiled_by")))
+    return _row(case, total, how | {"compiled_by": "; ".join(compilers) or None})
 
 
 def _described(case: Case) -> Row:

@@ -22,7 +22,8 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
     best: dict[tuple, float] = {}
     for row in rows:
         best[_codec(row)] = min(best.get(_codec(row), math.inf), _error(row))
-    return sorted(rows, key=lambda row: (sets.index(row["normals"]), row["bits"], best[_codec(row)], _codec(row)))
+    # A row that a worker was lost for has no bits.
+    return sorted(rows, key=lambda row: (sets.index(row["normals"]), row["bits"] or 0, best[_codec(row)], _codec(row)))
 
 
 def _codec(row: Row) -> tuple:
@@ -46,6 +47,8 @@ def _group(row: Row) -> tuple:
 
 def _with_limit(group: list[Row], shared: Row) -> Iterator[Row]:
     yield from group
+    if group[0]["bits"] is None:
+        return
     bits, domains = group[0]["bits"], {row["domain"] for row in group}
     domain = "hemisphere" if domains == {"hemisphere"} else "sphere"
     least = code_limit(2**bits, HEMISPHERE if domain == "hemisphere" else SPHERE)

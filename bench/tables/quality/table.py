@@ -179,7 +179,7 @@ COLUMNS = (
     shared.ROUNDED_BY,
     Column(
         "compiled_by",
-        "What compiled the JAX functions: XLA or, from 4194304 normals on, this machine's C compiler.",
+        "What compiled the JAX functions: XLA or, of 4194304 pixels or normals and more, this machine's C compiler.",
         HOW,
         shown=False,
     ),

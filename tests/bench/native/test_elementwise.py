@@ -35,7 +35,7 @@ def by_c(function, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     kind = jax.eval_shape(function, a, b).dtype
     written = c_function("function", function, a.dtype, b.dtype) + LOOP
     text = source("fill.c", written, [], FROM=c_type(a.dtype), TO=c_type(kind))
-    made = library(text.partition("\nvoid fill")[0])
+    made = library(text.partition("\nvoid fill")[0], "each")
     found = np.empty(len(a), kind)
     made.each(ctypes.c_size_t(len(a)), *map(address, (a, b, found)))
     return found
@@ -50,6 +50,7 @@ FUNCTIONS = {
     "quotient": lambda a, b: a / b,
     "round, to even": lambda a, _: jnp.round(a),
     "floor": lambda a, _: jnp.floor(a + 0.5),
+    "cut off": lambda a, _: jnp.trunc(a),
     "magnitude and root": lambda a, _: jnp.sqrt(abs(a)),
     "negative": lambda a, _: -a,
     "larger": maximum,
@@ -116,7 +117,13 @@ def test_integers_are_those_of_jax(function):
         (lambda a: a.astype(jnp.complex64), "numbers of type complex64"),
         (lambda a: jax.lax.round(a), "rounding away from zero"),
         (lambda a: jax.lax.select_n(a.astype(jnp.int32), a, a, a), "a choice of more than two"),
-        (lambda a: a.view(jnp.uint16), "a view of another size"),
+        (lambda a: jax.lax.bitcast_convert_type(a, jnp.uint16).sum(axis=1), "a view of another size"),
+        (lambda a: a.astype(jnp.int32) // 3, "a quotient of integers|sign"),
+        (lambda a: jax.lax.div(a.view(jnp.uint32), a.view(jnp.uint32)), "a quotient of integers"),
+        (lambda a: a.view(jnp.int32) >> a.astype(jnp.int32), "a shift by a number that is not known"),
+        (lambda a: a.view(jnp.uint32) << jnp.uint32(32), "a shift by a number that is not known"),
+        (lambda _: jnp.float32(1.0), "a result of another shape"),
+        (lambda a: a[:, None], "a result of another shape"),
     ],
 )
 def test_what_has_no_line_of_c_is_named(function, said):

@@ -18,8 +18,20 @@ def folder(tmp_path, monkeypatch):
     return tmp_path / "normalbench" / "native"
 
 
-def made() -> ctypes.CDLL:
-    return native.library.__wrapped__(SOURCE)
+@pytest.fixture(autouse=True)
+def forgotten(monkeypatch):
+    """What another test compiled, and whether a compiler was found."""
+    native._made.cache_clear()
+    native.compiler.cache_clear()
+    monkeypatch.setattr(native, "_hangs", [])
+    yield
+    native._made.cache_clear()
+    native.compiler.cache_clear()
+
+
+def made(text: str = SOURCE) -> ctypes.CDLL:
+    native._made.cache_clear()
+    return native.library(text, "answer")
 
 
 @needs_c
@@ -58,10 +70,44 @@ def test_a_folder_that_cannot_be_written_is_no_obstacle(folder):
 @needs_c
 def test_what_does_not_compile_says_why():
     with pytest.raises(native.NoCompilerError, match=r"^cc: .*error"):
-        native.library.__wrapped__("int answer(void) { return }")
+        made("int answer(void) { return }")
 
 
 def test_without_a_compiler_there_is_none(monkeypatch):
-    monkeypatch.setattr(native, "compiler", lambda: "")
+    monkeypatch.setattr(native.shutil, "which", lambda _: None)
     with pytest.raises(native.NoCompilerError, match=r"^no C compiler: install"):
         made()
+
+
+ODD = {
+    "prints what is not text": ("printf '\\377\\376'; exit 1", "^cc: "),
+    "makes nothing": ("exit 0", "No such file"),
+    "makes no library": ('for word; do :; done; while [ "$1" != -o ]; do shift; done; echo x > "$2"', "library.so"),
+    "makes another library": (
+        'echo "int other;" > o.c; exec {real} -shared -fPIC o.c -o "${{@: -2:1}}"',
+        "answer is not in",
+    ),
+    "does not end": ("sleep 60", "did not end within"),
+}
+
+
+@needs_c
+@pytest.mark.parametrize("name", ODD)
+def test_an_odd_compiler_is_as_none(folder, tmp_path, monkeypatch, name):
+    """Its failure is one line, nothing is kept, and a compiler that does not end is not asked again."""
+    script, said = ODD[name]
+    real, calls = native.shutil.which("cc"), tmp_path / "calls"
+    (tmp_path / "bin").mkdir()
+    body = f'echo >> {calls}; [ "$1" = --version ] && echo odd && exit; cd {tmp_path}; {script.format(real=real)}'
+    (tmp_path / "bin" / "cc").write_text(f"#!/bin/bash\n{body}\n")
+    (tmp_path / "bin" / "cc").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:/usr/bin:/bin")
+    monkeypatch.setattr(native, "COMPILING_S", 1)
+    with pytest.raises(native.NoCompilerError, match=said):
+        made()
+    asked = calls.read_text().count("\n")
+    for text in (SOURCE, SOURCE + "\n"):
+        with pytest.raises(native.NoCompilerError):
+            native.library(text, "answer")
+    assert not [*folder.glob("*.so")]
+    assert calls.read_text().count("\n") == asked + (name != "does not end")

@@ -154,6 +154,8 @@ def test_a_row_of_a_large_set_says_who_compiled_it(monkeypatch):
     assert rows == [quality.measure(case) for case in cases]
     halves = [replaced(cases[0], range(4)), replaced(cases[0], range(4, 5))]
     assert quality.merged(cases[0], [quality.measure(half) for half in halves]) == rows[0]
+    other = quality.measure(halves[1]) | {"compiled_by": "XLA"}
+    assert quality.merged(cases[0], [quality.measure(halves[0]), other])["compiled_by"] == f"{library.compiler()}; XLA"
     monkeypatch.setattr(quality, "LARGE", 2**40)
     usual = quality.measure(cases[0])
     assert usual["compiled_by"] == "XLA" and usual["psnr_db"] == pytest.approx(rows[0]["psnr_db"], abs=1e-6)
@@ -172,3 +174,35 @@ def test_moments_are_the_sum_and_the_largest_of_squared_errors():
     total, largest = NativeMeter(lambda _, view: view).moments([*normals.loads()])
     squared = np.sum((n.astype(np.float64) - view) ** 2, axis=1)
     assert total == pytest.approx(squared.sum(), rel=1e-6) and largest == pytest.approx(squared.max(), rel=1e-5)
+
+
+def test_numbers_below_the_normal_ones_are_0():
+    """As XLA has them; and the processor is left as it was."""
+    n = random_directions(3000)
+    normals = from_arrays("", "", n, n, np.ones(len(n), bool))
+    found, expected = both(lambda n, _: n * 1e-38 * 1e-3 * 1e38 * 1e3, normals)
+    assert found.angle_mean_deg == expected.angle_mean_deg == 180.0
+    assert np.float32(1e-45) * np.float32(1) > 0
+
+
+@pytest.mark.parametrize("kind", [jnp.float16, jnp.float64, jnp.int32, None])
+def test_decodes_become_numbers_of_one_type(kind):
+    """A decode with a component of another type, or one for all normals, is measured by both compilers."""
+    usual = ENCODINGS["xyz"]
+
+    def decode(e, _):
+        return Vec3(e.x, e.y, 1 if kind is None else (e.z * 0.0 + 1.0).astype(kind))
+
+    codec = Codec(replace_function(usual, decode), STORAGES["rgba16"])
+    totals = measure_together(
+        [quality.meter_of(codec, c) for c in (True, False)], sphere(CHUNK).loads(), lambda _: None
+    )
+    found, expected = (statistics(CHUNK, total) for total in totals)
+    assert_same(found, expected)
+    assert found.invalid == 0 and 30 < found.angle_mean_deg < 60
+
+
+def replace_function(encoding, decode):
+    from dataclasses import replace
+
+    return replace(encoding, name="odd", decode=decode)
