@@ -245,7 +245,7 @@ def measure(case: Case, tick: Tick = idle) -> Row:
     return _row(case, total, found.how)
 
 
-def _row(case: Case, total: Total, how: Mapping[str, str]) -> Row:
+def _row(case: Case, total: Total, how: Mapping[str, str | None]) -> Row:
     """A row of the table; of a part of a set what `merged` makes one of."""
     if case.normal_set.of:
         return {TOTAL: total.as_text(), **how}
