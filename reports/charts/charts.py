@@ -19,6 +19,7 @@ Row = dict[str, Any]
 LEAST_DEG = 1e-4
 # Perceptually uniform, and the same order to those who do not see all colours.
 SPHERE_COLOURS = "viridis"
+MARKS = "osD^vPX*<>"
 FRAME, EACH, SPREAD = "ms_frame", "ms_frame_each", "_spread"
 
 
@@ -113,22 +114,26 @@ def image_chart(rows: Sequence[Row]) -> Any:
 
 
 def effects_chart(rows: Sequence[Row]) -> Any:
-    """What an effect makes of an error in the normals: a point for each codec, a line of points for each effect.
+    """What an effect makes of an error in the normals: a colour for each effect, a mark for each codec.
 
     Args:
         rows: of the effects table: effect, encoding, storage, normal_mean_deg, effect_psnr_db.
     """
-    _, axis = _figure((8.2, 5.0))
-    for at, effect in enumerate(dict.fromkeys(row["effect"] for row in rows)):
-        part = sorted((row for row in rows if row["effect"] == effect), key=lambda row: row["normal_mean_deg"])
-        places, levels = ([row[name] for row in part] for name in ("normal_mean_deg", "effect_psnr_db"))
-        axis.plot(places, levels, color=COLOURS[at % len(COLOURS)], marker="o", markersize=5, linewidth=1, label=effect)
+    _, axis = _figure((8.2, 5.4))
+    effects, codecs = (list(dict.fromkeys(of)) for of in ((row["effect"] for row in rows), map(codec_label, rows)))
+    colours = {effect: COLOURS[at % len(COLOURS)] for at, effect in enumerate(effects)}
+    marks = {codec: MARKS[at % len(MARKS)] for at, codec in enumerate(codecs)}
+    for row in rows:
+        place = row["normal_mean_deg"], row["effect_psnr_db"]
+        axis.scatter(*place, color=colours[row["effect"]], marker=marks[codec_label(row)], s=32)
+    shown = [axis.scatter([], [], color=colours[effect], marker="s", label=effect) for effect in effects]
+    shown += [axis.scatter([], [], color="#666666", marker=marks[codec], label=codec) for codec in codecs]
     axis.set_xscale("log")
     axis.xaxis.set_major_formatter("{x:g}")
     axis.set_xlabel("mean angle of the normals that it read, degrees")
     axis.set_ylabel("PSNR of the effect's own image, dB")
     axis.grid(alpha=0.3)
-    axis.figure.legend(loc="outside upper center", ncols=4, fontsize=8, frameon=False)
+    axis.figure.legend(handles=shown, loc="outside upper center", ncols=4, fontsize=8, frameon=False)
     return axis.figure
 
 

@@ -171,7 +171,7 @@ def image_specs(rows: Sequence[Row]) -> list[Spec]:
 
 
 def effects_specs(rows: Sequence[Row]) -> list[Spec]:
-    """What an effect makes of an error in the normals: a point for each codec, a line for each effect.
+    """What an effect makes of an error in the normals: a point for each codec, a colour for each effect.
 
     Args:
         rows: as `charts.effects_chart` takes them.
@@ -194,8 +194,8 @@ def effects_specs(rows: Sequence[Row]) -> list[Spec]:
     points: Spec = {"mark": {"type": "point", "filled": True, "size": 55}}
     points["encoding"] = {"opacity": if_lit(1, 0.2), "tooltip": tooltip}
     encoding = {"x": x, "y": y, "color": _named("effect")}
-    said = "PSNR of each effect's own image over the mean angle of the normals, a line for each effect."
-    return [spec(found, said, encoding=encoding, layer=[_line(strokeWidth=1, opacity=0.5), points], height=380)]
+    said = "PSNR of each effect's own image over the mean angle of the normals, a point for each codec."
+    return [spec(found, said, encoding=encoding, layer=[points], height=380)]
 
 
 def mix_specs(rows: Sequence[Row]) -> list[Spec]:
