@@ -190,7 +190,9 @@ def test_the_make_targets_exist():
     makefile = (ROOT / "Makefile").read_text()
     assert {"make bench", "make test"} <= set(MAKE)
     for line in MAKE:
-        assert f"\n{line.removeprefix('make ')}:" in makefile
+        _, target, *variables = line.split()
+        assert f"\n{target}:" in makefile
+        assert all(f"$({variable.partition('=')[0]})" in makefile for variable in variables)
 
 
 def test_what_pip_installs_exists():
