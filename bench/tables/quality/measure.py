@@ -43,6 +43,8 @@ from .table import TABLE
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
+# How many chunks the C compiler's code measures in turn: with fewer, what Python does for each shows.
+AT_ONCE = 4
 # What the row of a part has in place of figures.
 TOTAL = "total"
 # What an unused channel is drawn as: -1 is black.
@@ -83,7 +85,7 @@ class Case:
     @property
     def at_once(self) -> int:
         """How many chunks are measured without being asked for the next."""
-        return 4 if self.is_compiled else 1
+        return AT_ONCE if self.is_compiled else 1
 
     @property
     def domain(self) -> str | None:

@@ -11,6 +11,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from ...native.library import NONE
+
 SOURCE = Path(__file__).with_name("row.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-fPIC", "-w")
 # Not with -ffast-math: that links a start-up which makes the whole process take small numbers for 0 (GCC bug 55522).
@@ -25,7 +27,7 @@ def missing(name: str) -> str:
     """Why there are no figures of C for an encoding; empty where there are."""
     if name not in ENCODINGS:
         return f"{SOURCE.name} has no {name}"
-    return "" if shutil.which("cc") else "no C compiler: install one that is called cc (Debian: gcc)"
+    return "" if shutil.which("cc") else NONE
 
 
 def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callable[[], np.ndarray]:
@@ -51,12 +53,6 @@ def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callabl
         return figures
 
     return run
-
-
-def compiler() -> str:
-    """What the C compiler calls itself."""
-    said = subprocess.run(["cc", "--version"], capture_output=True, text=True, timeout=COMPILING_S, check=False)
-    return (said.stdout.splitlines() or ["cc"])[0]
 
 
 def _library(name: str) -> ctypes.CDLL:

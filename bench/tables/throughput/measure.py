@@ -21,6 +21,7 @@ from ...codecs.user_encodings import NoTwinError
 from ...machine.cores import on_all_cores
 from ...metrics.meter import in_groups
 from ...metrics.moments import FAST_BLOCK, squared_errors
+from ...native.library import compiler
 from ...native.meter import NativeMeter
 from ...normals.directions import CORES, Input, make_input
 from ..quality import measure as quality
@@ -144,4 +145,4 @@ def measure(case: Case) -> Row:
     found["share_of_reading"] = rate / reading if reading else None
     others = dict(zip(("c", "numpy", "numpy_blocked"), [*(theirs or [None]), *by_numpy], strict=False))
     ratios = {f"times_{name}": rate / other for name, other in others.items() if other}
-    return row | found | others | ratios | {"compiler": c_baseline.compiler() if in_c else None}
+    return row | found | others | ratios | {"compiler": compiler() if in_c else None}

@@ -14,7 +14,7 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
 
 needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-FLOAT, INT, UINT = (np.dtype(name) for name in ("float32", "int32", "uint32"))
+FLOAT = np.dtype(np.float32)
 LOOP = """
 void each(size_t count, const FROM *a, const FROM *b, TO *to) {
     for (size_t k = 0; k < count; k++) function(a[k], b[k], to + k);

@@ -1,5 +1,7 @@
 """Rows that the C compiler's code measures: those of XLA's code, whatever the set and the decodes are like."""
 
+from dataclasses import replace
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -162,8 +164,6 @@ def test_a_row_of_a_large_set_says_who_compiled_it(monkeypatch):
 
 
 def replaced(case, chunks: range):
-    from dataclasses import replace
-
     return replace(case, normal_set=replace(case.normal_set, of=chunks))
 
 
@@ -188,21 +188,14 @@ def test_numbers_below_the_normal_ones_are_0():
 @pytest.mark.parametrize("kind", [jnp.float16, jnp.float64, jnp.int32, None])
 def test_decodes_become_numbers_of_one_type(kind):
     """A decode with a component of another type, or one for all normals, is measured by both compilers."""
-    usual = ENCODINGS["xyz"]
 
     def decode(e, _):
         return Vec3(e.x, e.y, 1 if kind is None else (e.z * 0.0 + 1.0).astype(kind))
 
-    codec = Codec(replace_function(usual, decode), STORAGES["rgba16"])
+    codec = Codec(replace(ENCODINGS["xyz"], name="odd", decode=decode), STORAGES["rgba16"])
     totals = measure_together(
         [quality.meter_of(codec, c) for c in (True, False)], sphere(CHUNK).loads(), lambda _: None
     )
     found, expected = (statistics(CHUNK, total) for total in totals)
     assert_same(found, expected)
     assert found.invalid == 0 and 30 < found.angle_mean_deg < 60
-
-
-def replace_function(encoding, decode):
-    from dataclasses import replace
-
-    return replace(encoding, name="odd", decode=decode)
