@@ -1155,8 +1155,8 @@ FAULTS = (
         "c-worst-from-the-first-chunk",
         BENCH,
         "lost row",
-        "        for chunk in chunks:\n            if chunk.tops.max() >= least:",
-        "        for chunk in chunks[:1]:\n            if chunk.tops.max() >= least:",
+        "for (const Chunk *chunk = chunks; chunk < chunks + number; chunk++)",
+        "for (const Chunk *chunk = chunks; chunk < chunks + 1; chunk++)",
         "test_native_rows.py",
     ),
     Fault(

@@ -20,7 +20,7 @@ from .library import address, compiler, library, source
 FLOAT = np.dtype(np.float32)
 FLOATS = Vec3(FLOAT, FLOAT, FLOAT)
 # Normals that are measured at once.
-BLOCK = 1024
+BLOCK = 256
 
 
 class _Codec(ctypes.Structure):
@@ -30,15 +30,33 @@ class _Codec(ctypes.Structure):
 
 
 class _Chunk(ctypes.Structure):
-    """What row.c calls so, of planes that are held as long as it is."""
+    """What row.c calls so."""
 
-    _fields_ = (("planes", ctypes.c_void_p * 6), ("covered", ctypes.c_void_p), ("count", ctypes.c_size_t))
+    _fields_ = (
+        ("planes", ctypes.c_void_p * 6),
+        ("covered", ctypes.c_void_p),
+        ("tops", ctypes.c_void_p),
+        ("count", ctypes.c_size_t),
+    )
 
-    def __init__(self, chunk: Any):
-        self._held = [*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))]
-        *planes, covered = (array.__array_interface__["data"][0] for array in self._held)
-        super().__init__((ctypes.c_void_p * 6)(*planes), covered, self._held[0].size)
-        self.tops = np.empty(self.count // BLOCK, np.float32)
+
+class _Chunks:
+    """Chunks for row.c, all in one call: between calls a thread waits for Python's lock.
+
+    Attributes:
+        given: what its functions take of them.
+    """
+
+    def __init__(self, chunks: Sequence[Any]):
+        self._held = [[*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))] for chunk in chunks]
+        counts = [planes[0].size for planes in self._held]
+        self._tops = np.empty(sum(counts) // BLOCK, np.float32)
+        made, at = (_Chunk * len(chunks))(), self._tops.ctypes.data
+        for one, (*planes, covered), count in zip(made, self._held, counts, strict=True):
+            one.planes[:] = [plane.ctypes.data for plane in planes]
+            one.covered, one.tops, one.count = covered.ctypes.data, at, count
+            at += count // BLOCK * self._tops.itemsize
+        self.given = made, ctypes.c_size_t(len(chunks))
 
 
 @cache
@@ -84,28 +102,22 @@ class NativeMeter:
     def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:  # noqa: ARG002
         """The statistics of chunks, as `Meter.parts` gives them; JAX's device is of no concern."""
         figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.int64)
-        chunks = [_Chunk(load()) for load in loads]
-        for chunk in chunks:
-            self._row.row(self._codec, ctypes.byref(chunk), *map(address, (figures, counts, chunk.tops)))
+        chunks = _Chunks([load() for load in loads])
+        self._row.row(self._codec, *chunks.given, address(figures), address(counts))
         found = Figures(*figures.tolist())
-        worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest)
+        worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest, counts)
         return [(found, counts, worst)]
 
     def moments(self, loads: Sequence[Load]) -> tuple[float, float]:
         """The sum and the largest of |n - n'|^2 of chunks, and nothing else."""
-        figures = np.zeros(2)
-        for chunk in (_Chunk(load()) for load in loads):
-            self._row.moments(self._codec, ctypes.byref(chunk), address(figures))
+        figures, chunks = np.zeros(2), _Chunks([load() for load in loads])
+        self._row.moments(self._codec, *chunks.given, address(figures))
         return float(figures[0]), float(figures[1])
 
-    def _worst(self, chunks: Sequence[_Chunk], largest: float) -> Worst | None:
+    def _worst(self, chunks: _Chunks, largest: float, counts: np.ndarray) -> Worst | None:
         """The normal with the largest angle, among those of the highest bin; None where none counts."""
         number = bin_of(largest)
-        least, some = lower_edge(number), [np.empty((0, 6), np.float32)]
-        for chunk in chunks:
-            if chunk.tops.max() >= least:
-                rows = np.empty((chunk.count, 6), np.float32)
-                given = address(chunk.tops), ctypes.c_float(least), number, address(rows)
-                some.append(rows[: self._row.in_bin(self._codec, ctypes.byref(chunk), *given)])
-        found = np.concatenate(some)
-        return worst_of(found[:, :3], found[:, 3:])
+        found = np.empty((counts[number], 6), np.float32)
+        least = ctypes.c_float(lower_edge(number))
+        have = self._row.in_bin(self._codec, *chunks.given, least, number, address(found))
+        return worst_of(found[:have, :3], found[:have, 3:])

@@ -1,4 +1,4 @@
-// The figures of a row over a chunk of normals. Python writes what comes before: `errors_of`, of one normal and its
+// The figures of a row over chunks of normals. Python writes what comes before: `errors_of`, of one normal and its
 // decode; BINS, of the histogram; BLOCK, how many normals are measured at once, so that what is computed of them stays in
 // the first-level cache.
 
@@ -14,10 +14,12 @@ typedef struct {
     const double *given;
 } Codec;
 
-// Planes of normals and of view positions, and which of them count; `count` is a multiple of BLOCK.
+// Planes of normals and of view positions, and which of them count; `count` is a multiple of BLOCK. `tops` has the
+// largest angle of each block once the chunk is measured.
 typedef struct {
     const float *plane[6];
     const _Bool *covered;
+    float *tops;
     size_t count;
 } Chunk;
 
@@ -96,14 +98,19 @@ static void set_back(unsigned was) {
 #endif
 }
 
-// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins. The largest angle of each
-// block goes into `tops`.
-void row(const Codec *codec, const Chunk *chunk, double *figures, int64_t *counts, float *tops) {
-    unsigned was = flush();
+// Has the memory fetch the normals of the next block while this one is computed: a line of the cache holds 16 numbers.
+static void fetch_next(const Chunk *chunk, size_t first) {
+    if (first + BLOCK == chunk->count) return;
+    for (int c = 0; c < 3; c++)
+        for (size_t k = first + BLOCK; k < first + 2 * BLOCK; k += 16) __builtin_prefetch(chunk->plane[c] + k);
+}
+
+static void add(const Codec *codec, const Chunk *chunk, double *figures, int64_t *counts) {
     Block block;
     float decoded[3][BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
         int32_t article = 0, invalid = 0;
+        fetch_next(chunk, first);
         measure(codec, chunk, first, decoded, &block);
         for (size_t k = 0; k < BLOCK; k++) {
             article += (int32_t)block.article[k];
@@ -116,40 +123,45 @@ void row(const Codec *codec, const Chunk *chunk, double *figures, int64_t *count
         figures[3] += summed_squares(block.angle);
         figures[4] += invalid;
         figures[5] = top > figures[5] ? top : figures[5];
-        tops[first / BLOCK] = top;
+        chunk->tops[first / BLOCK] = top;
         for (size_t k = 0; k < BLOCK; k++) counts[block.bin[k]]++;
     }
+}
+
+// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins.
+void row(const Codec *codec, const Chunk *chunks, size_t number, double *figures, int64_t *counts) {
+    unsigned was = flush();
+    for (size_t c = 0; c < number; c++) add(codec, chunks + c, figures, counts);
     set_back(was);
 }
 
 // The normals of a bin among blocks whose largest angle is `least` or more: six numbers each into `found`, the normal
 // and its decode. Of those that are decoded as they were only the first is there. Returns how many there are.
-size_t in_bin(const Codec *codec, const Chunk *chunk, const float *tops, float least, int bin, float *found) {
+size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float least, int bin, float *found) {
     unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
     size_t have = 0;
     _Bool has_same = 0;
-    for (size_t first = 0; first < chunk->count; first += BLOCK) {
-        if (tops[first / BLOCK] < least) continue;
-        measure(codec, chunk, first, decoded, &block);
-        for (size_t k = 0; k < BLOCK; k++) {
-            if (block.bin[k] != bin) continue;
-            float *to = found + 6 * have;
-            for (int c = 0; c < 3; c++) to[c] = chunk->plane[c][first + k], to[3 + c] = decoded[c][k];
-            _Bool is_same = to[0] == to[3] && to[1] == to[4] && to[2] == to[5];
-            if (is_same && has_same) continue;
-            has_same |= is_same;
-            have++;
+    for (const Chunk *chunk = chunks; chunk < chunks + number; chunk++)
+        for (size_t first = 0; first < chunk->count; first += BLOCK) {
+            if (chunk->tops[first / BLOCK] < least) continue;
+            measure(codec, chunk, first, decoded, &block);
+            for (size_t k = 0; k < BLOCK; k++) {
+                if (block.bin[k] != bin) continue;
+                float *to = found + 6 * have;
+                for (int c = 0; c < 3; c++) to[c] = chunk->plane[c][first + k], to[3 + c] = decoded[c][k];
+                _Bool is_same = to[0] == to[3] && to[1] == to[4] && to[2] == to[5];
+                if (is_same && has_same) continue;
+                has_same |= is_same;
+                have++;
+            }
         }
-    }
     set_back(was);
     return have;
 }
 
-// Adds to figures[0] the squared errors of a chunk; the largest of them and what was there is in figures[1] then.
-void moments(const Codec *codec, const Chunk *chunk, double *figures) {
-    unsigned was = flush();
+static void add_squared(const Codec *codec, const Chunk *chunk, double *figures) {
     float decoded[3][BLOCK], squared[BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
         codec->decode(chunk->plane, codec->given, first, decoded);
@@ -164,5 +176,11 @@ void moments(const Codec *codec, const Chunk *chunk, double *figures) {
         figures[0] += summed(squared);
         figures[1] = top > figures[1] ? top : figures[1];
     }
+}
+
+// Adds to figures[0] the squared errors of chunks; the largest of them and what was there is in figures[1] then.
+void moments(const Codec *codec, const Chunk *chunks, size_t number, double *figures) {
+    unsigned was = flush();
+    for (size_t c = 0; c < number; c++) add_squared(codec, chunks + c, figures);
     set_back(was);
 }
