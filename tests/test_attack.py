@@ -11,9 +11,9 @@ from attack.trying import KINDS, ODD, one
 FEW = [kind for kind in KINDS if kind.few]
 
 
-# Each of these is a command, and takes half a second: a third is tried at once, and all with what is slow.
+# Each of these is a command, and takes half a second: a sixth is tried at once, and all with what is slow.
 COSTLY = ("run: read", "words")
-PARTS = [pytest.param(kind, kind.few // 3 if kind.name in COSTLY else kind.few, id=kind.name) for kind in FEW]
+PARTS = [pytest.param(kind, kind.few // 6 if kind.name in COSTLY else kind.few, id=kind.name) for kind in FEW]
 SLOW = [
     pytest.param(kind, kind.few, id=f"all of {kind.name}", marks=pytest.mark.slow)
     for kind in FEW

@@ -138,8 +138,8 @@ def _differing(codec, language: str, folder: Path) -> int:
 
 # What renders, tunes, draws or measures many rows.
 LONG = re.compile(
-    r"(pick|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check|published)\b(?! --help)"
-    r"|^python|growth$|--plot|--report|--worst-case|--encoding all"
+    r"(pick|mix|maps|render|effects|motion|lights|sweep|throughput|tune|run|report|frames|check|published)\b(?! --help)"
+    r"|^python|growth$|--on |--plot|--report|--worst-case|--encoding all"
 )
 
 

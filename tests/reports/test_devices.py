@@ -58,6 +58,7 @@ def test_markup_of_a_renderer_stays_text_in_a_runs_page(run, opener, tmp_path):
     assert "<script>" in page.page.locator("#devices").inner_text()
 
 
+@pytest.mark.slow
 def test_a_runs_page_shows_devices_side_by_side(run, opener, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]})
     assert run("import", *map(str, made.write_ten(tmp_path / "ten")), "-o", str(folder))[0] == 0

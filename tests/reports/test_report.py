@@ -110,6 +110,7 @@ def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
     assert "secret" in read.text and not any(a.get("id") == "pictures" for a in read.all("section"))
 
 
+@pytest.mark.slow
 def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
     many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(4000)]
     first = quality_row("@everyone", psnr_db=60.0)

@@ -258,7 +258,7 @@ sys.exit(child.main())
     [
         ("os.abort()", "SIGABRT"),
         ("sys.exit('no GPU')", "status 1: no GPU"),
-        ("time.sleep(60)", "did not answer within"),
+        pytest.param("time.sleep(60)", "did not answer within", marks=pytest.mark.slow),
     ],
 )
 def test_a_driver_of_intels_that_fails_costs_its_own_rows(run, monkeypatch, tmp_path, what, reason):

@@ -284,6 +284,7 @@ def read_only(folder: Path):
         subprocess.run([tool, "-R", unlock, folder], check=True)
 
 
+@pytest.mark.slow
 def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path):
     folder = tmp_path / "parent" / "run"
     words = ("--encoding", "octahedral,spherical,spheremap,xy", "--storage", "rg8", "--normals", "axes")

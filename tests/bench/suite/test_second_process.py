@@ -32,6 +32,7 @@ def cores(monkeypatch):
     return lambda count: monkeypatch.setattr(second, "cores", lambda: count)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
     """Rows and files are those of a run in one process, and tables are printed in their order. The second one draws
@@ -65,6 +66,7 @@ def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cor
     assert err == "normalbench: broken\n"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
     """Where their folder is a file, the second process leaves it to the first to say so."""
@@ -102,7 +104,9 @@ def is_there(process: int) -> bool:
 
 
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("ended", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "ended", [*(pytest.param(one, marks=pytest.mark.slow) for one in (signal.SIGINT, signal.SIGTERM)), signal.SIGKILL]
+)
 def test_no_process_outlives_a_run(tmp_path, ended):
     """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
     words = ("run", "--tables", "effects,depth", "-o", "ended")
@@ -172,6 +176,7 @@ def programs(folder: Path) -> dict[str, int]:
     return {path.name: path.stat().st_mtime_ns for path in folder.glob("normalbench/programs/*/*-cache")}
 
 
+@pytest.mark.slow
 def test_a_second_process_compiles_nothing(tmp_path):
     """It finds every program in the cache, and says the same."""
     first, made = measured(tmp_path), programs(tmp_path)
@@ -182,6 +187,7 @@ def test_a_second_process_compiles_nothing(tmp_path):
     assert measured(tmp_path) == first, "a damaged program"
 
 
+@pytest.mark.slow
 def test_compiled_programs_need_not_be_kept(tmp_path):
     found = measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
     assert not programs(tmp_path)

@@ -328,6 +328,7 @@ def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
     assert film_uri(damaged) == film_uri(large) == film_uri(tmp_path / "none.png") == ""
 
 
+@pytest.mark.slow
 def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
     """And `compare` finds no difference between a run and itself."""
     one = tmp_path / "one"

@@ -40,6 +40,7 @@ def test_a_bad_word_is_refused_at_once(run, tmp_path, monkeypatch, command, word
     assert not list(tmp_path.iterdir()), "nothing is written"
 
 
+@pytest.mark.slow
 def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

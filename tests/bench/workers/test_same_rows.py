@@ -66,7 +66,9 @@ def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[
     return rows_of(folder / "rows.json", table), pictures(folder / "images")
 
 
-@pytest.mark.parametrize("table", COMMANDS)
+@pytest.mark.parametrize(
+    "table", [pytest.param(name, marks=[pytest.mark.slow] * (name != "quality")) for name in COMMANDS]
+)
 def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, scheduler, tmp_path, table):  # noqa: ARG001
     """Every figure to the last digit, in the same order; every picture to the last byte."""
     (tmp_path / "one").mkdir()
@@ -77,7 +79,9 @@ def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, scheduler
     assert bool(here[1]) == (table in PICTURED), f"{len(here[1])} pictures"
 
 
-@pytest.mark.parametrize("is_absolute", [False, True], ids=["relative", "absolute"])
+@pytest.mark.parametrize(
+    "is_absolute", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["relative", "absolute"]
+)
 def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolute):  # noqa: ARG001
     """An encoder with what it includes, a look-up, a scene and a set of normals, named in any way: the same rows."""
     typed = tmp_path / "typed" / "here"
@@ -106,6 +110,7 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
         assert len(here[0]) >= 2 and here == there, table
 
 
+@pytest.mark.slow
 def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp_path, monkeypatch):  # noqa: ARG001
     """Three scenes and one of the catalogue: four parcels, each with one file or none, and the rows of one process."""
     monkeypatch.chdir(tmp_path)
