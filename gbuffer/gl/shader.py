@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache, wraps
 from pathlib import Path
 from typing import TypeVar
@@ -55,29 +55,15 @@ class Source:
     """
 
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
-        self._names: Mapping[str, Path] = names or {}
-        self._seen: set[Path] = set()
-        self.place = main = Path(shaders().get(str(path), path)).resolve()
-        version, *rest = self._expand(main)
+        self.place = main = _resolved(Path(shaders().get(str(path), path)))
+        stand_for = tuple(sorted((name, Path(target)) for name, target in (names or {}).items()))
+        is_own = all(map(_is_own, (main, *(target for _, target in stand_for))))
+        (version, *rest), body = (_expanded_of_own if is_own else _expanded)(main, stand_for)
         macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
-        mentioned = _words("\n".join(line for line, _, _ in rest)) | _words(" ".join(macros.values()))
+        mentioned = _words(body) | _words(" ".join(macros.values()))
         head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
         self._lines: list[Line] = [version, *head, *rest]
-        self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
-
-    def _expand(self, path: Path) -> list[Line]:
-        self._seen.add(path)
-        lines: list[Line] = []
-        for line, match in _lines(path):
-            lines += self._include(*line[1:], match) if match else [line]
-        return lines
-
-    def _include(self, path: Path, number: int, match: re.Match[str]) -> list[Line]:
-        if match["name"] and match["name"] not in self._names:
-            raise ShaderError(f"{path}:{number}: nothing is named {match['name']}")
-        named = match["name"]
-        target = Path(self._names[named]).resolve() if named else _beside(path, match["file"])
-        return [] if target in self._seen else self._expand(target)
+        self.text = _text([version, *head]) + body
 
     def explain(self, log: str) -> str:
         """A compiler's message with file names and their line numbers in place of its own."""
@@ -94,14 +80,13 @@ class Source:
 
 @lru_cache(maxsize=256)
 def _words(text: str) -> frozenset[str]:
-    """The words of a text; frames ask for the same programs again and again."""
     return frozenset(re.findall(r"\w+", text))
 
 
 @cache
 def _is_own(path: Path) -> bool:
-    """Whether a file, its path resolved, is one of this room's or of the encodings."""
-    return any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
+    """Whether a file is one of this room's or of the encodings."""
+    return ".." not in path.parts and any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
 
 
 def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
@@ -114,6 +99,42 @@ def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
         return (kept if _is_own(path) else function)(path, *more)
 
     return call
+
+
+@_once_of_own
+def _resolved(path: Path) -> Path:
+    return path.resolve()
+
+
+def _text(lines: Iterable[Line]) -> str:
+    return "".join(f"{line}\n" for line, _, _ in lines)
+
+
+def _expanded(main: Path, names: Sequence[tuple[str, Path]]) -> tuple[list[Line], str]:
+    """The lines of a shader and of what it includes, each file once, and the text of all but the first line."""
+    stand_for, seen = dict(names), set()
+
+    def expand(path: Path) -> list[Line]:
+        seen.add(path)
+        lines: list[Line] = []
+        for line, match in _lines(path):
+            lines += include(line, match) if match else [line]
+        return lines
+
+    def include(line: Line, match: re.Match[str]) -> list[Line]:
+        _, path, number = line
+        named = match["name"]
+        if named and named not in stand_for:
+            raise ShaderError(f"{path}:{number}: nothing is named {named}")
+        target = _resolved(stand_for[named]) if named else _beside(path, match["file"])
+        return [] if target in seen else expand(target)
+
+    lines = expand(main)
+    return lines, _text(lines[1:])
+
+
+# Frames ask for the same programs again and again, with other macros; the program's own files stay as they are.
+_expanded_of_own = lru_cache(maxsize=256)(_expanded)
 
 
 @_once_of_own
