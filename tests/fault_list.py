@@ -1144,6 +1144,14 @@ FAULTS = (
         "test_native_rows.py",
     ),
     Fault(
+        "c-sums-become-infinite",
+        BENCH,
+        "lost guard",
+        "    if (sum < INFINITY) return sum;\n    sum = 0;",
+        "    if (1) return sum;\n    sum = 0;",
+        "test_native_rows.py",
+    ),
+    Fault(
         "c-keeps-the-last-chunks-largest",
         BENCH,
         "wrong comparison",

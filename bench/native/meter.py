@@ -117,7 +117,7 @@ class NativeMeter:
     def _worst(self, chunks: _Chunks, largest: float, counts: np.ndarray) -> Worst | None:
         """The normal with the largest angle, among those of the highest bin; None where none counts."""
         number = bin_of(largest)
-        found = np.empty((counts[number], 6), np.float32)
-        least = ctypes.c_float(lower_edge(number))
-        have = self._row.in_bin(self._codec, *chunks.given, least, number, address(found))
+        found, least = np.empty((counts[number], 6), np.float32), ctypes.c_float(lower_edge(number))
+        room = ctypes.c_size_t(len(found))
+        have = self._row.in_bin(self._codec, *chunks.given, least, number, room, address(found))
         return worst_of(found[:have, :3], found[:have, 3:])

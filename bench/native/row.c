@@ -47,7 +47,8 @@ static void measure(const Codec *codec, const Chunk *chunk, size_t first, float 
         }
 }
 
-// Four numbers are added in float, which loses nothing that shows, and these sums in double.
+// Four numbers are added in float, which loses nothing that shows, and these sums in double. Numbers whose sum is too
+// large for a float are added one by one.
 static double summed(const float *a) {
     double lanes[LANES] = {0}, sum = 0;
     for (size_t k = 0; k < QUARTER; k += LANES)
@@ -56,6 +57,9 @@ static double summed(const float *a) {
             lanes[l] += (b[0] + b[QUARTER]) + (b[2 * QUARTER] + b[3 * QUARTER]);
         }
     for (size_t l = 0; l < LANES; l++) sum += lanes[l];
+    if (sum < INFINITY) return sum;
+    sum = 0;
+    for (size_t k = 0; k < BLOCK; k++) sum += a[k];
     return sum;
 }
 
@@ -136,8 +140,8 @@ void row(const Codec *codec, const Chunk *chunks, size_t number, double *figures
 }
 
 // The normals of a bin among blocks whose largest angle is `least` or more: six numbers each into `found`, the normal
-// and its decode. Of those that are decoded as they were only the first is there. Returns how many there are.
-size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float least, int bin, float *found) {
+// and its decode, `room` at most. Of those that are decoded as they were only the first is there. Returns how many.
+size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float least, int bin, size_t room, float *found) {
     unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
@@ -148,7 +152,7 @@ size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float leas
             if (chunk->tops[first / BLOCK] < least) continue;
             measure(codec, chunk, first, decoded, &block);
             for (size_t k = 0; k < BLOCK; k++) {
-                if (block.bin[k] != bin) continue;
+                if (block.bin[k] != bin || have == room) continue;
                 float *to = found + 6 * have;
                 for (int c = 0; c < 3; c++) to[c] = chunk->plane[c][first + k], to[3 + c] = decoded[c][k];
                 _Bool is_same = to[0] == to[3] && to[1] == to[4] && to[2] == to[5];

@@ -94,6 +94,12 @@ def test_decodes_that_are_not_numbers_count_as_the_opposite_direction():
         assert_same(found, expected)
 
 
+def test_squared_errors_of_which_four_are_too_large_for_a_float_add_up():
+    found, expected = both(lambda n, _: n * 1.5e19, sphere(CHUNK))
+    assert found.mse == pytest.approx(expected.mse, rel=1e-6) and 7e37 < found.mse < 8e37
+    assert found.invalid == expected.invalid == 0
+
+
 def test_the_background_does_not_count():
     """Of several chunks, with whole blocks of it, and a part of a block; the worst normal is not among it."""
     n = random_directions(CHUNK + 5000)

@@ -68,6 +68,7 @@ def test_the_exponent_is_the_slope_of_time_over_count():
     rows = [row | {"count": 100, "rate": 1.0}, row | {"count": 200, "rate": 0.5}]
     assert [*exponents(rows)] == ["xyz, row: time grows as count^2.00 from 100 to 200 normals"]
     assert [*exponents(rows[:1])] == []
+    assert [*exponents([rows[0], rows[1] | {"count": 199}])] == [], "counts that are nearly the same say nothing"
 
 
 def test_counts_are_rounded_down_to_whole_blocks_and_measured_once():
