@@ -48,14 +48,12 @@ class _Chunks:
     """
 
     def __init__(self, chunks: Sequence[Any]):
-        self._held = [[*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))] for chunk in chunks]
-        counts = [planes[0].size for planes in self._held]
-        self._tops = np.empty(sum(counts) // BLOCK, np.float32)
-        made, at = (_Chunk * len(chunks))(), self._tops.ctypes.data
-        for one, (*planes, covered), count in zip(made, self._held, counts, strict=True):
-            one.planes[:] = [plane.ctypes.data for plane in planes]
-            one.covered, one.tops, one.count = covered.ctypes.data, at, count
-            at += count // BLOCK * self._tops.itemsize
+        held = ([*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))] for chunk in chunks)
+        self._held = [(*arrays, np.empty(arrays[0].size // BLOCK, np.float32)) for arrays in held]
+        made = (_Chunk * len(chunks))()
+        for one, (*planes, covered, tops) in zip(made, self._held, strict=True):
+            one.planes[:] = [*map(address, planes)]
+            one.covered, one.tops, one.count = address(covered), address(tops), planes[0].size
         self.given = made, ctypes.c_size_t(len(chunks))
 
 

@@ -38,6 +38,7 @@ def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
     odd, half = k % 2, k / 2
     u, v = x * half, y * half
     p, q = (np.floor(c) + 0.5 if odd else np.floor(c + 0.5) for c in (u, v))
+    # |(x, y, 1) x (p, q, k)|^2 / |(p, q, k)|^2, in place: fresh arrays take as long as the arithmetic
     u -= p
     cross = x * q
     cross -= y * p

@@ -44,16 +44,11 @@ def _key(case: Case) -> Row:
 
 
 def exponents(rows: Sequence[Row]) -> Iterator[str]:
-    """How the time grows with the count, of every encoding that was timed at several: least squares in logarithms.
-
-    Nothing of counts less than a factor of 2 apart, whose times differ as much by themselves.
-    """
+    """How the time grows with the count, of every encoding that was timed at several: least squares in logarithms."""
     for statistics, encoding in dict.fromkeys((row["statistics"], row["encoding"]) for row in rows):
         part = [row for row in rows if (row["statistics"], row["encoding"]) == (statistics, encoding)]
         counts = [row["count"] for row in part]
         times = [row["count"] / row["rate"] for row in part]
-        if max(counts) < 2 * min(counts):
-            continue
         yield from growth_lines(f"{encoding}, {statistics}", "count", counts, times, " normals")
 
 
