@@ -33,12 +33,12 @@ def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
     """The squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor that knows no k.
 
     Of codes in half steps, p and q are even or odd as k is: odd ones where there is no code for 0. Both vectors are
-    halved here, so that those are whole numbers and halves.
+    halved here, so that those are whole numbers and halves. What follows is |(x, y, 1) x (p, q, k)|^2 / |(p, q, k)|^2,
+    in place: fresh arrays would take as long as the arithmetic.
     """
     odd, half = k % 2, k / 2
     u, v = x * half, y * half
     p, q = (np.floor(c) + 0.5 if odd else np.floor(c + 0.5) for c in (u, v))
-    # |(x, y, 1) x (p, q, k)|^2 / |(p, q, k)|^2, in place: fresh arrays take as long as the arithmetic
     u -= p
     cross = x * q
     cross -= y * p
