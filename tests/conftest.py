@@ -13,6 +13,8 @@ from pathlib import Path
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".pytest_cache" / "jax"))
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
+# As the program does; without it OpenBLAS waits for work in a loop that takes a whole core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import jax
 import kept_runs
@@ -21,6 +23,7 @@ import pytest
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.isa.nvidia import tools
+from normalbench.bench.machine.memory import look_for_garbage_seldom
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
@@ -37,7 +40,8 @@ def pytest_configure(config):
 
 
 def pytest_collection_finish():
-    """What there is by now stays to the end: looking through it for garbage again and again took a thirtieth."""
+    """What there is by now stays to the end: looking through it for garbage again and again took a tenth."""
+    look_for_garbage_seldom()
     gc.collect()
     gc.freeze()
 

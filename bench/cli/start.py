@@ -13,6 +13,9 @@ def program() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from ..machine.memory import look_for_garbage_seldom
+
+    look_for_garbage_seldom()
     from .app import program as run
 
     run()

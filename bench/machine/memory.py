@@ -46,6 +46,11 @@ def give_back_what_a_table_needed() -> None:
     give_back_what_is_freed()
 
 
+def look_for_garbage_seldom() -> None:
+    """Have the garbage collector look at every 50 000 new objects, not 700: an import makes a million, none in vain."""
+    gc.set_threshold(50_000, 10, 10)
+
+
 def keep_what_is_imported() -> None:
     """Have the garbage collector pass over what is there now: with JAX that is a million objects, looked at again and
     again for nothing."""

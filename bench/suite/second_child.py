@@ -20,7 +20,12 @@ from threading import Thread
 from typing import IO, Any
 
 from ..machine.devices import require_jax
-from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
+from ..machine.memory import (
+    give_back_what_a_table_needed,
+    have_few_heaps,
+    keep_what_is_imported,
+    look_for_garbage_seldom,
+)
 from ..output.errors import MissingError, UsageError, told
 from ..results.measuring import Asked, measured
 from ..results.plain import key_text, plain
@@ -112,6 +117,7 @@ def _own_output() -> IO[str]:
 def main() -> None:
     """Measure what standard input asks for."""
     have_few_heaps()
+    look_for_garbage_seldom()
     out = _own_output()
     # What is missing is said by the first process.
     with suppress(MissingError):

@@ -24,7 +24,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any, NoReturn
 
-from ..machine.memory import keep_what_is_freed
+from ..machine.memory import keep_what_is_freed, look_for_garbage_seldom
 from ..output.errors import UsageError, tell
 from .words import checked_address, require_dask
 
@@ -113,6 +113,7 @@ def serve(address: str, patience: float = PATIENCE_S) -> bool:
     from .tasks import own_folder, probe
 
     keep_what_is_freed()
+    look_for_garbage_seldom()
     # What takes seconds is done before anybody waits for it.
     probe()
     executor = MainThread()
