@@ -1,7 +1,6 @@
 """Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
 
 import fcntl
-import gc
 import json
 import os
 import shutil
@@ -23,7 +22,7 @@ import pytest
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.isa.nvidia import tools
-from normalbench.bench.machine.memory import look_for_garbage_seldom
+from normalbench.bench.machine.memory import keep_what_is_imported, look_for_garbage_seldom
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.gbuffer.gl.device import NoDeviceError, device
@@ -40,14 +39,9 @@ def pytest_configure(config):
 
 
 def pytest_collection_finish():
-    """What there is by now stays to the end: looking through it for garbage again and again took a tenth."""
+    """What there is by now stays to the end, as in a run."""
     look_for_garbage_seldom()
-    gc.collect()
-    gc.freeze()
-
-
-def pytest_sessionfinish():
-    gc.unfreeze()
+    keep_what_is_imported()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -47,7 +47,8 @@ def give_back_what_a_table_needed() -> None:
 
 
 def look_for_garbage_seldom() -> None:
-    """Have the garbage collector look at every 50 000 new objects, not 700: an import makes a million, none in vain."""
+    """Have the garbage collector look after 50 000 new objects, not 700. Imports and JAX make a million objects, and
+    nearly all of them stay."""
     gc.set_threshold(50_000, 10, 10)
 
 

@@ -113,7 +113,6 @@ def serve(address: str, patience: float = PATIENCE_S) -> bool:
     from .tasks import own_folder, probe
 
     keep_what_is_freed()
-    look_for_garbage_seldom()
     # What takes seconds is done before anybody waits for it.
     probe()
     executor = MainThread()
@@ -177,6 +176,7 @@ def end_now(*_: int | FrameType | None) -> NoReturn:
 
 def main(words: list[str]) -> None:
     """A worker that another process of normalbench started."""
+    look_for_garbage_seldom()
     signal.signal(signal.SIGTERM, end_now)
     end_with_parent()
     quiet()
