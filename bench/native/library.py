@@ -19,7 +19,11 @@ from ..machine.devices import processor_kind
 from ..output import cache as kept
 
 # Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fwrapv", "-fPIC", "-shared", "-w")
+FLAGS = ("-O3", "-march=native", "-funroll-loops", "-fno-math-errno", "-fno-trapping-math", "-fwrapv")
+FLAGS += ("-fPIC", "-shared", "-w")
+# GCC would follow a number that is limited from above and below on each of its ways, and what is computed of it twice.
+# Clang has no such option, and passes over the line.
+STRAIGHT = '#pragma GCC optimize ("no-thread-jumps")'
 HEADERS = ("stddef.h", "stdint.h", "string.h", "tgmath.h")
 # The bits of a number as a number of another type.
 VIEWED = """#define VIEWED(source, target, value) \\
@@ -59,6 +63,7 @@ def source(name: str, function: str, given: Sequence[str], **numbers: int) -> st
     known = {name.upper(): str(number) for name, number in numbers.items()}
     known["GIVEN"] = "".join(f", ({kind})given[{at}]" for at, kind in enumerate(given))
     lines = [
+        STRAIGHT,
         *(f"#include <{header}>" for header in HEADERS),
         *(f"#define {name} {what}" for name, what in known.items()),
     ]

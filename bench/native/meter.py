@@ -99,12 +99,12 @@ class NativeMeter:
 
     def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:  # noqa: ARG002
         """The statistics of chunks, as `Meter.parts` gives them; JAX's device is of no concern."""
-        figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.int64)
+        figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32)
         chunks = _Chunks([load() for load in loads])
         self._row.row(self._codec, *chunks.given, address(figures), address(counts))
         found = Figures(*figures.tolist())
         worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest, counts)
-        return [(found, counts, worst)]
+        return [(found, counts.astype(np.int64), worst)]
 
     def moments(self, loads: Sequence[Load]) -> tuple[float, float]:
         """The sum and the largest of |n - n'|^2 of chunks, and nothing else."""

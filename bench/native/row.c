@@ -109,7 +109,7 @@ static void fetch_next(const Chunk *chunk, size_t first) {
         for (size_t k = first + BLOCK; k < first + 2 * BLOCK; k += 16) __builtin_prefetch(chunk->plane[c] + k);
 }
 
-static void add(const Codec *codec, const Chunk *chunk, double *figures, int64_t *counts) {
+static void add(const Codec *codec, const Chunk *chunk, double *figures, uint32_t *counts) {
     Block block;
     float decoded[3][BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
@@ -132,8 +132,9 @@ static void add(const Codec *codec, const Chunk *chunk, double *figures, int64_t
     }
 }
 
-// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins.
-void row(const Codec *codec, const Chunk *chunks, size_t number, double *figures, int64_t *counts) {
+// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins: what is in memory at once is
+// fewer than 2^32 normals, and small counts stay in the first-level cache.
+void row(const Codec *codec, const Chunk *chunks, size_t number, double *figures, uint32_t *counts) {
     unsigned was = flush();
     for (size_t c = 0; c < number; c++) add(codec, chunks + c, figures, counts);
     set_back(was);
