@@ -13,7 +13,7 @@ from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline
-from .limits import Limit, split_limits
+from .limits import Limit, limits_on, split_limits
 from .measured import Found, measured, table_named, with_their_options
 
 MAX_GATES = 1000
@@ -155,7 +155,7 @@ def checked(
     baselines = baselines or Baselines(False)
     for gate in gates:
         found = measure(gate)
-        yield from (_held(gate, one, limit) for one in found for limit in gate.limits)
+        yield from (_held(gate, one, limit) for one in found for limit in limits_on(one.row, gate.limits))
         if gate.baseline:
             yield from (_compared(gate, one, baselines.of(gate.baseline)) for one in found)
         tick(gate.place)

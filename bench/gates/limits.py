@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,6 +64,17 @@ class Limit:
         shown = f"{figure:.9g}" if isinstance(figure, float) else figure
         reason = f" ({' '.join(row['skipped'].split())})" if row.get("skipped") else ""
         return f"{table.name_of(row)}: {self.column} is {shown}{reason}, not {self}"
+
+
+# A mean hides a few NaN.
+ALL_NUMBERS = Limit("invalid", "at most", 0.0)
+
+
+def limits_on(row: Mapping[str, Any], limits: Iterable[Limit]) -> list[Limit]:
+    """The limits on a row, and that all results are numbers where some are not and no limit is said for them."""
+    limits = list(limits)
+    is_said = any(one.column == ALL_NUMBERS.column for one in limits)
+    return [*limits, ALL_NUMBERS] if limits and not is_said and row.get(ALL_NUMBERS.column) else limits
 
 
 def limit(column: str, text: Any) -> Limit | None:

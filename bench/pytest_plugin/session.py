@@ -15,7 +15,7 @@ import pytest
 from ...encodings.codecs.files import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
-from ..gates.limits import Limit, limit, not_a_limit, split_limits
+from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
 from ..languages.words import file_of
 from ..machine.devices import found_device
@@ -143,8 +143,10 @@ class Measured:
             option = one.option_of(self.table)
             if option and not getattr(self.table.options(**self.asked), option):
                 raise UsageError(f"{one.column} is measured only with {option}=True; add it")
-        rows = self._measurable()
-        self._raise_for([(one, [said for x in limits if (said := x.broken_by(self.table, one.row))]) for one in rows])
+        self._raise_for((one, self._broken(one.row, limits)) for one in self._measurable())
+
+    def _broken(self, row: Row, limits: Iterable[Limit]) -> list[str]:
+        return [said for one in limits_on(row, limits) if (said := one.broken_by(self.table, row))]
 
     @ends_here
     def matches_baseline(self, **tolerances: float) -> None:

@@ -44,6 +44,26 @@ def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
     assert (status, row["holds"]) == (0, "pass") and row["row"].endswith("glsl"), err
 
 
+@pytest.mark.usefixtures("gl")
+def test_a_gate_does_not_pass_over_a_few_nan(run, tmp_path):
+    (tmp_path / "hole.glsl").write_text(
+        "vec2 hole_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 hole_decode(vec2 e, vec3 view) {\n"
+        "    float z = sqrt(distance(e, vec2(0.61, 0.473)) < 0.004 ? -1.0 : max(1.0 - dot(e, e), 0.0));\n"
+        "    return vec3(e, z);\n"
+        "}\n"
+    )
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{tmp_path}/hole.glsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 100000\n'
+    path.write_text(f'[[gate]]\n{words}angle_mean_deg = "at most 90"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    rows = [(row["column"], row["limit"], row["holds"]) for row in json.loads(out)]
+    assert status == 1
+    assert rows == [("angle_mean_deg", "at most 90", "pass"), ("invalid", "at most 0", "FAIL")]
+    path.write_text(path.read_text() + 'invalid = "at most 10000"\n')
+    assert run("check", str(path))[0] == 0, "it says how many may be"
+
+
 def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_path):
     path, folder = tmp_path / "gates.toml", str(tmp_path / "results")
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
