@@ -7,6 +7,7 @@ catalogue, so that an encoding that cannot be imported is said in one line.
 from __future__ import annotations
 
 import atexit
+import io
 import os
 import re
 import signal
@@ -374,6 +375,9 @@ def _without_output(words: list[str]) -> None:
 def program() -> NoReturn:
     """`main` as a process of its own, which ends once its output is written: the interpreter would tidy up a million
     objects first, and beneath what is computed in other threads, which cannot be stopped."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # As Python has stderr: where the terminal has no ° it reads \xb0, and the table is there.
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         status = main()
     except SystemExit as end:

@@ -192,8 +192,8 @@ def _seam(trip: Trip) -> Iterator[str]:
     if off.mean() > FEW and at_a_pole[off].all() and len(np.unique(np.round(trip.n[off]), axis=0)) == 1:
         yield f"a pole is lost: {trip.worst}"
     elif off.mean() > FEW:
-        share = 100 * off.mean()
-        yield f"a seam: {share:.2g} % of directions come back more than {SAME_DEG:g} degree off; {trip.worst}"
+        tried = f"{off.sum()} of {len(off)} directions that were tried"
+        yield f"a seam: {tried} come back more than {SAME_DEG:g} degree off; {trip.worst}"
 
 
 def _poles(trip: Trip) -> Iterator[str]:

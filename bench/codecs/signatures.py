@@ -21,11 +21,18 @@ FROM_HLSL = "rename float2 to vec2, lerp to mix, and so on"
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
+VERSION = re.compile(r"^\s*#\s*version\b", re.M)
+# What a program is given from outside: a number, a texture, or a block with a name of its own or without one.
+GIVEN = re.compile(r"\b(?:uniform|buffer)\b([^;{]*)(?:\{([^}]*)\}([^;]*))?;")
+
+
 class Encode(NamedTuple):
-    """The encode that a file defines: the encoding's name, and how many numbers its code has."""
+    """The encode that a file defines: the encoding's name, and how many numbers its code has; and the names of the
+    other encodings in it."""
 
     name: str
     components: int
+    others: tuple[str, ...]
 
 
 def encode_of(path: Path, text: str) -> Encode:
@@ -39,13 +46,29 @@ def encode_of(path: Path, text: str) -> Encode:
         raise UsageError(f"{path}: a comment that begins with /* is not closed")
     if MAIN.search(code):
         raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
+    if VERSION.search(code):
+        raise UsageError(f"{path}: it has #version; leave it out, normalbench has its own")
+    if given := _given_and_read(code):
+        raise UsageError(f"{path}: it reads {given}, which has no value here; write a constant in its place")
     found = [match.groups() for match in ENCODE.finditer(code)]
-    right = next((one for one in found if _is_encode(one)), None)
+    right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
     if not right:
         raise UsageError(f"{path}: {_no_encode(found)}")
-    name = right[1].removesuffix("_encode")
-    _check_decode(path, code, name, right[0])
-    return Encode(name, int(right[0][-1]))
+    (kind, name), *others = [(kind, name.removesuffix("_encode")) for kind, name in right]
+    _check_decode(path, code, name, kind)
+    return Encode(name, int(kind[-1]), tuple(other for _, other in others if f"{other}_decode" in code))
+
+
+def _given_and_read(code: str) -> str:
+    """What a shader reads of what it is given from outside; empty where it reads nothing of it."""
+    rest = GIVEN.sub(" ", code)
+    for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
+        alone = declared.split(",") if members is None else [*members.split(";"), instance]
+        # One with a value, `uniform float k = 2.0`, has it here too.
+        names = [words[-1] for one in alone if "=" not in one and (words := re.findall(r"\w+", one.split("[")[0]))]
+        if read := next((name for name in names if re.search(rf"\b{name}\b", rest)), ""):
+            return f"the uniform {read}" if members is None else f"{read} of a block"
+    return ""
 
 
 def _is_encode(function: tuple[str, ...]) -> bool:

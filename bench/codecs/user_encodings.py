@@ -209,7 +209,7 @@ def _text(path: Path, is_biased: bool) -> _Text:
         made = translated(path)
         return _Text(made.name, made.components, made.glsl(is_biased), made.prefix)
     try:
-        name, components = encode_of(path, read_shader(path))
+        name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
     # Not resolved: the twin lies next to the path that was given.
@@ -312,7 +312,6 @@ def _look(path: Path) -> Looks:
         UsageError: it cannot be translated, or its shader does not let that process end well.
         MissingError: the compiler of its language is not there.
     """
-    said_of_it = tuple(translated(path).notes) if is_translated(path) else ()
     try:
         done = forks.finished(FIRST_LOOK, [str(path)], TIME_LIMIT)
         said, ended = done.stdout, children.how_it_ended(done)
@@ -321,11 +320,20 @@ def _look(path: Path) -> Looks:
     lines = list(_answers(said))
     if not lines:
         raise UsageError(f"{path}: its shader {ended}")
+    said_of_it = () if "error" in lines[0] else _said_of(path)
     has_twin = twin_is_looked_at(path, lines[0])
     if has_twin and len(lines) < 2:
         return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it)
     twin = lines[1] if has_twin else {}
     return Looks(lines[0], twin, twin.get("error", ""), said_of_it)
+
+
+def _said_of(path: Path) -> tuple[str, ...]:
+    """What the text of a file says by itself."""
+    if is_translated(path):
+        return tuple(translated(path).notes)
+    name, _, others = encode_of(path, read_shader(path))
+    return tuple(f"{name} alone is measured; move {other} into a file of its own" for other in others)
 
 
 def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:

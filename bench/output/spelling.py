@@ -9,6 +9,7 @@ from types import MappingProxyType
 # By what is named: other words for it, in lower case and without marks.
 OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
+        "language": {"metal": "msl"},
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
         "storage": {
             "r8g8": "rg8",

@@ -97,6 +97,13 @@ def test_without_standard_output_a_file_will_do(tmp_path):
     assert said[False] == (2, "normalbench: standard output is closed; name a file with -o\n")
 
 
+def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
+    script = "from normalbench.bench.cli import app; app.main = lambda: print('0.9\u00b0') or 0; app.program()"
+    known = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=known, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
+
+
 def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path):
     path = tmp_path / "run" / "rows.jsonl"
     with journal(path) as kept:

@@ -69,6 +69,17 @@ SHADERS = {
     "half": (GOOD.split("vec3 NAME_decode")[0], "no function vec3 half_decode"),
     "garbage": ("\x00\x01\x02\xff", "no function"),
     "with_main": (GOOD + "void main() {}", "defines main"),
+    "with_version": ("#version 450\n" + GOOD, "it has #version; leave it out"),
+    "uniform": ("uniform float k;\n" + GOOD.replace("return n.xy;", "return n.xy * k;"), "reads the uniform k, which"),
+    "texture": (
+        "layout(binding = 0) uniform sampler2D table[2];\n"
+        + GOOD.replace("return n.xy;", "return texture(table[0], n.xy).xy;"),
+        "reads the uniform table, which has no value here",
+    ),
+    "block": (
+        "buffer Data { vec2 scale; int unread; };\n" + GOOD.replace("return n.xy;", "return n.xy * scale;"),
+        "reads scale of a block",
+    ),
     "empty": ("", "no function vec2"),
     "stops": ("#error no\n" + GOOD, r"stops\.glsl:1"),
 }

@@ -2,6 +2,7 @@
 
 import pytest
 
+from normalbench.bench.code.emit import LANGUAGES
 from normalbench.bench.options.gpu_families import CHOICES
 from normalbench.bench.output.errors import UsageError, pick
 from normalbench.encodings.catalogue import ENCODINGS
@@ -9,6 +10,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 KNOWN = {what: {name: name for name in names} for what, names in (("encoding", ENCODINGS), ("storage", STORAGES))}
 KNOWN["family"] = {name: name for name in CHOICES}
+KNOWN["language"] = {name: name for name in LANGUAGES}
 
 
 @pytest.mark.parametrize(
@@ -23,6 +25,7 @@ KNOWN["family"] = {name: name for name in CHOICES}
         ("encoding", "Octahedral-Precise", "octahedral_precise"),
         ("encoding", "SphereMap", "spheremap"),
         ("family", "rdna3", "navi31"),
+        ("language", "Metal", "msl"),
         ("family", "Navi21", "navi21"),
         ("family", "Tiger Lake", "tgl"),
         ("family", "Arc", "dg2"),
