@@ -26,6 +26,10 @@ class Format(StrEnum):
 ENDINGS: Mapping[str, Format] = MappingProxyType(
     {".csv": Format.csv, ".json": Format.json, ".md": Format.markdown, ".parquet": Format.parquet}
 )
+# What a table's command writes besides its rows, by the ending of its file.
+OTHERS: Mapping[str, str] = MappingProxyType(
+    {".html": "--report", ".htm": "--report"} | dict.fromkeys((".png", ".svg", ".pdf"), "--plot")
+)
 FormatOption = Annotated[
     Format | None,
     typer.Option(
@@ -50,11 +54,13 @@ def format_of(format: Format | None, output: Path | None) -> Format:
     """How rows are written: as asked, or as the file's name says.
 
     Raises:
-        UsageError: Parquet to the terminal.
+        UsageError: Parquet to the terminal, or a file whose name promises a page or a chart.
         MissingError: Parquet without pyarrow.
     """
     from ...reports.tables import has_parquet
 
+    if not format and output and (other := OTHERS.get(output.suffix.lower())):
+        raise UsageError(f"-o writes rows, not {output.name}; {other} {output} does, where a command has it")
     chosen = format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table
     if chosen is Format.parquet and output is None:
         raise UsageError("--format parquet is not text; name a file with -o FILE.parquet")

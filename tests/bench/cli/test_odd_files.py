@@ -97,6 +97,14 @@ def test_without_standard_output_a_file_will_do(tmp_path):
     assert said[False] == (2, "normalbench: standard output is closed; name a file with -o\n")
 
 
+@pytest.mark.parametrize("name, option", [("page.html", "--report"), ("chart.PNG", "--plot")])
+def test_a_name_that_promises_a_page_or_a_chart_gets_no_text(run, tmp_path, name, option):
+    path = tmp_path / name
+    status, out, err = run(*QUICK, "-o", str(path))
+    assert (status, out, path.exists()) == (2, "", False)
+    assert err == f"normalbench: -o writes rows, not {name}; {option} {path} does, where a command has it\n"
+
+
 def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
     script = "from normalbench.bench.cli import app; app.main = lambda: print('0.9\u00b0') or 0; app.program()"
     known = os.environ | {"PYTHONIOENCODING": "ascii"}
