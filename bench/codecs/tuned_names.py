@@ -51,7 +51,7 @@ def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
         table = read_npy(path, published.nbytes + 4096)
     except DamagedError as error:
         raise UsageError(f"{path}: not a NumPy file of numbers, as `normalbench tune --table` writes it") from error
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
     if table.shape != published.shape or table.dtype != published.dtype:
         wanted = f"{published.dtype} of shape {published.shape}"

@@ -187,6 +187,8 @@ def companions(path: Path) -> list[Path]:
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
     if path.suffix.lower() == ".gltf":
         beside |= set(_buffers(path))
+    if path.suffix.lower() == ".toml":
+        beside |= set(_of_layout(path))
     if names_an_encoder(str(path)):
         beside |= {other for other in (twin_of(path), *_included(path)) if other.is_file()}
     return sorted(beside)
@@ -203,6 +205,14 @@ def _buffers(path: Path) -> list[Path]:
     except (ValueError, TypeError, AttributeError, KeyError, RecursionError, SceneFileError):
         return []
     return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
+
+
+def _of_layout(path: Path) -> list[Path]:
+    """The encoder or the table that a layout names, and what is read with it."""
+    # It imports JAX, which start-up does without.
+    from ..codecs.layout_names import files_of_layout
+
+    return [one for file in files_of_layout(path) if file.is_file() for one in (file, *companions(file))]
 
 
 def _included(path: Path) -> list[Path]:

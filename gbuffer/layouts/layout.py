@@ -6,7 +6,7 @@ resolved to linear. `words.py` explains the words.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -238,24 +238,38 @@ def _without_depth(holds: str) -> list[str]:
     return [FREE + word.removeprefix("depth") if word.startswith("depth") else word for word in holds.split()]
 
 
-def read_layout(path: Path) -> Layout:
+def catalogue_encoding(word: str) -> Encoding:
+    """An encoding of the catalogue, or one with settings: octahedral:axis=y. Raises LayoutError."""
+    name = word.partition(MARK)[0]
+    if name not in ENCODINGS:
+        raise LayoutError(f"unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
+    try:
+        return variant(ENCODINGS[name], settings_in(word)[1]) if MARK in word else ENCODINGS[name]
+    except ValueError as error:
+        raise LayoutError(f"encoding {word}: {error}") from error
+
+
+def read_layout(path: Path, encoding_named: Callable[[str], Encoding] = catalogue_encoding) -> Layout:
     """A layout from a TOML file: `title`, `encoding`, `[[targets]]` of `format` and `holds`; `space`, `rounding`,
     `packing` and `depth` where they are not the usual.
 
+    Args:
+        encoding_named: gives the encoding that the file names.
+
     Raises:
-        LayoutError: it cannot be read, or is not a layout; one line.
+        LayoutError: it cannot be read, or is not a layout; one line. And what `encoding_named` raises.
     """
     try:
         data = file_toml(path)
     except (OSError, ValueError) as error:
         raise LayoutError(f"{path}: {error}") from error
     try:
-        return _from_data(path, data)
+        return _from_data(path, data, encoding_named)
     except LayoutError as error:
         raise LayoutError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
 
 
-def _from_data(path: Path, data: dict[str, Any]) -> Layout:
+def _from_data(path: Path, data: dict[str, Any], encoding_named: Callable[[str], Encoding]) -> Layout:
     texts = {
         "title": called(path.stem),
         "source": called(str(path)),
@@ -274,19 +288,10 @@ def _from_data(path: Path, data: dict[str, Any]) -> Layout:
         raise LayoutError(f"{path}: {', '.join(texts)} are texts, and encoding must be given")
     if not isinstance(targets, list) or not targets or not all(_is_target(target) for target in targets):
         raise LayoutError(f"{path}: targets is a list of tables, each with a format and what it holds, as texts")
-    named: dict[str, Any] = {"encoding": _encoding_named(path, texts.pop("encoding"))}
+    named: dict[str, Any] = {"encoding": encoding_named(texts.pop("encoding"))}
     depth = texts.pop("depth")
     named |= {"depth": _named(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
     return Layout(called(path.stem), targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
-
-
-def _encoding_named(path: Path, word: str) -> Encoding:
-    """An encoding of the catalogue, or one with settings: octahedral:axis=y."""
-    encoding = _named(path, "encoding", word.partition(MARK)[0], ENCODINGS)
-    try:
-        return variant(encoding, settings_in(word)[1]) if MARK in word else encoding
-    except ValueError as error:
-        raise LayoutError(f"{path}: encoding {word}: {error}") from error
 
 
 def _named(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:

@@ -21,12 +21,12 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
+from ...codecs.layout_names import layouts_named
 from ...codecs.names import codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
 from ...options.effect_names import effects_named, lacking, pipeline_with
-from ...options.layout_names import layouts_named
 from ...options.scene_names import scenes_named
 from ...options.targets import checked_setting, checked_target, what_is_left
 from ...output.errors import UsageError, pick, pick_one

@@ -19,12 +19,12 @@ from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
+from ...codecs.layout_names import layouts_named
 from ...codecs.names import check_twin, codecs_named
 from ...machine.devices import require_device, require_jax
 from ...metrics.images import require_flip
 from ...options.counts import MAX_REPEATS, in_range
 from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.scene_names import powers_named, scenes_named
 from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left

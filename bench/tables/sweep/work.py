@@ -10,9 +10,9 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
 from ....reports.charts import charts, plots, specs
 from ....reports.charts.drawings import Drawing
+from ...codecs.layout_names import layouts_named
 from ...machine.devices import require_device, require_jax
 from ...options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
-from ...options.layout_names import layouts_named
 from ...options.light_names import light_buffers_named
 from ...options.targets import (
     SHADOWS,
@@ -44,15 +44,18 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
     size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)
     check_scale(options.scale)
     in_range("--repeats", options.repeats, 1, MAX_REPEATS)
+    pipelines = pick("pipeline", options.pipeline, PIPELINES)
+    # Read once: a layout's own encoder is looked at, which takes seconds.
+    asked = None if options.layout is None else layouts_named(options.layout)
     made: list[Point] = []
     complaints: list[str] = []
     for shadows in pick("shadow", options.shadow, SHADOWS):
         for count in checked_numbers("--objects", options.objects, int, 1, MAX_OBJECTS):
             setting = checked_setting(count, options.lights, options.seed)
-            for pipeline in pick("pipeline", options.pipeline, PIPELINES):
+            for pipeline in pipelines:
                 plans = [
                     Plan(size, samples, layout, light, targets, shadows, options.scale)
-                    for layout in layouts_named(pipeline.usual_layout if options.layout is None else options.layout)
+                    for layout in asked or layouts_named(pipeline.usual_layout)
                     for light in light_buffers_named(options.light_buffer)
                     for targets in pick("number of light targets", options.light_targets, TARGETS)
                 ]

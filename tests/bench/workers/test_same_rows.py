@@ -28,6 +28,14 @@ vec3 mine_decode(vec2 e) {
     return normalize(n);
 }
 """
+LAYOUT = """
+encoding = "own/mine.glsl"
+targets = [
+    { format = "rgba8", holds = "normal.x:11 normal.y:11 power:10" },
+    { format = "rgba8", holds = "albedo.r albedo.g albedo.b kind" },
+    { format = "rgba8", holds = "specular.r specular.g specular.b" },
+]
+"""
 # Of every kind: several back ends, frames with pictures, steps that are functions, and what compilers say.
 COMMANDS = {
     "quality": "--encoding octahedral,spheremap --storage rgba8,rg8 --normals sphere,axes --count 4096",
@@ -83,7 +91,8 @@ def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, scheduler
     "is_absolute", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["relative", "absolute"]
 )
 def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolute):  # noqa: ARG001
-    """An encoder with what it includes, a look-up, a scene and a set of normals, named in any way: the same rows."""
+    """An encoder with what it includes, a layout that names it, a scene and a set of normals, named in any way: the
+    same rows."""
     typed = tmp_path / "typed" / "here"
     (typed / "own").mkdir(parents=True)
     monkeypatch.chdir(typed)
@@ -91,23 +100,27 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
     (typed / "own" / "wrap.glsl").write_text(wrap)
     (typed / "own" / "mine.glsl").write_text('#include "wrap.glsl"\n' + rest)
     (typed.parent / "other.glsl").write_text(OCTAHEDRAL.replace("mine", "other"))
+    (typed / "lay.toml").write_text(LAYOUT)
     as_document([sphere(1.0, 16, 8)]).write(typed / "scene.glb")
     n = np.random.default_rng(1).normal(size=(500, 3))
     np.save(typed / "list.npy", (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32))
     at = f"{typed}/" if is_absolute else ""
     encoders = f"{at}own/mine.glsl,{typed.parent}/other.glsl,../other.glsl" if is_absolute else "own/mine.glsl"
     encoders = encoders.removesuffix(",../other.glsl") if is_absolute else f"{encoders},../other.glsl"
-    for table, words in {
-        "quality": f"--encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl",
-        "render": f"--encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0",
-    }.items():
+    for number, (table, words) in enumerate(
+        [
+            ("quality", f"--encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl"),
+            ("render", f"--encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0"),
+            ("render", f"--layout {at}lay.toml,hybrid --scene {at}scene.glb --size 64x36 --repeats 0"),
+        ]
+    ):
         if is_absolute and table == "quality":
             continue  # to look at encoders first takes seconds, and paths are the same everywhere
         for name in ("one", "two"):
-            (tmp_path / f"{table}-{name}").mkdir()
-        here = measured(run, tmp_path / f"{table}-one", table, words)
-        there = measured(run, tmp_path / f"{table}-two", table, words, "--on", scheduler)
-        assert len(here[0]) >= 2 and here == there, table
+            (tmp_path / f"{number}-{name}").mkdir()
+        here = measured(run, tmp_path / f"{number}-one", table, words)
+        there = measured(run, tmp_path / f"{number}-two", table, words, "--on", scheduler)
+        assert len(here[0]) >= 2 and here == there, words
 
 
 @pytest.mark.slow

@@ -1,0 +1,95 @@
+"""Layouts as they are named: presets, or TOML files, which may name a user's own encoder."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.files import file_toml
+from ...encodings.codecs.variants import MARK, TABLE
+from ...gbuffer.layouts.layout import Layout, read_layout
+from ...gbuffer.layouts.presets import LAYOUTS
+from ...gbuffer.layouts.words import LayoutError
+from ..languages.words import file_of, lacks_a_function, names_an_encoder
+from ..output.errors import MissingError, UsageError, pick
+from .names import check_twin
+from .user_encodings import encodings_named
+
+# The file of a look-up table: scales.npy of best_fit:table=scales.npy.
+_TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)[^{MARK}]+")
+
+
+def layouts_named(names: str) -> list[Layout]:
+    """The layouts that comma-separated names stand for.
+
+    Raises:
+        UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
+        MissingError: the compiler of an encoder's language is not there.
+    """
+    words = dict.fromkeys(name.strip() for name in names.split(","))
+    # The first look at an encoder takes seconds: layouts that name the same one share it.
+    shared = cache(_encoding_named)
+    found = {name: _read(Path(name), shared) for name in words if name.endswith(".toml")}
+    known = {**LAYOUTS, **found}
+    chosen = pick("layout", names, known) if "all" not in words else list(known.values())
+    called = [layout.name for layout in chosen]
+    for name in called:
+        if called.count(name) > 1:
+            raise UsageError(f"two layouts are called {name}, which is a file's name without .toml; rename one")
+    return chosen
+
+
+def _read(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
+    try:
+        return read_layout(path, lambda word: encoding_named(_from_here(path, word)))
+    except LayoutError as error:
+        raise UsageError(str(error)) from error
+    except (UsageError, MissingError) as error:
+        # Of an encoder's file, which does not say that it was a layout that named it.
+        raise type(error)(f"{path}: {error}") from error
+
+
+def _encoding_named(word: str) -> Encoding:
+    """The encoding that --encoding would take by this name. Raises UsageError and MissingError."""
+    if "," in word or word == "all":
+        raise UsageError(f"encoding {word!r}: a layout has one encoding")
+    (encoding,) = encodings_named(word)
+    check_twin(encoding)
+    return encoding
+
+
+def _from_here(path: Path, word: str) -> str:
+    """The encoding that a layout names, with its file as seen from the working folder.
+
+    Raises:
+        LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
+    """
+    if names_an_encoder(word) or lacks_a_function(word):
+        _check_inside(word)
+        return str(path.parent / word)
+    table = _TABLE_FILE.search(word)
+    if not table:
+        return word
+    _check_inside(table[0])
+    return f"{word[: table.start()]}{path.parent / table[0]}{word[table.end() :]}"
+
+
+def _check_inside(file: str) -> None:
+    # As it is written: a link in the folder may lead out of it.
+    place = Path(os.path.normpath(file))
+    if place.is_absolute() or place.parts[0] == os.pardir:
+        raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
+
+
+def files_of_layout(path: Path) -> list[Path]:
+    """The file that a layout's encoding is read from; none of a layout that cannot be read."""
+    try:
+        word = _from_here(path, str(file_toml(path).get("encoding", "")))
+    except (OSError, ValueError, LayoutError):
+        return []
+    table = _TABLE_FILE.search(word)
+    return [Path(table[0])] if table else [file_of(word)] if names_an_encoder(word) else []
