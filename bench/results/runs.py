@@ -24,6 +24,8 @@ from ..tables.table import PART, Role, Row, Step, Table
 from .plain import key_text, plain
 
 RUN, ROWS = "run.json", "rows.jsonl"
+# How many facts that differ a message names, and how many letters of each value it shows.
+MOST_FACTS, SHORT = 3, 40
 
 
 @dataclass(frozen=True)
@@ -249,9 +251,34 @@ def same_work(facts: Row, others: Row) -> bool:
     return all(facts.get(name) == others.get(name) for name in ("request", "sources", "machine"))
 
 
-def same_place(facts: Row, others: Row) -> bool:
-    """Whether two runs are of the same sources on the same machine."""
-    return all(facts.get(name) == others.get(name) for name in ("sources", "machine"))
+def _other_place(facts: Row, others: Row) -> str:
+    """What sets a run apart from one that is to be added to it: sources, or facts of the machine with both values;
+    empty where nothing does."""
+    found = [f"of other sources ({_both(facts, others, 'sources')})"] if _differ(facts, others, "sources") else []
+    there, here = (one.get("machine") or {} for one in (facts, others))
+    names = [name for name in {**there, **here} if _differ(there, here, name)]
+    said = [f"{name} ({_both(there, here, name)})" for name in names[:MOST_FACTS]]
+    more = [f"{len(names) - MOST_FACTS} more"] if len(names) > MOST_FACTS else []
+    found += [f"of another machine: {', '.join([*said, *more])}"] if names else []
+    return " and ".join(found)
+
+
+def _differ(facts: Row, others: Row, name: str) -> bool:
+    return facts.get(name) != others.get(name)
+
+
+def _both(facts: Row, others: Row, name: str) -> str:
+    there, here = (str(one.get(name, "nothing")) for one in (facts, others))
+    return f"{_short(there, here)} there, {_short(here, there)} here"
+
+
+def _short(text: str, other: str) -> str:
+    """A text, where it is long a part of it: where it begins to be another than the other text."""
+    differing = (at for at, (one, another) in enumerate(zip(text, other, strict=False)) if one != another)
+    apart = next(differing, min(len(text), len(other)))
+    start = max(0, min(apart - SHORT // 4, len(text) - SHORT))
+    end = start + SHORT
+    return f"{'...' * (start > 0)}{text[start:end]}{'...' * (end < len(text))}"
 
 
 def unfinished(parent: Path, facts: Row) -> Path | None:
@@ -300,8 +327,8 @@ def _begun(folder: Path, facts: Row) -> Row:
         _write_facts(folder, facts)
         return dict(facts)
     kept = _facts(folder)
-    if not same_place(kept, facts):
-        raise UsageError(f"{folder} holds a run of other sources or another machine; name another folder")
+    if apart := _other_place(kept, facts):
+        raise UsageError(f"{folder} holds a run {apart}; name another folder")
     if damage := _damage(folder, kept):
         raise UsageError(f"{damage}; name another folder")
     return kept if same_work(kept, facts) else _extended(folder, kept, facts)

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -111,15 +112,42 @@ def test_two_processes_cannot_write_one_folder(tmp_path):
         opened(tmp_path / "run", FACTS).__enter__()
 
 
-def test_runs_of_other_sources_or_machines_are_left_alone(tmp_path):
-    folder = tmp_path / "run"
-    with opened(folder, FACTS) as run:
+LONG = "llvmpipe of a very long name that goes on and on, "
+
+
+@pytest.mark.parametrize(
+    "other, said",
+    [
+        ({"sources": "b"}, "of other sources (a there, b here); name"),
+        ({"machine": {"GL": "d"}}, "of another machine: GL (c there, d here); name"),
+        ({"machine": {}}, "of another machine: GL (c there, nothing here); name"),
+        ({"sources": "b", "machine": {"GL": "d"}}, "of other sources (a there, b here) and of another machine: GL"),
+        (
+            {"machine": dict.fromkeys("ABCDE", "d") | {"GL": "c"}},
+            "machine: A (nothing there, d here), B (nothing there, d here), C (nothing there, d here), 2 more; name",
+        ),
+        ({"machine": {"GL": LONG}}, "machine: GL (c there, llvmpipe of a very long name that goes o... here)"),
+    ],
+)
+def test_a_run_of_other_sources_or_another_machine_is_left_alone(tmp_path, other, said):
+    """What differs is named, with both values."""
+    folder, facts = tmp_path / "run", FACTS | {"sources": "a", "machine": {"GL": "c"}}
+    with opened(folder, facts) as run:
         kept(run, 1, [])
     before = (folder / ROWS).read_bytes()
-    for name in ("sources", "machine"):
-        with pytest.raises(UsageError, match="other sources or another machine"), opened(folder, FACTS | {name: "x"}):
-            pass
+    with pytest.raises(UsageError, match=re.escape(said)), opened(folder, facts | other):
+        pass
     assert (folder / ROWS).read_bytes() == before
+
+
+def test_long_facts_are_shown_where_they_differ(tmp_path):
+    with opened(tmp_path / "run", FACTS | {"machine": {"GL": LONG + "15.0.6"}}):
+        pass
+    with (
+        pytest.raises(UsageError, match=r"goes on and on, 15\.0\.6 there, .* goes on and on, 15\.0\.7 here"),
+        opened(tmp_path / "run", FACTS | {"machine": {"GL": LONG + "15.0.7"}}),
+    ):
+        pass
 
 
 def test_a_finished_run_is_extended_and_keeps_its_rows(tmp_path):
