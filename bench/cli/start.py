@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from pathlib import Path
 from typing import NoReturn
 
 
@@ -11,6 +12,10 @@ def program() -> NoReturn:
     """The command line as a process of its own."""
     # OpenBLAS waits for work in a loop that takes a whole core. What is multiplied here is small: 3 x 3 by many.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Mesa says on standard error that it cannot make its folder, in GL and in Vulkan; it does without one anyway.
+    chosen = os.environ.get("MESA_SHADER_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    if not _takes_files(Path(chosen or Path(os.environ.get("HOME", ""), ".cache"))):
+        os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
     # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from ..machine.memory import look_for_garbage_seldom
@@ -19,3 +24,9 @@ def program() -> NoReturn:
     from .app import program as run
 
     run()
+
+
+def _takes_files(folder: Path) -> bool:
+    """Whether files can be made in a folder, or the folder itself where it is not there."""
+    there = next(one for one in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(one))
+    return there.is_dir() and os.access(there, os.W_OK)

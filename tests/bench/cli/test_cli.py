@@ -273,6 +273,16 @@ def test_output_that_cannot_be_written_is_one_line():
     assert done.returncode == 2 and done.stderr == "normalbench: cannot write: No space left on device\n"
 
 
+@pytest.mark.usefixtures("gl")
+def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkeypatch):
+    """Mesa would print a line of its own."""
+    for name in ("DIR", "DISABLE"):
+        monkeypatch.delenv(f"MESA_SHADER_CACHE_{name}", raising=False)
+    (tmp_path / "file").touch()
+    done = in_a_process(*QUICK, "--backend", "glsl", XDG_CACHE_HOME=str(tmp_path / "file" / "cache"))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_a_reader_that_has_seen_enough_is_no_error():
     command = f"{sys.executable} -m normalbench.bench list | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
