@@ -60,6 +60,10 @@ def check_folder(folder: Path) -> None:
     """Raises UsageError where no file can be made in a folder, or the folder cannot be made. Leaves nothing behind."""
     there = folder
     while not there.exists() and there != there.parent:
+        if there.is_symlink():
+            # To make a folder of this name would only say that the name is taken.
+            why = f"{there} is a link to {there.readlink()}, where there is nothing"
+            raise UsageError(f"cannot write to {folder}: {why}; mend the link, or name another folder")
         there = there.parent
     try:
         with tempfile.TemporaryFile(dir=there):

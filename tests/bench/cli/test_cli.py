@@ -242,6 +242,17 @@ def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
     assert pipe.is_fifo()
 
 
+@pytest.mark.parametrize("target", ["nowhere", "link"], ids=["to nothing", "to itself"])
+@pytest.mark.parametrize("output", ["link", "link/below"])
+def test_a_link_that_leads_to_no_folder_is_one_line(run, tmp_path, monkeypatch, target, output):
+    monkeypatch.chdir(tmp_path)
+    Path("link").symlink_to(target)
+    status, out, err = run("run", "--tables", "depth", "-o", output)
+    why = f"link is a link to {target}, where there is nothing; mend the link, or name another folder"
+    assert (status, out, err) == (2, "", f"normalbench: cannot write to {output}: {why}\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["link"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM])
 def test_an_ended_run_keeps_its_rows_and_says_how_to_go_on(tmp_path, ended):
