@@ -10,13 +10,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext, suppress
 from dataclasses import replace
+from itertools import accumulate
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.storages.storage import STORAGES
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.codecs.variants import MARK
+from ...encodings.storages.storage import Storage, storage_of
 from ...reports.charts import drawings
 from ...reports.charts.pareto import Panel, Point, decibels
 from ...reports.page import embedded, library, markdown, page, several
@@ -25,7 +28,7 @@ from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
 from ...reports.page.live import Live
 from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
-from ...reports.page.verdict import LEADING, is_count, is_number
+from ...reports.page.verdict import BACKENDS, LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..live import checks
 from ..live.kept import read_live
@@ -373,25 +376,48 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
     """Instructions of each GPU family against errors of normals, of the first set, and of images; which codecs have no
     place among them is added to the remarks."""
     known = _counted(tables)
-    costs = {
-        family: drawings.for_drawing([row for row in known if row["family"] == family])
-        for family in dict.fromkeys(row["family"] for row in known)
-    }
+    families = dict.fromkeys(row["family"] for row in known)
+    costs = {family: [row for row in known if row["family"] == family] for family in families}
     lost: dict[str, dict[str, None]] = {}
     for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
-        rows = [
-            row for row in tables.get(table, ()) if row.get("backend", "jax") == "jax" and is_number(row.get(LEADING))
-        ]
-        where = str(rows[0].get(by)) if rows else ""
-        chosen = [row for row in rows if str(row.get(by)) == where]
-        for row in chosen if costs else ():
-            if not _codec(row):
-                lost.setdefault("it is not of the catalogue", {})[CodecKey.of(row).label] = None
-        errors = {codec: row[LEADING] for row in chosen if (codec := _codec(row))}
+        rows = [row for row in tables.get(table, ()) if row.get("encoding")]
+        where = next((str(row.get(by)) for row in rows if is_number(row.get(LEADING))), "")
+        errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
         panels = list(_panels(costs, errors, usual_family(tables), lost))
         if panels:
             yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
-    remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+    if costs:
+        remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
+    """The error of each codec; `lost` is told which codecs have none that can be drawn, by the reason."""
+    found: dict[Codec, float] = {}
+    for key, row in _row_of_each(rows).items():
+        codec = _codec(row)
+        if not is_number(row.get(LEADING)):
+            why = f"its error is not known ({row.get('skipped') or 'it was not measured'})"
+        elif not math.isfinite(row[LEADING]):
+            why = "nothing is lost"
+        elif not codec:
+            why = "how its code is stored is not known"
+        else:
+            found[codec] = row[LEADING]
+            continue
+        lost.setdefault(why, {})[key.label] = None
+    return found
+
+
+def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
+    """A row of each codec: one with an error before one without, then JAX's before GLSL's before others."""
+    order = list(dict.fromkeys([*BACKENDS, *(row.get("backend", "jax") for row in rows)]))
+    ranks: dict[CodecKey, tuple[bool, int]] = {}
+    found: dict[CodecKey, Row] = {}
+    for row in rows:
+        key, rank = CodecKey.of(row), (not is_number(row.get(LEADING)), order.index(row.get("backend", "jax")))
+        if rank <= ranks.get(key, rank):
+            ranks[key], found[key] = rank, row
+    return found
 
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
@@ -429,19 +455,37 @@ def _points(
     """Each codec whose cost is known; the others by the reason why not."""
     known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
     for codec, error in errors.items():
+        label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
         try:
             total = known.of(codec, where, operation, "instructions")
         except LeftOutError as reason:
-            lost.setdefault(str(reason), {})[codec.name] = None
+            lost.setdefault(str(reason), {})[label] = None
             continue
-        if math.isfinite(error):
-            label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
-            yield Point(codec.encoding.name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
+        name = drawings.as_text(codec.encoding.name)
+        yield Point(name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
 
 
 def _codec(row: Row) -> Codec | None:
-    encoding, storage = ENCODINGS.get(str(row.get("encoding"))), STORAGES.get(str(row.get("storage")))
+    """The codec of a row, for its cost and its bits; None where the row does not say how the code is stored."""
+    try:
+        storage = storage_of(str(row.get("storage")))
+    except ValueError:
+        return None
+    encoding = _encoding(row, storage) if storage else None
     return Codec(encoding, storage, str(row.get("rounding"))) if encoding and storage else None
+
+
+def _encoding(row: Row, storage: Storage) -> Encoding | None:
+    """The encoding of a row. Of a user's own, whose file the report does not read, the bits say how many numbers its
+    code has: that is all that its cost depends on besides its name."""
+    name = str(row.get("encoding"))
+    # octahedral:axis=y has as many numbers as octahedral.
+    if base := ENCODINGS.get(name.partition(MARK)[0]):
+        return base if base.name == name else replace(base, name=name)
+    sums, bits = list(accumulate(storage.bits)), row.get("bits", row.get("normal_bits"))
+    if bits not in sums:
+        return None
+    return replace(ENCODINGS["xyz"], name=name, components=sums.index(bits) + 1)
 
 
 def _kernels(folder: Path, family: str) -> Mapping[str, Path]:

@@ -1,6 +1,7 @@
 """The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
 points."""
 
+import math
 from itertools import combinations, pairwise
 
 import pytest
@@ -9,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_report import a_run, quality_row, reported
 
+from normalbench.bench.results.runs import read_run
+from normalbench.bench.suite.report import gathered
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import front_specs
 from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
@@ -67,18 +70,68 @@ def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
     assert "usermeta" not in alone and alone["title"]["text"] == "encode on navi31"
 
 
+def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
+    """Rows of cost of a GPU family, and of the storage of two numbers."""
+    about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
+    made = []
+    for side, (operation, packed) in enumerate((("encode", "pack"), ("decode", "unpack"))):
+        counts = {name: codecs[name][at][side] for name in codecs}
+        made += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
+        made.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
+    return made
+
+
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory):
     """A run whose costs are of two vendors' GPUs."""
-    costs = []
-    for at, family in enumerate(FAMILIES):
-        about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
-        for side, (operation, packed) in enumerate((("encode", "pack"), ("decode", "unpack"))):
-            counts = {name: CODECS[name][at][side] for name in CODECS}
-            costs += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
-            costs.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
+    costs = [row for at, family in enumerate(FAMILIES) for row in costs_of(CODECS, family, at)]
     quality = [quality_row(name, psnr_db=CODECS[name][2]) for name in CODECS]
     return a_run(tmp_path_factory.mktemp("costs") / "run", {"quality": quality, "cost": costs})
+
+
+def without_figures(name: str, why: str) -> dict:
+    return quality_row(name, psnr_db=None, angle_mean_deg=None, skipped=why)
+
+
+def charted(folder, quality: list[dict], codecs) -> tuple[list[dict], list[str]]:
+    """What the page's chart of one GPU shows of encoding, and what the page says of the codecs that are not in it."""
+    found = gathered(folder, read_run(a_run(folder, {"quality": quality, "cost": costs_of(codecs, "navi31")})))
+    encode, _ = front_specs.pareto_specs(found.fronts[0].panels, found.fronts[0].error)
+    return encode["data"]["values"], [said for said in found.remarks if "cost against error" in said]
+
+
+def test_a_users_encoding_has_its_place_by_glsl_where_it_has_no_twin(tmp_path):
+    """It beats one of the catalogue like any other; who has both back ends stands where JAX says."""
+    counts = {"xy": ((0, 4),), "octahedral": ((15, 17),), "mine": ((7, 11),), "mine:arithmetic=half": ((9, 11),)}
+    rows = [without_figures("mine", "no twin"), quality_row("mine", backend="glsl", psnr_db=52.0)]
+    rows += [quality_row("octahedral", backend="glsl", psnr_db=53.0), quality_row("octahedral", psnr_db=51.0)]
+    rows += [quality_row("mine:arithmetic=half", psnr_db=40.0), quality_row("xy", psnr_db=20.0)]
+    points, said = charted(tmp_path / "run", rows, counts)
+    shown = {point["codec"]: (point["cost"], point["error"], point["best"]) for point in points}
+    assert said == [] and shown == {
+        "xy rgba8": (2, 20.0, True),
+        "mine rgba8": (9, 52.0, True),
+        "octahedral rgba8": (17, 51.0, False),
+        "mine:arithmetic=half rgba8": (11, 40.0, False),
+    }
+
+
+def test_the_page_says_why_a_codec_has_no_place_in_its_chart(tmp_path):
+    rows = [quality_row("xy"), quality_row("costless"), quality_row("odd", bits=17), quality_row("three", bits=24)]
+    rows += [quality_row("same", psnr_db=math.inf), without_figures("lost", "no twin")]
+    names = ("xy", "odd", "same", "lost", "three")
+    points, said = charted(tmp_path / "run", rows, dict.fromkeys(names, ((1, 1),)))
+    assert [point["codec"] for point in points] == ["xy rgba8"]
+    assert said == [
+        f"No place in cost against error, for {why}."
+        for why in (
+            "how its code is stored is not known: odd rgba8",
+            "nothing is lost: same rgba8",
+            "its error is not known (no twin): lost rgba8",
+            "what it costs is not known: costless rgba8",
+            "what rgba8 8:8:8 costs is not known: three rgba8",
+        )
+    ]
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=str)

@@ -223,3 +223,10 @@ def test_what_loses_nothing_has_no_place(tmp_path, capsys, monkeypatch):
     panels, said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], tmp_path, capsys, monkeypatch)
     assert panels == [] and said == "normalbench: --plot: left out, nothing is lost on axes: xyz\n"
     assert not list(tmp_path.iterdir())
+
+
+def test_the_error_of_an_encoding_without_a_twin_is_glsls(tmp_path, capsys, monkeypatch):
+    by_backend = {"jax": None, "glsl": 48.0}
+    monkeypatch.setattr(cost_plot.quality, "measure", lambda case: {"psnr_db": by_backend[case.backend]})
+    (panel,), said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], tmp_path, capsys, monkeypatch)
+    assert [(point.name, point.error) for point in panel.points] == [("xyz", 48.0)] and said == ""
