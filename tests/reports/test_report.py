@@ -157,6 +157,20 @@ def test_rows_of_one_set_with_several_counts_are_not_compared(run, tmp_path):
     assert "playground of 1000 normals, rgba8: dB by back end" in read.text
 
 
+def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
+    """They have no count of normals; the page says why among every row."""
+    lost = {"psnr_db": None, "psnr_article_db": None, "angle_mean_deg": None, "count": None, "skipped": "no twin"}
+    rows = [quality_row("mine", **lost), quality_row("mine", backend="glsl", count=4096)]
+    rows += [quality_row("xy", count=4096), quality_row("mine", storage="rg8", **lost)]
+    folder = a_run(tmp_path / "run", {"quality": rows})
+    _, read = reported(run, folder)
+    status, text, _ = run("report", str(folder), "--markdown")
+    for said in (read.text, text):
+        assert "playground, rgba8: dB by back end" in said and "None normals" not in said
+        assert "playground, rg8" not in said and status == 0
+    assert "no twin" in read.text
+
+
 def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, left_out=["mine.glsl: line 3 does not compile"])
     _, read = reported(run, folder)

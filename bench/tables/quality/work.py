@@ -31,6 +31,8 @@ BY_ARITHMETIC = 1.05
 SUMMARY_DROPS = ("p99", "psnr_db_glsl", "mean")
 # The figures that a summary shows of every back end.
 BY_BACKEND = ("psnr_article_db", "psnr_db")
+# How many rows without figures a line names.
+MOST_NAMED = 4
 AGREED = "dB, the same by JAX and GLSL"
 
 
@@ -116,20 +118,39 @@ def _named(row: Row) -> str:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    rows = TABLE.without_hidden(without(with_limits(done.rows), ONCE))
-    yield Sheet("", rows, TABLE.drops(rows), notes=survivors(done.rows))
+    measured = [row for row in done.rows if not row["skipped"]]
+    notes = _not_shown(done.rows) if measured else ()
+    rows = TABLE.without_hidden(without(with_limits(measured or done.rows), ONCE))
+    yield Sheet("", rows, TABLE.drops(rows), notes=(*survivors(done.rows), *notes))
+
+
+def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
+    """A line for each reason why rows have no figures."""
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        if row["skipped"]:
+            reasons.setdefault(row["skipped"], []).append(_named(row))
+    for reason, names in reasons.items():
+        said = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
+        yield f"not shown, without figures: {said} ({reason})"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    groups: dict[tuple[str, str], list[Row]] = {}
+    measured = [row for row in rows if not row.get("skipped")]
+    # A row without figures has no count; it stands with the others of its set, and makes no sheet.
+    groups: dict[tuple[str, str], list[Row]] = {_sheet_of(row, measured): [] for row in measured}
     for row in rows:
-        groups.setdefault((counted_set(row, rows), row["storage"]), []).append(row)
+        groups.get(_sheet_of(row, measured), []).append(row)
     for (normals, storage), part in groups.items():
         lines = beside(part)
         said = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
         measured = backends_of(one_backend([row for row in part if row["angle_mean_deg"] is not None]))
         title = f"{normals}, {storage}: {said}; angles in degrees" + (f", by {measured}" if measured else "")
         yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage})
+
+
+def _sheet_of(row: Row, measured: Sequence[Row]) -> tuple[str, str]:
+    return counted_set(row, measured), row["storage"]
 
 
 def beside(rows: Iterable[Row]) -> list[Row]:
