@@ -115,9 +115,9 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
         pq.write_table(pa.table(columns), file)
 
 
-def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
-    """A table for a pull request, columns aligned as text so that the source reads too."""
-    rows, caption = without_constants(rows)
+def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
+    """A table for a pull request, columns aligned as text so that the source reads too; `total` as in `written`."""
+    rows, caption = _captioned(rows, total)
     columns = list(rows[0])
     cells = [[markdown_text(text_of(row[c])).replace("|", "\\|") for c in columns] for row in rows]
     widths = [max(len(c), *(len(line[i]) for line in cells)) for i, c in enumerate(columns)]
@@ -129,6 +129,13 @@ def to_markdown(rows: Sequence[dict[str, Any]]) -> str:
 
     rule = "|" + "|".join("-" * (w + 1) + (":" if n else "-") for w, n in zip(widths, numeric, strict=True)) + "|"
     return "\n".join([line(columns), rule, *map(line, cells), "", caption]).rstrip() + "\n"
+
+
+def _captioned(rows: Sequence[dict[str, Any]], total: str) -> tuple[list[dict[str, Any]], str]:
+    """The columns that a table shows, and the line below it."""
+    if not total:
+        return without_constants(rows)
+    return [{k: v for k, v in row.items() if any(text_of(one[k]) for one in rows)} for row in rows], total
 
 
 def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
@@ -160,8 +167,8 @@ def _widths(rows: Sequence[dict[str, Any]], columns: Sequence[str]) -> list[int]
     return [max(min(cell, PROSE), *map(len, c.split("_"))) for cell, c in zip(longest, columns, strict=True)]
 
 
-def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str] = ()) -> str:
-    """A table for people.
+def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str] = (), total: str = "") -> str:
+    """A table for people; `total` as in `written`.
 
     Columns that say the same in every row go to the line below it; where the rest does not fit, columns named in
     `expendable` are left out, the first first, and that is said.
@@ -172,7 +179,7 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     from rich.markup import escape
     from rich.table import Table
 
-    shown, caption = without_constants(rows)
+    shown, caption = _captioned(rows, total)
     columns = _fitting(shown, width, expendable)
     table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
     widths = _widths(shown, columns)
@@ -197,10 +204,12 @@ def written(
     width: int = 200,
     expendable: Sequence[str] = (),
     by: str | None = None,
+    total: str = "",
 ) -> str:
     """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
 
-    Tables for people are one for each value of column `by`, where it is given.
+    Tables for people are one for each value of column `by`, where it is given. `total` is the line below the table:
+    columns that say the same in every row then stay in the table, as that line would be read as their sum.
     """
     if format == "json":
         return to_json(rows)
@@ -210,6 +219,6 @@ def written(
     for row in rows:
         groups.setdefault(row[by] if by else None, []).append(row)
     return "\n".join(
-        to_markdown(group) if format == "markdown" else to_terminal(group, width, expendable)
+        to_markdown(group, total) if format == "markdown" else to_terminal(group, width, expendable, total)
         for group in groups.values()
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..output.errors import tell
 from ..output.writing import check_writable, without, write
-from .comparison import GONE, compared, in_short
+from .comparison import GONE, compared, in_short, total
 from .runs import read_run
 
 FOR_PROGRAMS = ("severity", "keys")
@@ -30,7 +30,11 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
         tell("the machines differ; times are not compared")
     if not changes:
         tell(f"no change in {len(ours.steps)} steps")
-    rows = in_short(changes) if format in ("table", "markdown") else without(changes, FOR_PROGRAMS)
-    write(rows, format, output)
+    if format in ("table", "markdown"):
+        lines = in_short(changes)
+        is_each_of_one = all(line["rows"] == 1 for line in lines)
+        write(without(lines, ("rows",) if is_each_of_one else ()), format, output, total=total(changes))
+    else:
+        write(without(changes, FOR_PROGRAMS), format, output)
     failing = [change for change in changes if change["verdict"] in FAILS[fail_on]]
     return int(bool(failing))

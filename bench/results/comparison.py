@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -23,6 +24,8 @@ GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
 # And of a figure that only one of the runs has.
 NOT_MEASURED, NEW = "not measured", "new"
+# What is said of a row, the first that holds: of its worst figure, or of the row itself. "changed" is neither.
+VERDICTS = ("worse", GONE, "better", NEW, "changed")
 
 
 def compared(before: Done, after: Done) -> list[Row]:
@@ -151,6 +154,31 @@ def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
     return [_line(group) for group in grouped]
 
 
+def total(changes: Sequence[Row]) -> str:
+    """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
+    rows: dict[tuple, list[Row]] = {}
+    for change in changes:
+        rows.setdefault(_by_row(change), []).append(change)
+    counts = Counter(map(_verdict, rows.values()))
+    said = ", ".join(f"{_several(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
+    return f"{_several(len(rows), 'row')}, {_several(_figures(changes), 'figure')}: {said}"
+
+
+def _verdict(row: Sequence[Row]) -> str:
+    """One of VERDICTS of all that changed in a row."""
+    found = {change["verdict"] for change in row} | {NEW for change in row if _presence(change) == ONLY[False]}
+    return next((verdict for verdict in VERDICTS if verdict in found), VERDICTS[-1])
+
+
+def _several(count: int, what: str) -> str:
+    return f"{count} {what}" + "s" * (count != 1)
+
+
+def _figures(changes: Sequence[Row]) -> int:
+    """How many figures changed; a row that only one of the runs has is of no column."""
+    return sum(bool(change["column"]) for change in changes)
+
+
 def _presence(change: Row) -> str:
     """Whether only one of the runs has the row, and which; empty where both have it."""
     return change["change"] if change["change"] in ONLY.values() else ""
@@ -176,4 +204,4 @@ def _line(group: Sequence[Row]) -> Row:
     shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
     name = worst["row"] if len(rows) == 1 else " ".join(map(str, shared)) or "several"
     kept = {column: worst[column] for column in ("column", "before", "after", "change", "verdict")}
-    return {"table": worst["table"], "row": name, "rows": len(rows), "figures": len(group)} | kept
+    return {"table": worst["table"], "row": name, "rows": len(rows), "figures": _figures(group)} | kept

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from test_readme import a_copy_of_the_rooms
 
-from normalbench.bench.results.comparison import compared, in_short, mann_whitney
+from normalbench.bench.results import compare_command
+from normalbench.bench.results.comparison import compared, in_short, mann_whitney, total
 from normalbench.bench.results.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -79,6 +80,30 @@ def test_new_rows_and_rows_that_are_gone_are_not_said_in_one_line():
         ("only after", 2, ""),
         ("only before", 2, "gone"),
     ]
+
+
+def quality_of(**psnr: float) -> Done:
+    """Encodings in rg8, by their error."""
+    rows = [{"encoding": name, "storage": "rg8", "psnr_db": db, "angle_max_deg": 90 / db} for name, db in psnr.items()]
+    return Done(MACHINE, [{"table": "quality", "key": {}, "rows": rows}])
+
+
+def test_the_total_is_one_of_rows_and_of_figures():
+    before, after = quality_of(xy=40.0, xyz=45.0, cube=50.0, octahedral=49.0), quality_of(xy=39.0, xyz=46.0, cube=48.0)
+    assert total(compared(before, after)) == "4 rows, 6 figures: 2 rows worse, 1 row gone, 1 row better"
+    assert total(compared(quality_of(), quality_of(xy=39.0))) == "1 row, 0 figures: 1 row new"
+
+
+def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, monkeypatch):
+    runs = {"before": quality_of(xy=40.0, xyz=45.0), "after": quality_of(xy=39.0, xyz=44.0)}
+    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    for kind in ("table", "markdown"):
+        status, out, _ = run("compare", "before", "after", "--format", kind)
+        *above, last = out.splitlines()
+        assert status == 0 and last == "2 rows, 4 figures: 2 rows worse"
+        assert "figures" in above[0] and "verdict" in above[0] and "rows" not in above[0]
+    status, out, _ = run("compare", "before", "after", "--format", "csv")
+    assert status == 0 and out.splitlines()[0] == "table,row,column,before,after,change,verdict"
 
 
 def step_of(*rows: dict) -> Done:
