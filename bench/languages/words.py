@@ -6,7 +6,7 @@ Imports nothing heavy: gates read these names before anything is measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -35,6 +35,35 @@ def file_of(word: str | Path) -> Path:
     """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal."""
     match = _PAIR.fullmatch(str(word))
     return Path(match["file"] if match else word)
+
+
+def files_in(word: str, folder: Path = Path()) -> list[Path]:
+    """The files that a word names, as it has them: `mine.hlsl` of mine.hlsl:EncodeNormal:DecodeNormal, and both of
+    mine.glsl/rg8+best_fit:table=scales.npy.
+
+    Args:
+        folder: where they are looked for.
+    """
+    if _is_file_in(word, file_of(word), folder):
+        return [file_of(word)]
+    found = dict.fromkeys(path for path in _parts_of(word) if _is_file_in(word, path, folder))
+    return list(found)
+
+
+def _parts_of(word: str) -> Iterator[Path]:
+    """What may be a file in a word: a codec of a chain is ENCODING/STORAGE."""
+    for part in word.split("+"):
+        for encoding in (part, part.rpartition("/")[0]):
+            yield file_of(encoding)
+            yield from (Path(setting.partition("=")[2]) for setting in encoding.split(":"))
+
+
+def _is_file_in(word: str, path: Path, folder: Path) -> bool:
+    try:
+        # As typed: a path that pathlib would shorten is not found in the word again.
+        return str(path) in word and (folder / path).is_file()
+    except (OSError, ValueError):  # no name that a file could have
+        return False
 
 
 def lacks_a_function(word: str) -> bool:

@@ -17,7 +17,7 @@ from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
-from ..languages.words import file_of
+from ..languages.words import files_in
 from ..machine.devices import found_device
 from ..options.option import checked_options, fields_of
 from ..output.errors import MissingError, UsageError
@@ -96,10 +96,9 @@ def _located(
 
 
 def _path(folder: Path, word: str) -> str:
-    try:
-        return os.path.relpath(folder / word) if file_of(folder / word).is_file() else word
-    except (OSError, ValueError):  # no name that a file could have
-        return word
+    for path in files_in(word, folder):
+        word = word.replace(str(path), os.path.relpath(folder / path))
+    return word
 
 
 @dataclass(frozen=True)

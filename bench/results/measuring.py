@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ..languages.source import Source
-from ..languages.words import file_of, names_an_encoder, twin_of
+from ..languages.words import files_in, names_an_encoder, twin_of
 from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
@@ -157,7 +157,7 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 def files_of(options: Any) -> Row:
     """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
     words = [word for words in words_of(options).values() for word in words]
-    found = {word: digest for word in words if word and (digest := _fingerprint(file_of(word)))}
+    found = {word: digest for word in words if word and (digest := "".join(map(_fingerprint, files_in(word))))}
     return {"files": found} if found else {}
 
 

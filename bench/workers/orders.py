@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..languages.words import file_of
+from ..languages.words import files_in
 from ..options.words import given_in
 from ..output.errors import UsageError, noting_what_is_left_out
 from ..results.measuring import Asked, companions, file_digest, words_of
@@ -78,14 +78,13 @@ class Packing:
         self.typed: dict[str, str] = {}
 
     def packed(self, word: str) -> str:
-        """A word as a worker is to read it; the file that it names is collected, with its companions."""
-        path = _file_in(word)
-        if path is None:
-            return word
-        folder = self._place(path)
-        for one in (path, *companions(path)):
-            self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one
-        return word.replace(str(path), str(folder / path.name), 1)
+        """A word as a worker is to read it; the files that it names are collected, with their companions."""
+        for path in files_in(word):
+            folder = self._place(path)
+            for one in (path, *companions(path)):
+                self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one
+            word = word.replace(str(path), str(folder / path.name))
+        return word
 
     def _place(self, path: Path) -> Path:
         """The folder of a worker that stands for a file's."""
@@ -94,18 +93,6 @@ class Packing:
         own = Path(ELSEWHERE) / hashlib.sha256(os.fsencode(path.parent.absolute())).hexdigest()[:12]
         self.typed[str(own)] = str(path.parent)
         return own
-
-
-def _file_in(word: str) -> Path | None:
-    """The file that a word names, alone or as a parameter: `mine.glsl`, `best_fit:table=scales.npy`."""
-    for path in (file_of(word), Path(word.rpartition("=")[2])):
-        try:
-            # As typed: a path that pathlib would shorten is not found in the word again.
-            if path.is_file() and str(path) in word:
-                return path
-        except (OSError, ValueError):
-            continue
-    return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,10 +137,10 @@ def parcels_of(ask: Asked, steps: Sequence[Step]) -> list[Parcel]:
 
 def _parts(options: Any) -> list[Any]:
     """Options for one file each, of the option that names most files; none where all files together are small."""
-    named = {name: [word for word in words if _file_in(word)] for name, words in words_of(options).items()}
+    named = {name: [word for word in words if files_in(word)] for name, words in words_of(options).items()}
     name = max(named, key=lambda name: len(named[name]), default="")
     files = named.get(name, [])
-    if sum(path.stat().st_size for path in map(_file_in, files) if path) < APART:
+    if sum(path.stat().st_size for word in files for path in files_in(word)) < APART:
         return []
     others = [word for word in words_of(options)[name] if word and word not in files]
     return [replace(options, **{name: word}) for word in (*files, *([",".join(others)] if others else []))]

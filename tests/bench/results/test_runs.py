@@ -29,6 +29,7 @@ from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
+from normalbench.bench.workers.orders import Packing
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
@@ -220,6 +221,30 @@ def test_a_file_is_known_with_what_is_read_beside_it(tmp_path, name, beside):
             path.write_text(content + path.suffix)
             keys.append(json.dumps(files_of(options)))
     assert len(set(keys)) == len(keys)
+
+
+@pytest.mark.parametrize(
+    "word, names",
+    [
+        ("best_fit:table=t/scales.npy", ["t/scales.npy"]),
+        ("mine.glsl/rg8+xyz", ["mine.glsl"]),
+        ("octahedral/rg8+t/other.hlsl:Encode:Decode", ["t/other.hlsl"]),
+        ("mine.glsl/rg8+best_fit:table=t/scales.npy", ["mine.glsl", "t/scales.npy"]),
+        ("a+b.glsl", ["a+b.glsl"]),
+    ],
+)
+def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, names):
+    """A changed table or a changed half of a chain is another thing to measure."""
+    monkeypatch.chdir(tmp_path)
+    options, keys = TABLES["quality"].options(encoding=f"octahedral,{word}"), []
+    Path("t").mkdir()
+    for content in ("one", "other"):
+        for name in names:
+            Path(name).write_text(content + name)
+            keys.append(json.dumps(files_of(options)))
+    assert len(set(keys)) == len(keys) == 2 * len(names), keys
+    packing = Packing()
+    assert packing.packed(word) == word and sorted(packing.files) == sorted(names)
 
 
 def test_sources_are_known_by_their_content():
