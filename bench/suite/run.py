@@ -49,7 +49,10 @@ def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
     """A table's options in a run: what is usual, and what was said in place of it."""
     known = fields_of(table.options)
     own = {name: value for name, value in said.items() if name in known and known[name].option.in_run}
-    return [table.options(**dict(usual) | own) for usual in table.usual]
+    # A layout is measured as it is where no encoding is said.
+    unusual = {"encoding"} if own.get("layout") else set()
+    chosen = ({name: value for name, value in usual.items() if name not in unusual} for usual in table.usual)
+    return [table.options(**usual | own) for usual in chosen]
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:

@@ -6,6 +6,8 @@ import re
 import pytest
 from written import as_document, planes_of, some_normals, write_exr
 
+from normalbench.bench.suite.run import options_of
+from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.scenes.mesh import sphere
 
 MINE = """
@@ -50,6 +52,13 @@ def runs(run, tmp_path, monkeypatch):
         status, _, err = run("run", *words, "-o", name)
         assert status == 0, err
     return tmp_path
+
+
+def test_a_layout_is_measured_as_it_is_unless_an_encoding_is_said():
+    (as_it_is,), (put_in,) = (
+        options_of(TABLES["render"], {"layout": "mine.toml"} | said) for said in ({}, {"encoding": "xyz"})
+    )
+    assert (as_it_is.encoding, as_it_is.repeats, put_in.encoding) == (None, 0, "xyz")
 
 
 @pytest.mark.slow
