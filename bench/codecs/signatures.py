@@ -25,6 +25,9 @@ VERSION = re.compile(r"^\s*#\s*version\b", re.M)
 # What a program is given from outside: a number, a texture, or a block with a name of its own or without one.
 GIVEN = re.compile(r"\b(?:uniform|buffer)\b([^;{]*)(?:\{([^}]*)\}([^;]*))?;")
 
+# A uniform that is given a value where it is declared, and what follows it.
+VALUED = re.compile(r"\w+\s*(?:\[[^\]]*\]\s*)?=.*", re.DOTALL)
+
 
 class Encode(NamedTuple):
     """The encode that a file defines: the encoding's name, and how many numbers its code has; and the names of the
@@ -63,11 +66,14 @@ def _given_and_read(code: str) -> str:
     """What a shader reads of what it is given from outside; empty where it reads nothing of it."""
     rest = GIVEN.sub(" ", code)
     for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
-        alone = declared.split(",") if members is None else [*members.split(";"), instance]
-        # One with a value, `uniform float k = 2.0`, has it here too.
-        names = [words[-1] for one in alone if "=" not in one and (words := re.findall(r"\w+", one.split("[")[0]))]
-        if read := next((name for name in names if re.search(rf"\b{name}\b", rest)), ""):
-            return f"the uniform {read}" if members is None else f"{read} of a block"
+        # The members of a block with a name are read by that name. A uniform with a value has it here, too.
+        is_named = members is not None and instance.strip()
+        said = instance if is_named else VALUED.sub("", declared) if members is None else members
+        what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
+        names = [words[-1] for one in re.split("[;,]", said) if (words := re.findall(r"\w+", one.split("[")[0]))]
+        # Not the x of n.x.
+        if read := next((name for name in names if re.search(rf"(?<![.\w]){name}\b", rest)), ""):
+            return what.format(read)
     return ""
 
 

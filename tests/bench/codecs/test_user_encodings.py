@@ -116,7 +116,10 @@ def test_parameters_are_written_as_glsl_allows(tmp_path, parameters):
 def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
     told = MINE.replace("mine", "other")
     path = written(
-        tmp_path, "uniform float unread; uniform float half_of_it = 0.5;\nbuffer B { int q; } b;\n" + MINE + told
+        tmp_path,
+        "uniform float unread; uniform float half_of_it = 0.5;\nbuffer B { int q; } b;\nbuffer C { float x; };\n"
+        + MINE
+        + told,
     )
     assert user_encodings.examined(Path(path)).notes[0] == "mine alone is measured; move other into a file of its own"
 
