@@ -7,6 +7,7 @@ What is written in another way is named with what it should be, before a compile
 from __future__ import annotations
 
 import re
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,9 +25,6 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 VERSION = re.compile(r"^\s*#\s*version\b", re.M)
 # What a program is given from outside: a number, a texture, or a block with a name of its own or without one.
 GIVEN = re.compile(r"\b(?:uniform|buffer)\b([^;{]*)(?:\{([^}]*)\}([^;]*))?;")
-
-# A uniform that is given a value where it is declared, and what follows it.
-VALUED = re.compile(r"\w+\s*(?:\[[^\]]*\]\s*)?=.*", re.DOTALL)
 
 
 class Encode(NamedTuple):
@@ -68,9 +66,10 @@ def _given_and_read(code: str) -> str:
     for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
         # The members of a block with a name are read by that name. A uniform with a value has it here, too.
         is_named = members is not None and instance.strip()
-        said = instance if is_named else VALUED.sub("", declared) if members is None else members
+        said = instance if is_named else declared if members is None else members
         what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
-        names = [words[-1] for one in re.split("[;,]", said) if (words := re.findall(r"\w+", one.split("[")[0]))]
+        unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", said))
+        names = [words[-1] for one in unvalued if (words := re.findall(r"\w+", one.split("[")[0]))]
         # Not the x of n.x.
         if read := next((name for name in names if re.search(rf"(?<![.\w]){name}\b", rest)), ""):
             return what.format(read)
