@@ -28,5 +28,9 @@ def program() -> NoReturn:
 
 def _takes_files(folder: Path) -> bool:
     """Whether files can be made in a folder, or the folder itself where it is not there."""
-    there = next(one for one in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(one))
-    return there.is_dir() and os.access(there, os.W_OK)
+    try:
+        there = next(one for one in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(one))
+    except OSError:  # the working folder is gone
+        return False
+    # Path.is_dir raises where a link leads to what may not be looked at.
+    return os.path.isdir(there) and os.access(there, os.W_OK)  # noqa: PTH112

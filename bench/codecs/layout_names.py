@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -40,7 +40,17 @@ def layouts_named(names: str) -> list[Layout]:
     for name in called:
         if called.count(name) > 1:
             raise UsageError(f"two layouts are called {name}, which is a file's name without .toml; rename one")
+    _check_encodings(chosen)
     return chosen
+
+
+def _check_encodings(layouts: Sequence[Layout]) -> None:
+    """Raises UsageError for two encodings of one name, which rows could not tell apart."""
+    files: dict[str, set[Path]] = {}
+    for encoding in (layout.encoding for layout in layouts):
+        files.setdefault(encoding.name, set()).add(encoding.source or encoding.glsl)
+        if len(files[encoding.name]) > 1:
+            raise UsageError(f"two layouts have each an encoding named {encoding.name} of its own; rename one")
 
 
 def _read(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
@@ -81,7 +91,7 @@ def _from_here(path: Path, word: str) -> str:
 def _check_inside(file: str) -> None:
     # As it is written: a link in the folder may lead out of it.
     place = Path(os.path.normpath(file))
-    if place.is_absolute() or place.parts[0] == os.pardir:
+    if place.is_absolute() or place.parts[:1] == (os.pardir,):
         raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
 
 

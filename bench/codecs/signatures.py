@@ -25,6 +25,7 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 VERSION = re.compile(r"^\s*#\s*version\b", re.M)
 # What a program is given from outside: a number, a texture, or a block with a name of its own or without one.
 GIVEN = re.compile(r"\b(?:uniform|buffer)\b([^;{]*)(?:\{([^}]*)\}([^;]*))?;")
+SIZE = re.compile(r"\[[^\]]*\]")
 
 
 class Encode(NamedTuple):
@@ -49,8 +50,6 @@ def encode_of(path: Path, text: str) -> Encode:
         raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
     if VERSION.search(code):
         raise UsageError(f"{path}: it has #version; leave it out, normalbench has its own")
-    if given := _given_and_read(code):
-        raise UsageError(f"{path}: it reads {given}, which has no value here; write a constant in its place")
     found = [match.groups() for match in ENCODE.finditer(code)]
     right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
     if not right:
@@ -60,8 +59,17 @@ def encode_of(path: Path, text: str) -> Encode:
     return Encode(name, int(kind[-1]), tuple(other for _, other in others if f"{other}_decode" in code))
 
 
+def check_given(path: Path, code: str) -> None:
+    """Raises UsageError where a shader reads what it is given from outside: a uniform, a texture or a buffer.
+
+    Args:
+        code: the file with what it includes, without comments.
+    """
+    if given := _given_and_read(code):
+        raise UsageError(f"{path}: it reads {given}, which has no value here; write a constant in its place")
+
+
 def _given_and_read(code: str) -> str:
-    """What a shader reads of what it is given from outside; empty where it reads nothing of it."""
     rest = GIVEN.sub(" ", code)
     for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
         # The members of a block with a name are read by that name. A uniform with a value has it here, too.
@@ -69,11 +77,16 @@ def _given_and_read(code: str) -> str:
         said = instance if is_named else declared if members is None else members
         what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
         unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", said))
-        names = [words[-1] for one in unvalued if (words := re.findall(r"\w+", one.split("[")[0]))]
-        # Not the x of n.x.
-        if read := next((name for name in names if re.search(rf"(?<![.\w]){name}\b", rest)), ""):
+        names = [words[-1] for one in unvalued if (words := re.findall(r"\w+", SIZE.sub(" ", one)))]
+        if read := next((name for name in names if _is_read(name, rest)), ""):
             return what.format(read)
     return ""
+
+
+def _is_read(name: str, code: str) -> bool:
+    """Whether code has a name, not as the x of n.x, and declares nothing itself that is called so."""
+    own = rf"\b(?!return\b|else\b)\w+\s+{name}\s*[,)=;\[]|#\s*define\s+{name}\b"
+    return bool(re.search(rf"(?<![.\w]){name}\b", code)) and not re.search(own, code)
 
 
 def _is_encode(function: tuple[str, ...]) -> bool:

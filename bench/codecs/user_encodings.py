@@ -20,6 +20,7 @@ from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ...reports.page.verdict import MADE_FOR
+from ..languages.source import Source
 from ..languages.translated import translated
 from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from ..machine import children, forks
@@ -28,7 +29,7 @@ from ..options.words import given_in
 from ..output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ..output.spelling import spelled
 from . import tuned_names
-from .signatures import encode_of
+from .signatures import check_given, encode_of
 
 # Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
 OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -212,8 +213,17 @@ def _text(path: Path, is_biased: bool) -> _Text:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
+    check_given(path, _with_includes(path))
     # Not resolved: the twin lies next to the path that was given.
     return _Text(name, components, path.absolute())
+
+
+def _with_includes(path: Path) -> str:
+    """A file and what it includes; empty where that cannot be read, which its compiler says with the line."""
+    try:
+        return Source(path).text
+    except UsageError:
+        return ""
 
 
 def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:

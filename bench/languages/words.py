@@ -6,7 +6,7 @@ Imports nothing heavy: gates read these names before anything is measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -16,6 +16,8 @@ TRANSLATED: Mapping[str, str] = MappingProxyType(
     {**dict.fromkeys((".hlsl", ".hlsli", ".fx"), "HLSL"), ".slang": "Slang", ".wgsl": "WGSL"}
 )
 ENDINGS = (GLSL, *TRANSLATED)
+# Between a codec and the encoding of what comes back from it.
+CHAIN = "+"
 # FILE:ENCODE:DECODE.
 _PAIR = re.compile(
     rf"(?P<file>.*(?:{'|'.join(map(re.escape, TRANSLATED))})):(?P<encode>\w+):(?P<decode>\w+)", re.I | re.S
@@ -37,33 +39,37 @@ def file_of(word: str | Path) -> Path:
     return Path(match["file"] if match else word)
 
 
-def files_in(word: str, folder: Path = Path()) -> list[Path]:
+def files_in(word: str, folder: Path = Path()) -> list[str]:
     """The files that a word names, as it has them: `mine.hlsl` of mine.hlsl:EncodeNormal:DecodeNormal, and both of
     mine.glsl/rg8+best_fit:table=scales.npy.
 
     Args:
         folder: where they are looked for.
     """
-    if _is_file_in(word, file_of(word), folder):
-        return [file_of(word)]
-    found = dict.fromkeys(path for path in _parts_of(word) if _is_file_in(word, path, folder))
-    return list(found)
+    match = _PAIR.fullmatch(word)
+    whole = match["file"] if match else word
+    if _is_file(folder, whole):
+        return [whole]
+    found = [value for setting in word.split(":") if _is_file(folder, value := setting.partition("=")[2])]
+    # A chain is ENCODING/STORAGE+ENCODING.
+    before, is_chain, then = word.rpartition(CHAIN)
+    parts = (before.rpartition("/")[0], then) if is_chain else ()
+    return list(dict.fromkeys([*found, *(one for part in parts for one in files_in(part, folder))]))
 
 
-def _parts_of(word: str) -> Iterator[Path]:
-    """What may be a file in a word: a codec of a chain is ENCODING/STORAGE."""
-    for part in word.split("+"):
-        for encoding in (part, part.rpartition("/")[0]):
-            yield file_of(encoding)
-            yield from (Path(setting.partition("=")[2]) for setting in encoding.split(":"))
-
-
-def _is_file_in(word: str, path: Path, folder: Path) -> bool:
+def _is_file(folder: Path, text: str) -> bool:
     try:
-        # As typed: a path that pathlib would shorten is not found in the word again.
-        return str(path) in word and (folder / path).is_file()
+        return bool(text) and (folder / text).is_file()
     except (OSError, ValueError):  # no name that a file could have
         return False
+
+
+def with_files(word: str, others: Mapping[str, str]) -> str:
+    """A word with other files in place of those that `files_in` found in it."""
+    if not others:
+        return word
+    known = "|".join(map(re.escape, sorted(others, key=len, reverse=True)))
+    return re.sub(rf"(?<![^+=])(?:{known})(?![^:/+])", lambda match: others[match[0]], word)
 
 
 def lacks_a_function(word: str) -> bool:

@@ -17,7 +17,7 @@ from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
 from ..gates.measured import Found, measured, single, table_named, with_their_options
-from ..languages.words import files_in
+from ..languages.words import files_in, with_files
 from ..machine.devices import found_device
 from ..options.option import checked_options, fields_of
 from ..output.errors import MissingError, UsageError
@@ -96,9 +96,7 @@ def _located(
 
 
 def _path(folder: Path, word: str) -> str:
-    for path in files_in(word, folder):
-        word = word.replace(str(path), os.path.relpath(folder / path))
-    return word
+    return with_files(word, {path: os.path.relpath(folder / path) for path in files_in(word, folder)})
 
 
 @dataclass(frozen=True)

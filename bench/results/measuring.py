@@ -157,7 +157,8 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 def files_of(options: Any) -> Row:
     """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
     words = [word for words in words_of(options).values() for word in words]
-    found = {word: digest for word in words if word and (digest := "".join(map(_fingerprint, files_in(word))))}
+    digests = {word: "".join(_fingerprint(Path(file)) for file in files_in(word)) for word in words}
+    found = {word: digest for word, digest in digests.items() if digest}
     return {"files": found} if found else {}
 
 

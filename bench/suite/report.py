@@ -30,6 +30,7 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import BACKENDS, LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
+from ..languages.words import CHAIN
 from ..live import checks
 from ..live.kept import read_live
 from ..live.programs import helpers, storage_functions
@@ -479,8 +480,8 @@ def _encoding(row: Row, storage: Storage) -> Encoding | None:
     """The encoding of a row. Of a user's own, whose file the report does not read, the bits say how many numbers its
     code has: that is all that its cost depends on besides its name."""
     name = str(row.get("encoding"))
-    # octahedral:axis=y has as many numbers as octahedral.
-    if base := ENCODINGS.get(name.partition(MARK)[0]):
+    # octahedral:axis=y has as many numbers as octahedral, and a chain as many as its last encoding.
+    if base := ENCODINGS.get(name.rpartition(CHAIN)[2].partition(MARK)[0]):
         return base if base.name == name else replace(base, name=name)
     sums, bits = list(accumulate(storage.bits)), row.get("bits", row.get("normal_bits"))
     if bits not in sums:

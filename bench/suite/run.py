@@ -49,8 +49,9 @@ def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
     """A table's options in a run: what is usual, and what was said in place of it."""
     known = fields_of(table.options)
     own = {name: value for name, value in said.items() if name in known and known[name].option.in_run}
-    # A layout is measured as it is where no encoding is said.
-    unusual = {"encoding"} if own.get("layout") else set()
+    # A layout is measured as it is where nothing is said to put into it.
+    is_as_it_is = own.get("layout") and not {"encoding", "storage", "rounding"} & set(own)
+    unusual = {"encoding"} if is_as_it_is else set()
     chosen = ({name: value for name, value in usual.items() if name not in unusual} for usual in table.usual)
     return [table.options(**usual | own) for usual in chosen]
 

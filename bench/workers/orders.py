@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..languages.words import files_in
+from ..languages.words import files_in, with_files
 from ..options.words import given_in
 from ..output.errors import UsageError, noting_what_is_left_out
 from ..results.measuring import Asked, companions, file_digest, words_of
@@ -79,12 +79,14 @@ class Packing:
 
     def packed(self, word: str) -> str:
         """A word as a worker is to read it; the files that it names are collected, with their companions."""
-        for path in files_in(word):
+        others: dict[str, str] = {}
+        for typed in files_in(word):
+            path = Path(typed)
             folder = self._place(path)
             for one in (path, *companions(path)):
                 self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one
-            word = word.replace(str(path), str(folder / path.name))
-        return word
+            others |= {typed: str(folder / path.name)} if folder != path.parent else {}
+        return with_files(word, others)
 
     def _place(self, path: Path) -> Path:
         """The folder of a worker that stands for a file's."""
@@ -140,7 +142,7 @@ def _parts(options: Any) -> list[Any]:
     named = {name: [word for word in words if files_in(word)] for name, words in words_of(options).items()}
     name = max(named, key=lambda name: len(named[name]), default="")
     files = named.get(name, [])
-    if sum(path.stat().st_size for word in files for path in files_in(word)) < APART:
+    if sum(Path(path).stat().st_size for word in files for path in files_in(word)) < APART:
         return []
     others = [word for word in words_of(options)[name] if word and word not in files]
     return [replace(options, **{name: word}) for word in (*files, *([",".join(others)] if others else []))]

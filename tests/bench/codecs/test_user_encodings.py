@@ -10,6 +10,7 @@ from normalbench.bench.codecs import user_encodings
 from normalbench.bench.codecs.first_look import directions, first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.machine import forks
+from normalbench.bench.output.errors import UsageError
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
@@ -122,6 +123,28 @@ def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
         + told,
     )
     assert user_encodings.examined(Path(path)).notes[0] == "mine alone is measured; move other into a file of its own"
+
+
+@pytest.mark.parametrize(
+    "before, told",
+    [
+        ("layout(std140) uniform Camera { mat4 view; mat4 proj; };", ""),
+        ("uniform vec3[4] kernel;", ""),
+        ("#if 0\nuniform float k;\n#else\nconst float k = 2.0;\n#endif\nfloat q() { return k; }", ""),
+        ("uniform vec3[4] kernel; vec3 q() { return kernel[0]; }", "the uniform kernel"),
+        ("uniform U { float a[4], k; } u; float q() { return u.k; }", "the block u"),
+        ("uniform U { float a[4], k; }; float q() { return a[0]; }", "a of a block"),
+        ('#include "below.glsl"\nfloat q() { return below; }', "the uniform below"),
+    ],
+)
+def test_only_what_is_read_from_outside_is_refused(tmp_path, before, told):
+    written(tmp_path, "uniform float below;", "below.glsl")
+    path = Path(written(tmp_path, f"{before}\n{MINE}"))
+    if not told:
+        assert read_encoding(path).name == "mine"
+        return
+    with pytest.raises(UsageError, match=f"mine.glsl: it reads {told}, which has no value here"):
+        read_encoding(path)
 
 
 def test_a_missing_file_is_one_line(run, tmp_path):

@@ -18,6 +18,7 @@ import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import isa, spirv
+from normalbench.bench.languages.words import with_files
 from normalbench.bench.normals import normal_sets
 from normalbench.bench.output import journal
 from normalbench.bench.output.errors import UsageError
@@ -231,6 +232,9 @@ def test_a_file_is_known_with_what_is_read_beside_it(tmp_path, name, beside):
         ("octahedral/rg8+t/other.hlsl:Encode:Decode", ["t/other.hlsl"]),
         ("mine.glsl/rg8+best_fit:table=t/scales.npy", ["mine.glsl", "t/scales.npy"]),
         ("a+b.glsl", ["a+b.glsl"]),
+        ("t+/mine.glsl/rg8+xyz", ["t+/mine.glsl"]),
+        ("best_fit:table=t+/scales.npy", ["t+/scales.npy"]),
+        ("t//mine.glsl", ["t/mine.glsl"]),
     ],
 )
 def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, names):
@@ -238,11 +242,13 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
     monkeypatch.chdir(tmp_path)
     options, keys = TABLES["quality"].options(encoding=f"octahedral,{word}"), []
     Path("t").mkdir()
+    Path("t+").mkdir()
     for content in ("one", "other"):
         for name in names:
             Path(name).write_text(content + name)
             keys.append(json.dumps(files_of(options)))
     assert len(set(keys)) == len(keys) == 2 * len(names), keys
+    assert with_files(word, {"mine.glsl": "x/mine.glsl"}) == re.sub(r"^mine\.glsl", "x/mine.glsl", word)
     packing = Packing()
     assert packing.packed(word) == word and sorted(packing.files) == sorted(names)
 

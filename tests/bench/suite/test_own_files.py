@@ -55,10 +55,10 @@ def runs(run, tmp_path, monkeypatch):
 
 
 def test_a_layout_is_measured_as_it_is_unless_an_encoding_is_said():
-    (as_it_is,), (put_in,) = (
-        options_of(TABLES["render"], {"layout": "mine.toml"} | said) for said in ({}, {"encoding": "xyz"})
-    )
+    said = ({}, {"encoding": "xyz"}, {"storage": "rg8"})
+    (as_it_is,), (put_in,), (usual,) = (options_of(TABLES["render"], {"layout": "mine.toml"} | one) for one in said)
     assert (as_it_is.encoding, as_it_is.repeats, put_in.encoding) == (None, 0, "xyz")
+    assert usual.encoding and usual.storage == "rg8", "a storage alone is for what is usual"
 
 
 @pytest.mark.slow
