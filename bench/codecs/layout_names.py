@@ -14,7 +14,7 @@ from ...encodings.codecs.variants import MARK, TABLE
 from ...gbuffer.layouts.layout import Layout, read_layout
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.layouts.words import LayoutError
-from ..languages.words import file_of, lacks_a_function, names_an_encoder
+from ..languages.words import files_in, lacks_a_function, names_an_encoder
 from ..output.errors import MissingError, UsageError, pick
 from .names import check_twin
 from .user_encodings import encodings_named
@@ -96,10 +96,9 @@ def _check_inside(file: str) -> None:
 
 
 def files_of_layout(path: Path) -> list[Path]:
-    """The file that a layout's encoding is read from; none of a layout that cannot be read."""
+    """The file that a layout's encoding is read from; none where there is none, or the layout cannot be read."""
     try:
         word = _from_here(path, str(file_toml(path).get("encoding", "")))
     except (OSError, ValueError, LayoutError):
         return []
-    table = _TABLE_FILE.search(word)
-    return [Path(table[0])] if table else [file_of(word)] if names_an_encoder(word) else []
+    return [Path(file) for file in files_in(word)]

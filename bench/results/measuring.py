@@ -213,7 +213,7 @@ def _of_layout(path: Path) -> list[Path]:
     # It imports JAX, which start-up does without.
     from ..codecs.layout_names import files_of_layout
 
-    return [one for file in files_of_layout(path) if file.is_file() for one in (file, *companions(file))]
+    return [one for file in files_of_layout(path) for one in (file, *companions(file))]
 
 
 def _included(path: Path) -> list[Path]:
