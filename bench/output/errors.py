@@ -16,12 +16,17 @@ T = TypeVar("T")
 LONGEST = 1500
 
 
-def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
-    """A line for each reason, with the names of what is left out for it."""
+def names_by_reason(left_out: Iterable[tuple[str, str | None]]) -> dict[str, list[str]]:
+    """For each reason the names of what is left out for it."""
     reasons: dict[str, list[str]] = {}
     for name, why in left_out:
         reasons.setdefault(str(why), []).append(name)
-    return [f"{', '.join(names)}: {why}" for why, names in reasons.items()]
+    return reasons
+
+
+def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
+    """A line for each reason, with the names of what is left out for it."""
+    return [f"{', '.join(names)}: {why}" for why, names in names_by_reason(left_out).items()]
 
 
 # Where somebody asks for them, the lines about what is left out.

@@ -15,7 +15,7 @@ from ...metrics import published
 from ...normals.normal_names import normal_sets_named
 from ...options.backends import backends_named
 from ...options.counts import check_seed, checked_count
-from ...output.errors import UsageError, leave_out
+from ...output.errors import UsageError, leave_out, names_by_reason
 from ...output.writing import check_folder, without
 from ..charts import backends_of, drawing, having, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
@@ -126,11 +126,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
     """A line for each reason why rows have no figures."""
-    reasons: dict[str, list[str]] = {}
-    for row in rows:
-        if row["skipped"]:
-            reasons.setdefault(row["skipped"], []).append(_named(row))
-    for reason, names in reasons.items():
+    skipped = ((_named(row), row["skipped"]) for row in rows if row["skipped"])
+    for reason, names in names_by_reason(skipped).items():
         said = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
         yield f"not shown, without figures: {said} ({reason})"
 
