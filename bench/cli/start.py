@@ -10,20 +10,32 @@ from typing import NoReturn
 
 def program() -> NoReturn:
     """The command line as a process of its own."""
+    # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    _end_on_an_unsupported_system()
     # OpenBLAS waits for work in a loop that takes a whole core. What is multiplied here is small: 3 x 3 by many.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Mesa says on standard error that it cannot make its folder, in GL and in Vulkan; it does without one anyway.
     chosen = os.environ.get("MESA_SHADER_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     if not _takes_files(Path(chosen or Path(os.environ.get("HOME", ""), ".cache"))):
         os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
-    # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
     from ..machine.memory import look_for_garbage_seldom
 
     look_for_garbage_seldom()
     from .app import program as run
 
     run()
+
+
+def _end_on_an_unsupported_system() -> None:
+    from ..machine.system import require_supported_system
+    from ..output.errors import MissingError, tell
+
+    try:
+        require_supported_system()
+    except MissingError as error:
+        tell(str(error))
+        raise SystemExit(error.exit_code) from None
 
 
 def _takes_files(folder: Path) -> bool:

@@ -51,9 +51,10 @@ def preloaded(path: Path) -> dict[str, str]:
 
 
 def _name(stem: str, path: Path) -> str:
-    """What a library is called, by what it holds; nothing that is the name of a file where it cannot be read."""
+    """What a library is called, by what it holds; the name of no file where it cannot be read, or others may have
+    written it."""
     try:
-        return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so"
+        return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so" if kept.is_private(path) else ""
     except OSError:
         return ""
 
@@ -62,7 +63,7 @@ def _built(folder: Path, stem: str, source: Path) -> Path:
     if not shutil.which(COMPILER):
         raise NullDeviceError(NO_COMPILER, is_missing=True)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        kept.make_folder(folder)
         # Others see a whole file or none: it is moved there once it is complete.
         with tempfile.TemporaryDirectory(dir=folder) as made:
             whole = Path(made) / "library.so"

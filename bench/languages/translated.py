@@ -113,7 +113,7 @@ def _file(name: str, text: str) -> Path:
     for folder in (kept.folder() / "translated", None):
         path = (folder or _own_folder()) / name
         try:
-            if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            if not kept.is_private(path) or path.read_text(encoding="utf-8") != text:
                 _write(path, text)
             return path
         except (OSError, ValueError):
@@ -123,7 +123,7 @@ def _file(name: str, text: str) -> Path:
 
 def _write(path: Path, text: str) -> None:
     """Readers see the old file or the new one."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    kept.make_folder(path.parent)
     with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
         try:
             file.write(text)

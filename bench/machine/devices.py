@@ -33,6 +33,10 @@ def keep_programs() -> None:
     """
     chosen: Any = jax.config
     if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache and not cache.is_off():
+        try:
+            cache.make_folder(programs_folder())
+        except OSError:
+            return
         jax.config.update("jax_compilation_cache_dir", str(programs_folder()))
         # An entry that was damaged, or cannot be written, is no more than one that is not there.
         warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache entry")

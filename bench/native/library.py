@@ -108,7 +108,7 @@ def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
 def _keep(made: Path, path: Path) -> None:
     """Have the next process find a library, all of it or none. A folder that cannot be written is no error."""
     with contextlib.suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        kept.make_folder(path.parent)
         with tempfile.TemporaryDirectory(dir=path.parent) as folder:
             shutil.copyfile(made, Path(folder) / path.name)
             (Path(folder) / path.name).replace(path)
@@ -125,7 +125,10 @@ def _compiled(text: str, folder: Path) -> Path:
 
 
 def _is_whole(path: Path) -> bool:
-    """Whether a library is there as it was written. A damaged one would end the process that loads it."""
+    """Whether a library is there as this user wrote it. A damaged one would end the process that loads it, and one of
+    another user would do as it likes."""
+    if not kept.is_private(path):
+        return False
     try:
         data = path.read_bytes()
     except OSError:

@@ -1,15 +1,26 @@
-"""What was computed once and holds for good, kept in the user's cache folder: one file for each key."""
+"""What was computed once and holds for good, kept in the user's cache folder: one file for each key.
+
+Some of it is machine code that this process loads, and all of it decides figures. So nothing is read that another user
+may have written.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
+import shutil
+import stat
 import tempfile
 from collections.abc import Callable
+from errno import EACCES
 from pathlib import Path
 from typing import Any
 
+from .errors import MissingError
+
+# The cache is for its user alone.
+PRIVATE = 0o700
 # Set for this process and its children where nothing is to be read from the cache, or kept in it.
 OFF = "NORMALBENCH_NO_CACHE"
 
@@ -31,6 +42,58 @@ def folder() -> Path:
     return (Path(home) if Path(home).is_absolute() else Path("~/.cache").expanduser()) / "normalbench"
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder of the cache, and those above it, for this user alone.
+
+    One that others could write into until now is closed to them, and emptied of what is not this user's.
+
+    Raises:
+        OSError: it cannot be made, or it is another user's.
+    """
+    for one in reversed((path, *path.parents)):
+        if not one.exists():
+            one.mkdir(PRIVATE, exist_ok=True)
+        elif one.is_relative_to(folder()) and not _is_private(one.stat()):
+            _close(one)
+
+
+def _close(path: Path) -> None:
+    """Raises PermissionError where the folder is another user's: not even root uses what others own."""
+    if not _is_own(path.stat()):
+        raise PermissionError(EACCES, "another user's folder", str(path))
+    path.chmod(PRIVATE)
+    for one in path.iterdir():
+        if not _is_own(one.lstat()):
+            shutil.rmtree(one) if one.is_dir() and not one.is_symlink() else one.unlink()
+
+
+def require_folder() -> None:
+    """Raises MissingError where nothing can be kept."""
+    if is_off():
+        raise MissingError(f"{OFF} is set")
+    try:
+        make_folder(folder())
+    except OSError as error:
+        raise MissingError(f"{error.strerror or error}: {folder()}; XDG_CACHE_HOME names another one") from error
+
+
+def is_private(path: Path) -> bool:
+    """Whether nobody but this user can have written a file of the cache, or put it there."""
+    above = [one for one in path.parents if one.is_relative_to(folder())]
+    try:
+        return _is_private(path.lstat()) and all(_is_private(one.stat()) for one in above)
+    except OSError:
+        return False
+
+
+def _is_private(found: os.stat_result) -> bool:
+    return _is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
+def _is_own(found: os.stat_result) -> bool:
+    return found.st_uid == os.geteuid()
+
+
 def key_of(*parts: str | bytes) -> str:
     """A key that differs wherever one of the parts does."""
     digest = hashlib.sha256()
@@ -45,6 +108,8 @@ def read(key: str) -> dict[str, Any] | None:
     if is_off():
         return None
     try:
+        if not is_private(_path(key)):
+            return None
         kept = json.loads(_path(key).read_text(encoding="utf-8"))
         value = kept["value"]
         is_whole = kept["key"] == key and kept["digest"] == _digest(value)
@@ -73,7 +138,7 @@ def write(key: str, value: dict[str, Any]) -> None:
         return
     path = _path(key)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
             try:
                 json.dump({"key": key, "digest": _digest(value), "value": value}, file)

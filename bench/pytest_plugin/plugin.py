@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..options.option import Field
-from ..output.errors import UsageError
+from ..output.errors import MissingError, UsageError
 from .own_options import BASELINE, REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, flag, mirrored
 
 if TYPE_CHECKING:
@@ -74,9 +74,7 @@ def _check_baseline(path: Path | None) -> None:
 @pytest.fixture
 def normalbench(request: pytest.FixtureRequest) -> Normalbench:
     """Measures codecs: .quality(...) and .render(...) give rows to hold to limits; files lie beside the test's own."""
-    from .session import Normalbench, session_of
-
-    return Normalbench(session_of(request.config), request.path.parent)
+    return _measuring(request.config, request.path.parent)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -87,11 +85,22 @@ def pytest_runtest_call(item: pytest.Item) -> None:
         pytest.fail("\n".join(said), pytrace=False)
 
 
-def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
-    from .session import Normalbench, session_of
+def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
+    """What measures for the tests of a folder; where the program does not run they fail, and other tests do not."""
+    from ..machine.system import require_supported_system
 
     try:
-        Normalbench(session_of(item.config), item.path.parent).hold_mark(mark.args, mark.kwargs)
+        require_supported_system()
+    except MissingError as error:
+        pytest.fail(str(error), pytrace=False)
+    from .session import Normalbench, session_of
+
+    return Normalbench(session_of(config), folder)
+
+
+def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
+    try:
+        _measuring(item.config, item.path.parent).hold_mark(mark.args, mark.kwargs)
     except (AssertionError, UsageError) as error:
         return str(error)
     return ""

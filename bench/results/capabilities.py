@@ -12,6 +12,7 @@ from ..languages.language import require_language
 from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
+from ..output import cache
 from ..output.errors import MissingError
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
 
@@ -41,6 +42,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "encoders in HLSL": lambda: require_language("HLSL"),
         "encoders in Slang": lambda: require_language("Slang"),
         "-o FILE.parquet": _require_parquet,
+        "what was compiled and measured is kept (the cache folder)": cache.require_folder,
     }
 )
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..output.errors import UsageError
-from .worker import RESOURCE, quiet
+from .worker import RESOURCE, check_certificates, quiet
 
 CONNECT_S, ANSWER_S, LOOK_S = 5.0, 120.0, 1.0
 # Whose exceptions say that something was lost.
@@ -42,10 +42,15 @@ LOST = Lost()
 
 
 class Link:
-    """A connection to the scheduler at an address. Raises UsageError where nobody answers."""
+    """A connection to the scheduler at an address.
+
+    Raises:
+        UsageError: nobody answers, or TLS has no certificates.
+    """
 
     def __init__(self, address: str):
         quiet()
+        check_certificates("--on", address, "client")
         self.address = address
         self._arrived: queue.SimpleQueue[Flight] = queue.SimpleQueue()
         self._numbers, self._name = itertools.count(), uuid.uuid4().hex

@@ -9,7 +9,7 @@ import asyncio
 import signal
 import sys
 
-from .worker import end_now, end_with_parent, quiet
+from .worker import HTTP, end_now, end_with_parent, quiet
 
 HOST = "127.0.0.1"
 
@@ -17,7 +17,7 @@ HOST = "127.0.0.1"
 async def _run(port: int) -> None:
     from distributed import Scheduler
 
-    async with Scheduler(host=HOST, port=port, dashboard=False) as scheduler:
+    async with Scheduler(host=HOST, port=port, dashboard=False, dashboard_address=HTTP) as scheduler:
         print(scheduler.address, flush=True)
         await scheduler.finished()
 

@@ -13,6 +13,7 @@ import os
 import queue
 import shutil
 import signal
+import socket
 import sys
 import tempfile
 import threading
@@ -23,6 +24,7 @@ from concurrent.futures import Executor, Future
 from contextlib import suppress
 from types import FrameType
 from typing import Any, NoReturn
+from urllib.parse import urlsplit
 
 from ..machine.memory import keep_what_is_freed, look_for_garbage_seldom
 from ..output.errors import UsageError, tell
@@ -30,6 +32,8 @@ from .words import checked_address, require_dask
 
 # What a scheduler knows normalbench's workers by.
 RESOURCE = "normalbench"
+# What dask serves over HTTP is read by nobody; it listens all the same, so it listens here.
+HTTP = "127.0.0.1:0"
 # How long a worker waits for its scheduler, and how often it asks, in seconds.
 PATIENCE_S, AGAIN_S = 60.0, 0.5
 
@@ -95,17 +99,60 @@ class Connection(threading.Thread):
         with tempfile.TemporaryDirectory(prefix="normalbench-dask-") as folder:
             worker = Worker(
                 self._address,
+                host=interface_towards(self._address),
                 nthreads=1,
                 executor=self._executor,
                 resources={RESOURCE: 1},
                 local_directory=folder,
                 memory_limit=0,
                 dashboard=False,
+                dashboard_address=HTTP,
                 death_timeout=AGAIN_S * 10,
             )
             async with worker:
                 self.joined = True
                 await worker.finished()
+
+
+def check_certificates(option: str, address: str, role: str) -> None:
+    """Raises UsageError where an address asks for TLS and dask's configuration has no certificate to show.
+
+    Args:
+        option: what the address was given to.
+        role: client or worker, as dask's configuration says.
+    """
+    from distributed.security import Security
+
+    if not address.startswith("tls://"):
+        return
+    names = ("CA_FILE", f"{role.upper()}__CERT", f"{role.upper()}__KEY")
+    try:
+        is_there = Security().get_connection_args(role).get("ssl_context") is not None
+    except OSError as error:
+        raise UsageError(f"{option} {address}: the certificates cannot be read: {error}") from error
+    if not is_there:
+        missing = ", ".join(f"DASK_DISTRIBUTED__COMM__TLS__{name}" for name in names)
+        raise UsageError(f"{option} {address}: no certificates; set {missing} (docs/secure-workers.md)")
+
+
+def interface_towards(address: str) -> str:
+    """The IP address of this machine from which a scheduler is reached: a worker listens on it and on no other.
+
+    Dask by itself listens on all of them, and runs whatever reaches its port.
+
+    Args:
+        address: of the scheduler, such as tcp://10.0.0.5:8786.
+
+    Raises:
+        OSError: the scheduler's name is unknown, or no network leads to it.
+    """
+    scheduler = urlsplit(address)
+    family, _, _, _, where = socket.getaddrinfo(scheduler.hostname, scheduler.port, type=socket.SOCK_DGRAM)[0]
+    # Nothing is sent: connecting a datagram socket only chooses the interface.
+    with socket.socket(family, socket.SOCK_DGRAM) as chosen:
+        chosen.connect(where)
+        found = chosen.getsockname()[0]
+    return f"[{found}]" if family == socket.AF_INET6 else found
 
 
 def serve(address: str, patience: float = PATIENCE_S) -> bool:
@@ -135,6 +182,7 @@ def worker_command(address: str) -> int:
     checked = checked_address("worker", address)
     require_dask()
     quiet()
+    check_certificates("worker", checked, "worker")
     warnings.simplefilter("ignore")
     tell(f"joins {checked}; interrupt it to end it")
     if not serve(checked):

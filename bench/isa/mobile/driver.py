@@ -14,6 +14,8 @@ SAID = "NORMALBENCH_NULL_MOBILE"
 # A folder that `normalbench doctor --build-mesa` was given, where it is not the last one.
 VARIABLE = "NORMALBENCH_MESA"
 BUILD = "build"
+# The file of the cache that names the last build.
+RECORD = "mesa"
 INSTALL = "build it once (normalbench doctor --build-mesa DIR)"
 
 
@@ -25,15 +27,13 @@ def folder() -> Path | None:
 
 def record(where: Path) -> None:
     """Remembers a build for later commands."""
-    kept.folder().mkdir(parents=True, exist_ok=True)
-    (kept.folder() / "mesa").write_text(f"{where.resolve()}\n", encoding="utf-8")
+    kept.make_folder(kept.folder())
+    (kept.folder() / RECORD).write_text(f"{where.resolve()}\n", encoding="utf-8")
 
 
 def _recorded() -> str:
-    try:
-        return (kept.folder() / "mesa").read_text(encoding="utf-8").strip()
-    except OSError:
-        return ""
+    record = kept.folder() / RECORD
+    return record.read_text(encoding="utf-8").strip() if kept.is_private(record) else ""
 
 
 def descriptions() -> Iterator[Path]:

@@ -1,0 +1,98 @@
+"""Nothing of the cache is read that another user may have written."""
+
+import os
+import stat
+
+import pytest
+
+from normalbench.bench.isa import null_device
+from normalbench.bench.native import library as native
+from normalbench.bench.output import cache
+
+ELSE = 12345
+FOLDERS = ("native", "programs", "translated")
+as_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files to another user")
+
+
+@pytest.fixture
+def folder(own_cache, monkeypatch):
+    monkeypatch.delenv(cache.OFF, raising=False)
+    return own_cache / "normalbench"
+
+
+def is_open_to_others(path):
+    path.chmod(path.stat().st_mode | 0o022)
+
+
+def is_anothers(path):
+    os.chown(path, ELSE, ELSE)
+
+
+WAYS = [is_open_to_others, pytest.param(is_anothers, marks=as_root)]
+KEY = "ab" + "0" * 62
+
+
+@pytest.mark.parametrize("done_to", WAYS)
+@pytest.mark.parametrize("part", ["", "native", "file"])
+def test_a_poisoned_library_is_compiled_anew(folder, done_to, part):
+    """The file itself, its folder or the whole cache is another user's, or others may write into it."""
+    if not native.compiler():
+        pytest.skip("no C compiler")
+    native._made.cache_clear()
+    source = f"int answer(void) {{ return {len(part)}; }}"
+    assert native.library(source, "answer").answer() == len(part)
+    (kept,) = (folder / "native").glob("*.so")
+    # It is whole and says something else, as the digest at its end does.
+    poison = native._compiled("int answer(void) { return 666; }", folder.parent).read_bytes()
+    kept.write_bytes(poison)
+    done_to({"": folder, "native": folder / "native", "file": kept}[part])
+    assert not cache.is_private(kept)
+    native._made.cache_clear()
+    assert native.library(source, "answer").answer() == len(part)
+
+
+@pytest.mark.parametrize("done_to", WAYS)
+def test_a_value_of_anothers_is_made_anew(folder, done_to):
+    cache.write(KEY, {"bits": 8})
+    assert cache.read(KEY) == {"bits": 8}
+    done_to(folder / KEY[:2] / f"{KEY}.json")
+    assert cache.read(KEY) is None and cache.kept(KEY, lambda: {"bits": 9}) == {"bits": 9}
+    assert cache.read(KEY) == {"bits": 9}, "and that is kept"
+
+
+def test_folders_are_for_their_user_alone(folder):
+    old = os.umask(0)
+    try:
+        cache.write(KEY, {})
+        for name in FOLDERS:
+            cache.make_folder(folder / name / "deeper")
+    finally:
+        os.umask(old)
+    modes = {path: stat.S_IMODE(path.stat().st_mode) for path in (folder.parent, folder, *folder.rglob("*/"))}
+    assert len(modes) >= 9 and set(modes.values()) == {cache.PRIVATE}, modes
+
+
+@as_root
+def test_a_folder_that_was_open_is_closed_and_rid_of_what_others_put_there(folder):
+    programs = folder / "programs"
+    cache.make_folder(programs)
+    (programs / "mine").write_text("mine")
+    (programs / "theirs").write_text("theirs")
+    (programs / "folder").mkdir()
+    for name in ("theirs", "folder"):
+        os.chown(programs / name, ELSE, ELSE)
+    programs.chmod(0o777)
+    cache.make_folder(programs)
+    assert [path.name for path in programs.iterdir()] == ["mine"] and stat.S_IMODE(programs.stat().st_mode) == 0o700
+
+
+@as_root
+def test_a_cache_of_another_user_is_not_used_and_doctor_says_so(run, folder):
+    folder.mkdir(parents=True)
+    os.chown(folder, ELSE, ELSE)
+    cache.write(KEY, {})
+    assert not [*folder.iterdir()]
+    with pytest.raises(null_device.NullDeviceError, match="another user's folder; XDG_CACHE_HOME names another one"):
+        null_device.library()
+    _, out, _ = run("doctor", "--format", "csv")
+    assert f"no: another user's folder: {folder}; XDG_CACHE_HOME names another one" in out

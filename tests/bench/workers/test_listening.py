@@ -1,0 +1,153 @@
+"""Nothing that `--on` or `worker` starts can be reached from the network, and TLS is as the manual says."""
+
+import os
+import re
+import shlex
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from manual import PAGES, ROOT
+
+from normalbench.bench.workers.scheduler import HOST
+from normalbench.bench.workers.worker import interface_towards
+
+NORMALBENCH = [sys.executable, "-m", "normalbench.bench"]
+# Long enough for ten looks at its sockets while the workers are there.
+LONG = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "2^20")
+# 127.0.0.1, ::1 and the former as IPv6, as the kernel writes them: words of 32 bits in the machine's own order.
+HERE = {"0100007F", "00000000000000000000000001000000", "0000000000000000FFFF00000100007F"}
+LISTENS = "0A"
+MANUAL = PAGES[ROOT / "docs" / "secure-workers.md"]
+
+
+def family_of(pid: int) -> set[int]:
+    """A process and all that it started."""
+    parents = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parents[int(path.parent.name)] = int(path.read_text().rpartition(")")[2].split()[1])
+        except OSError:
+            continue
+    found = {pid}
+    while more := {child for child, parent in parents.items() if parent in found} - found:
+        found |= more
+    return found
+
+
+def sockets_of(pid: int) -> set[str]:
+    """The inodes of a process's sockets."""
+    found = set()
+    for path in Path(f"/proc/{pid}/fd").glob("*"):
+        try:
+            if match := re.fullmatch(r"socket:\[(\d+)\]", str(path.readlink())):
+                found.add(match[1])
+        except OSError:
+            continue
+    return found
+
+
+def listening(pid: int) -> list[str]:
+    """The addresses that a process and all that it started listen on."""
+    inodes = set().union(*map(sockets_of, family_of(pid)))
+    rows = [line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]]
+    return [row[1].partition(":")[0] for row in rows if row[3] == LISTENS and row[9] in inodes]
+
+
+def looked_at(process: subprocess.Popen, fewest: int, looks: int = 10) -> None:
+    """Looks at a command's sockets, from when there are so many that listen: all are this machine's own."""
+    seen, until = [], time.monotonic() + 120
+    while process.poll() is None and time.monotonic() < until and len(seen) < looks:
+        addresses = listening(process.pid)
+        assert set(addresses) <= HERE, f"listens on {sorted(set(addresses) - HERE)}, see /proc/net/tcp"
+        if len(addresses) >= fewest:
+            seen.append(addresses)
+        time.sleep(0.1)
+    assert len(seen) == looks, f"{len(seen)} looks at {fewest} sockets or more; the command ended: {process.poll()}"
+
+
+@pytest.fixture
+def started():
+    """Starts a program, which ends with the test."""
+    there = []
+
+    def start(command: list[str], **named) -> subprocess.Popen:
+        there.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **named))
+        return there[-1]
+
+    yield start
+    for one in reversed(there):
+        one.terminate()
+        one.communicate(timeout=30)
+
+
+@pytest.mark.slow
+def test_local_workers_listen_on_this_machine_alone(started, tmp_path):
+    """Two sockets each of four workers and a scheduler: what is sent to workers, and what dask serves over HTTP."""
+    looked_at(started([*NORMALBENCH, *LONG, "--on", "local:4", "-o", str(tmp_path / "rows.json")]), fewest=10)
+
+
+@pytest.mark.slow
+def test_a_worker_listens_where_it_reaches_its_scheduler(started):
+    scheduler = started([sys.executable, "-m", "normalbench.bench.workers.scheduler"], stdin=-1, stdout=-1)
+    worker = started([*NORMALBENCH, "worker", scheduler.stdout.readline().strip()])
+    looked_at(worker, fewest=2)
+
+
+@pytest.mark.parametrize(("address", "own"), [("tcp://127.0.0.1:8786", HOST), ("tls://localhost:1", HOST)])
+def test_the_interface_is_the_one_that_leads_to_the_scheduler(address, own):
+    assert interface_towards(address) in (own, "[::1]")
+
+
+def test_an_unknown_scheduler_has_no_interface():
+    with pytest.raises(OSError):
+        interface_towards("tcp://no-such-machine.invalid:8786")
+
+
+@pytest.mark.parametrize(
+    ("command", "role"), [(("quality", "--normals", "axes", "--on"), "CLIENT"), (("worker",), "WORKER")]
+)
+def test_tls_without_certificates_is_one_line(run, monkeypatch, tmp_path, command, role):
+    monkeypatch.chdir(tmp_path)
+    status, _, err = run(*command, "tls://127.0.0.1:1")
+    assert status == 2 and "no certificates; set DASK_DISTRIBUTED__COMM__TLS__CA_FILE" in err
+    assert f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY (docs/secure-workers.md)" in err
+
+
+def block(name: str) -> list[str]:
+    return re.search(rf"<!-- tls {name} -->\n```text\n(.*?)```", MANUAL, re.S)[1].splitlines()
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind((HOST, 0))
+        return free.getsockname()[1]
+
+
+@pytest.mark.slow
+def test_the_manuals_commands_measure_over_tls(started, tmp_path):
+    """On this machine's address and free ports. Who has no certificate is refused."""
+    (certificate,) = block("certificate")
+    subprocess.run(shlex.split(certificate), cwd=tmp_path, check=True, capture_output=True)
+    secret = dict(line.split("=") for line in block("variables"))
+    port, there = str(free_port()), {"cwd": tmp_path, "env": os.environ | secret}
+    commands = [
+        shlex.split(line.replace("10.0.0.5", HOST).replace("8786", port).replace("8787", str(free_port())))
+        for line in block("commands")
+    ]
+    scheduler, worker, asks = [[sys.executable, "-m", MODULES[words[0]], *words[1:]] for words in commands]
+    looked_at(started(scheduler, **there), fewest=2, looks=1)
+    looked_at(started(worker, **there), fewest=2, looks=1)
+    rows = subprocess.run([*asks, "--backend", "jax", "--format", "csv"], capture_output=True, text=True, **there)
+    alone = subprocess.run([*asks[:-2], "--backend", "jax", "--format", "csv"], capture_output=True, text=True, **there)
+    assert rows.returncode == 0 and rows.stdout == alone.stdout, rows.stderr
+    stranger = subprocess.run(asks, capture_output=True, text=True, cwd=tmp_path)
+    assert stranger.returncode == 2 and "no certificates" in stranger.stderr
+    plain = subprocess.run([*asks[:-1], f"tcp://{HOST}:{port}"], capture_output=True, text=True, cwd=tmp_path)
+    assert plain.returncode == 2 and len(plain.stderr.splitlines()) == 1 and "nobody answers" in plain.stderr
+
+
+MODULES = {"dask": "dask", "normalbench": "normalbench.bench"}
