@@ -1,6 +1,7 @@
 # make bench   set up what is missing, then measure the default suite
-# make test    set up what is missing, then run the tests that take little time; with ALL=1 the slow ones too
-# make slow    the other tests: whole runs, tables of the manual measured anew, exhaustive searches
+# make test    set up what is missing, then run the tests that take little time; with ALL=1 the slow ones too,
+#              with ALL=nightly every one
+# make slow    the other tests: whole runs and what seldom breaks; .ci/nightly has those that take longest
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
@@ -16,10 +17,10 @@ bench: .venv/ready
 
 # One more than two cores: a test that waits for a command or a browser leaves its core to another.
 test: .venv/ready
-	$(BIN)/python -m pytest -n 3 $(if $(ALL),-m "slow or not slow")
+	$(BIN)/python -m pytest -n 3 $(if $(ALL),-m "$(if $(filter nightly,$(ALL)),nightly or not nightly,not nightly)")
 
 slow: .venv/ready
-	$(BIN)/python -m pytest -n 3 -m slow
+	$(BIN)/python -m pytest -n 3 -m "slow and not nightly"
 
 setup: .venv/ready
 

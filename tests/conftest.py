@@ -16,18 +16,28 @@ os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import jax
+import kept_rows
 import kept_runs
 import pytest
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.isa.nvidia import tools
-from normalbench.bench.machine.memory import keep_what_is_imported, look_for_garbage_seldom
+from normalbench.bench.machine.memory import (
+    give_back_what_a_table_needed,
+    give_back_what_is_freed,
+    have_few_heaps,
+    keep_what_is_imported,
+    look_for_garbage_seldom,
+)
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
+from normalbench.bench.results import measuring
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
-KEPT = Path(__file__).parents[1] / ".pytest_cache" / "spirv"
+CACHE = Path(__file__).parents[1] / ".pytest_cache"
+# What a process of the tests may hold on to between two modules, in bytes.
+LARGE = 10**9
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
@@ -42,13 +52,30 @@ def pytest_collection_finish():
     """What there is by now stays to the end, as in a run."""
     look_for_garbage_seldom()
     keep_what_is_imported()
+    have_few_heaps()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def memory_is_given_back():
+    """A command keeps what it freed for its own next step; a process of thousands of tests would grow to gigabytes."""
+    yield
+    for give_back in (give_back_what_is_freed, give_back_what_a_table_needed):
+        if _resident_bytes() > LARGE:
+            give_back()
+
+
+def _resident_bytes() -> int:
+    try:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 0
 
 
 @pytest.fixture(scope="session", autouse=True)
 def spirv_is_kept():
     """SPIR-V is compiled once, as XLA's programs are: an empty cache of the program's own needs it again and again."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(spirv, "_run", kept_runs.kept(spirv._run, KEPT))
+        patch.setattr(spirv, "_run", kept_runs.kept(spirv._run, CACHE / "spirv"))
         yield
 
 
@@ -60,6 +87,12 @@ def gl():
         if os.environ.get("CI"):
             raise
         pytest.skip(str(error))
+
+
+@pytest.fixture
+def rows_are_kept(monkeypatch):
+    """Rows are measured once for all tests that ask for this; not for those that change how something is measured."""
+    monkeypatch.setattr(measuring.Here, "measure", kept_rows.kept(measuring.Here.measure, CACHE / "rows"))
 
 
 @pytest.fixture

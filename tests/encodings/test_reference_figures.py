@@ -18,6 +18,7 @@ from normalbench.encodings.normals.tetrahedral import SIDE, UP
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec2, to_array
 
+pytestmark = pytest.mark.usefixtures("rows_are_kept")
 COUNT = 1_000_000
 
 # Mean, RMS and supremum of the angle in degrees, uniform directions, computed in float64 with a search for the worst

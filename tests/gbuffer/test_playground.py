@@ -7,6 +7,8 @@ from normalbench.bench.metrics import published
 from normalbench.bench.tables.throughput import numpy_baseline as independent
 from normalbench.gbuffer.scenes.playground import playground as rendered
 
+pytestmark = pytest.mark.usefixtures("rows_are_kept")
+
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 def test_every_row_is_within_0_6_db_of_the_article_and_in_its_order(normalbench, backend):

@@ -80,7 +80,7 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
     assert found.holds, found.says
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/code/test_code.py::test_the_code_of_a_codec_gives_the_catalogues_texels")
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):

@@ -115,7 +115,7 @@ def test_a_division_by_a_parameter_differs_by_a_step_at_most(tmp_path):
     assert steps.max() == 1 and np.count_nonzero(steps) < 100, f"{np.count_nonzero(steps)} differ, by {steps.max()}"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/code/test_numpy_source.py::test_the_file_has_the_integers_of_the_catalogue")
 @pytest.mark.parametrize("name", ENCODINGS)
 def test_every_codec_has_the_integers_of_the_catalogue(name, tmp_path):
     """Every storage that holds an encoding: the same texels, bit for bit. The text that rounds is a storage's, whatever

@@ -41,7 +41,7 @@ def test_a_row_by_wgsl_has_the_figures_of_jax(name):
     assert found["count"] == expected["count"] and not found["invalid"]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/code/test_wgsl_backend.py::test_a_row_by_wgsl_has_the_figures_of_jax")
 @pytest.mark.usefixtures("vulkan", "gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_three_back_ends_agree_within_two_hundredths_of_a_decibel(encoding):

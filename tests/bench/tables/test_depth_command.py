@@ -14,6 +14,7 @@ from normalbench.gbuffer.gl.device import NoDeviceError
 QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--count", "500", "--backend", "jax"]
 
 
+@pytest.mark.usefixtures("rows_are_kept")
 def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
     status, out, err = run(*QUICK, "--distance", "5,50", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
@@ -26,7 +27,7 @@ def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
         assert row["ratio"] == 100 and row["count"] == 500 and row["skipped"] is None
 
 
-@pytest.mark.usefixtures("gl")
+@pytest.mark.usefixtures("gl", "rows_are_kept")
 def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--distance", "5,50")
     rows = json.loads(run(*QUICK[:-2], "--distance", "5,50", "--format", "json")[1])
@@ -36,6 +37,7 @@ def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
     assert all(f"{row['error_max']:#.4g}" in line or f"{row['error_max']:.2e}" in line for row in wanted), line
 
 
+@pytest.mark.usefixtures("rows_are_kept")
 def test_what_overflows_is_infinite_and_null_in_json(run):
     """A half float ends at 65504: linear depth beyond is lost, and the bound says so."""
     arguments = ["--near", "1", "--far", "1e6", "--distance", "100,1e5", "--format", "json", "--backend", "jax"]
@@ -45,6 +47,7 @@ def test_what_overflows_is_infinite_and_null_in_json(run):
     assert [row["bound"] is None for row in rows] == [False, True, True]
 
 
+@pytest.mark.usefixtures("rows_are_kept")
 def test_every_way_is_measured_where_there_is_one(run):
     status, out, err = run(*QUICK, "--rebuild", "all", "--storage", "depth24", "--format", "json")
     assert status == 0 and err == ""

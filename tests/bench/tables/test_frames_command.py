@@ -130,6 +130,7 @@ def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("rows_are_kept")
 def test_json_is_flat_rows_the_best_first(run):
     status, out, err = run(*QUICK, "--storage", "rgba8,rgb10a2", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
@@ -138,7 +139,7 @@ def test_json_is_flat_rows_the_best_first(run):
     assert all(tuple(row) == tuple(TABLES["frames"].empty()) and row["count"] == 4096 for row in rows)
 
 
-@pytest.mark.usefixtures("gl")
+@pytest.mark.usefixtures("gl", "rows_are_kept")
 def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
     status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")
     lines = [line.split() for line in out.splitlines() if line.startswith("rgba")]

@@ -3,10 +3,8 @@
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -89,29 +87,6 @@ def test_it_is_a_command_with_help_and_formats(copy):
     assert [(row["word"], row["letters"]) for row in json.loads(done.stdout)] == [("one", 3), ("three", 5)], done.stderr
     assert "How many letters it has." in command(copy, "columns", "echo").stdout
     assert "echo" in command(copy, "run", "--help").stdout
-
-
-@pytest.mark.slow
-def test_a_run_of_it_that_is_killed_goes_on(copy):
-    words = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "echo", "-o", "killed"]
-    process = subprocess.Popen(words, cwd=copy, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    rows, deadline = copy / "killed/rows.jsonl", time.monotonic() + 60
-    while not rows.exists() or rows.read_bytes().count(b"\n") < 2:
-        assert time.monotonic() < deadline and process.poll() is None
-        time.sleep(0.01)
-    process.send_signal(signal.SIGKILL)
-    process.communicate()
-    kept = rows.read_bytes().count(b"\n")
-    done = command(copy, "run", "--tables", "echo", "-o", "killed")
-    assert done.returncode == 0 and f"{kept} of 6 steps are there" in done.stderr, done.stderr
-    assert [row["word"] for row in json.loads((copy / "killed/echo.json").read_text())] == [
-        "a",
-        "bb",
-        "c",
-        "dd",
-        "e",
-        "ff",
-    ]
 
 
 @pytest.mark.slow

@@ -80,6 +80,7 @@ def test_a_wrong_constant_fails_the_command_and_names_the_figure(run, monkeypatc
     assert err.count("\n") == 1 and "Z. Cigolle: a slip: 0.34046 degrees is published and 0.33689 measured" in err
 
 
+@pytest.mark.usefixtures("rows_are_kept")
 def test_sources_are_chosen_by_words(run):
     assert [source.name[:6] for source in work.chosen("XEOKIT, smith")] == ["J. Smi", "xeokit"]
     assert work.chosen("all") == list(SOURCES)
@@ -87,6 +88,7 @@ def test_sources_are_chosen_by_words(run):
     assert (status, out) == (2, "") and err.count("\n") == 1 and "--source knuth: a word of one of these names" in err
 
 
+@pytest.mark.usefixtures("rows_are_kept")
 def test_what_is_counted_is_what_is_printed(run):
     """Of the sources that take no samples: layouts, light, depth, points on rings."""
     words = "smith,drobot,jo kyeong,ols,shared_exponent,kemen,golubev,normal_pack"
@@ -99,6 +101,7 @@ def test_what_is_counted_is_what_is_printed(run):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("rows_are_kept")
 def test_every_figure_has_a_verdict_and_the_manual_has_it(run):
     """Figure, verdict and reason to the letter, ours to a five-hundredth."""
     status, out, _ = run("published", "--format", "markdown")

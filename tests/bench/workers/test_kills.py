@@ -59,7 +59,7 @@ def kill_one(process: subprocess.Popen[str], module: str, rng: random.Random) ->
     return bool(there)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/workers/test_on.py::test_a_killed_worker_and_a_killed_scheduler_cost_no_row")
 @pytest.mark.usefixtures("gl")
 def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path):
     """At random moments, from the first rows on: the same figures to the digit, the same pictures, the same files."""

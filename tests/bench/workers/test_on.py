@@ -121,17 +121,44 @@ def is_there(pid: int) -> bool:
         return False
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_an_interruption_leaves_rows_and_no_process(tmp_path, number):
-    """What is kept stays, the workers end, and the same command ends with the rows of one that nobody disturbed."""
-    command = [sys.executable, "-m", "normalbench.bench", "quality", "--encoding", "all", "--storage", "rgba8"]
-    command += ["--normals", "sphere", "--count", "65536", "--on", "local:2", "-o"]
-    rows = tmp_path / ".rows.json.rows"
-    process = subprocess.Popen([*command, str(tmp_path / "rows.json")], stderr=subprocess.PIPE, text=True)
+KILLED = "bench/workers/test_on.py::test_an_interruption_leaves_rows_and_no_process"
+INTERRUPTED = [pytest.param(number, marks=pytest.mark.nightly(KILLED)) for number in (signal.SIGINT, signal.SIGTERM)]
+# Rows of 65536 normals by JAX and GLSL, a few to each task of a worker.
+MANY = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "65536")
+
+
+def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "normalbench.bench", *MANY, *words, "-o", str(folder / "rows.json")]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+
+def kept_in(folder: Path) -> int:
+    """How many steps a command has kept so far, and one line that says of what."""
+    journal = folder / ".rows.json.rows"
+    return len(journal.read_text().splitlines()) if journal.exists() else 0
+
+
+def wait_for(folder: Path, steps: int) -> None:
     until = time.monotonic() + 120
-    while time.monotonic() < until and not (rows.exists() and len(rows.read_text().splitlines()) > 3):
+    while time.monotonic() < until and kept_in(folder) <= steps:
         time.sleep(0.05)
+
+
+@pytest.fixture(scope="module")
+def rows_alone(tmp_path_factory):
+    """The file that one process writes, which nobody disturbs."""
+    folder = tmp_path_factory.mktemp("alone")
+    process = begun(folder)
+    assert process.communicate()[1] == "" and process.returncode == 0
+    return (folder / "rows.json").read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [*INTERRUPTED, signal.SIGKILL])
+def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number):
+    """What is kept stays, the workers end, and the same command ends with the rows of one that nobody disturbed."""
+    process = begun(tmp_path, "--on", "local:2")
+    wait_for(tmp_path, 3)
     workers = children(process.pid)
     assert len(workers) >= 3, "two workers and a scheduler"
     process.send_signal(number)
@@ -141,10 +168,20 @@ def test_an_interruption_leaves_rows_and_no_process(tmp_path, number):
     while any(map(is_there, workers)) and time.monotonic() < until:
         time.sleep(0.1)
     assert not [pid for pid in workers if is_there(pid)], "a process is left"
-    kept = len(rows.read_text().splitlines())
-    assert kept > 3
-    again = subprocess.run([*command, str(tmp_path / "rows.json")], capture_output=True, text=True)
-    assert again.returncode == 0 and "steps were measured before" in again.stderr
-    alone = subprocess.run([*command[:-3], "-o", str(tmp_path / "alone.json")], capture_output=True, text=True)
-    assert alone.returncode == 0, alone.stderr
-    assert (tmp_path / "rows.json").read_bytes() == (tmp_path / "alone.json").read_bytes()
+    assert kept_in(tmp_path) > 3
+    again = begun(tmp_path, "--on", "local:2")
+    assert "steps were measured before" in again.communicate()[1] and again.returncode == 0
+    assert (tmp_path / "rows.json").read_bytes() == rows_alone
+
+
+@pytest.mark.slow
+def test_a_killed_worker_and_a_killed_scheduler_cost_no_row(tmp_path, rows_alone):
+    process = begun(tmp_path, "--on", "local:2")
+    for steps, victim in ((3, "bench.workers.worker"), (8, "bench.workers.scheduler")):
+        wait_for(tmp_path, steps)
+        assert process.poll() is None, "it ended before anything was killed"
+        (first, *_) = [pid for pid in children(process.pid) if victim in Path(f"/proc/{pid}/cmdline").read_text()]
+        os.kill(first, signal.SIGKILL)
+    _, err = process.communicate(timeout=300)
+    assert process.returncode == 0 and "the scheduler was lost; another one is started" in err, err
+    assert (tmp_path / "rows.json").read_bytes() == rows_alone

@@ -64,7 +64,8 @@ class Parity:
         cases: what an encoding is compared as; itself, or itself with each camera or format. A swap of two arguments
             is tried in the first case.
         guarded: (device, case) -> the encoder of inputs that mean nothing, such as NaN; None where the kind has none.
-        codecs, more_codecs: what is compared after storage by the quick test and by the slow one.
+        codecs: what the quick test compares after storage.
+        more_codecs: what the slow test compares, those of `codecs` aside.
         stored: (device, codec, whether the slow test asks) -> codes after storage.
         shared: by encoding, files of functions that several share, or FILE:FUNCTION, whose swaps that encoding notices.
         same: swaps of two arguments that make no other function.

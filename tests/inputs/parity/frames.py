@@ -183,4 +183,11 @@ def stored(gl, codec: FrameCodec, _: bool) -> list[Comparison]:
     return [Comparison(codec.name, frames, by_jax, found, apart, np.inf, same=same, share=0.995)]
 
 
-PARITY = Parity(compared, guarded=guarded, codecs=CODECS, stored=stored, shared={"smallest_three": ["rotation.glsl"]})
+PARITY = Parity(
+    compared,
+    guarded=guarded,
+    codecs=[*{codec.encoding.name: codec for codec in CODECS}.values()],
+    more_codecs=CODECS,
+    stored=stored,
+    shared={"smallest_three": ["rotation.glsl"]},
+)
