@@ -11,13 +11,15 @@ from attack.trying import KINDS, ODD, one
 FEW = [kind for kind in KINDS if kind.few]
 
 
-# Each of these is a command, and takes half a second: a sixth is tried at once, and all with what is slow.
+# Each of these is a command, and takes half a second.
 COSTLY = ("run: read", "words")
-PARTS = [pytest.param(kind, kind.few // 6 if kind.name in COSTLY else kind.few, id=kind.name) for kind in FEW]
+HERE = "test_attack.py::test_what_is_damaged_is_measured_or_refused_in_a_line"
+PARTS = [pytest.param(kind, kind.few, id=kind.name) for kind in FEW if kind.name not in COSTLY]
 SLOW = [
-    pytest.param(kind, kind.few, id=f"all of {kind.name}", marks=pytest.mark.slow)
+    pytest.param(kind, count, id=f"{count} of {kind.name}", marks=mark)
     for kind in FEW
     if kind.name in COSTLY
+    for count, mark in ((kind.few // 6, pytest.mark.slow), (kind.few, pytest.mark.nightly(HERE)))
 ]
 
 

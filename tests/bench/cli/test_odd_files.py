@@ -52,6 +52,7 @@ def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
     assert status == 0 and json.loads(out)[0]["psnr_db"] > 1, err
 
 
+@pytest.mark.slow
 def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     name = os.fsdecode(b"n\xff.npy")

@@ -58,14 +58,14 @@ def written(folder: Path, code, text=None) -> Path:
     return folder / code.name
 
 
-# Slang is given HLSL's text, and takes half a second for each: these have a view, tables and floats.
-OF_SLANG = ("octahedral/rgb10a2", "per_pixel_view/rg16f", "spherical_lut/rg8", "xyz_renormalised:axis=y/r11g11b10f")
+# In C all of them; in languages whose runner starts slowly those that have a view, tables and floats.
+FEW = ("octahedral/rgb10a2", "per_pixel_view/rg16f", "spherical_lut/rg8", "xyz_renormalised:axis=y/r11g11b10f")
 
 
 def pairs() -> list:
     """Each codec with each language."""
     every = [(name, language) for name in CODECS for language in LANGUAGES]
-    is_slow = [language == "slang" and name not in OF_SLANG for name, language in every]
+    is_slow = [language != "c" and name not in FEW for name, language in every]
     return [pytest.param(*pair, marks=[pytest.mark.slow] * slow) for pair, slow in zip(every, is_slow, strict=True)]
 
 
@@ -326,6 +326,7 @@ def test_what_cannot_be_written_is_a_line_and_status_2(run, arguments, said, tmp
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
     """Every file's head has its figures."""

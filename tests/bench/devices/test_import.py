@@ -163,6 +163,7 @@ def test_a_run_whose_import_is_killed_is_whole(run, tmp_path, folder, monkeypatc
     assert not done.damage and len(done.tables["devices"]) == 35
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     """With another set: the devices stay, and the page of the run has them."""
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
@@ -193,6 +194,7 @@ def test_gates_hold_devices(run, tmp_path):
     assert status == 1 and len(failing) == 8 and all("rgb10a2" in name for name in failing), err
 
 
+@pytest.mark.slow
 def test_a_test_holds_devices(pytester):
     """By the marker, with a file beside the test."""
     made.write(pytester.path / "a.json")
@@ -214,6 +216,7 @@ def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
     assert found[0]["codec"] == "xyz rgba8" and found[-1]["codec"] == "octahedral_precise rg16"
 
 
+@pytest.mark.slow
 def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)

@@ -137,6 +137,7 @@ TABLES_GATED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("table", TABLES_GATED)
 def test_every_table_may_be_a_gate(run, tmp_path, table):

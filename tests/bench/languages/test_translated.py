@@ -63,6 +63,7 @@ def written(folder, text, name) -> str:
     return name if folder == Path.cwd() else str(folder / name)
 
 
+@pytest.mark.slow
 def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
     path = written(tmp_path, MINE, f"mine.{ending}")
     status, out, err = run("quality", "--encoding", f"{path},hemi_octahedral", *QUICK)
@@ -75,6 +76,7 @@ def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
     assert status == 0 and "made for normals with z >= 0 alone" in json.loads(out)[0]["finding"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("hlsl")
 def test_a_run_and_gates_take_it(run, tmp_path):
     written(tmp_path, MINE, "mine.hlsl")
@@ -164,6 +166,7 @@ def test_the_way_to_a_signed_number_and_back_moves_no_integer():
         assert np.array_equal(np.rint(((at * 2 - one) * half + half) * np.float32(2**bits - 1)), whole)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("hlsl")
 def test_a_test_of_the_users_names_it(pytester):
     """It is looked for next to the test, with the names of its functions or without."""

@@ -262,6 +262,7 @@ def test_a_chunk_is_made_once_for_all_codecs():
     assert sorted(made) == [0, CHUNK]
 
 
+@pytest.mark.slow
 def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
     """One core or four, and blocks of any size: the same bits. Other lanes: the last digits of the sums alone."""
     normals = sphere(5 * CHUNK + 99)

@@ -389,6 +389,7 @@ def finished(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "file, damage, said",
     [
@@ -428,6 +429,7 @@ def test_nothing_is_written_over_a_runs_own_files(run, tmp_path, name):
     assert (folder / name).read_bytes() == before
 
 
+@pytest.mark.slow
 def test_one_table_that_fails_makes_the_run_fail(run, tmp_path, monkeypatch):
     """The others do not make up for it, before or after."""
     words = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--count", "64")

@@ -55,6 +55,7 @@ def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
     assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
     """A second process that dies costs time and no rows; what it said last is told."""
@@ -151,6 +152,7 @@ def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows
     assert (written, sent) == (([rows], [{"written": "pick"}]) if rows else ([], []))
 
 
+@pytest.mark.slow
 def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
     """A chart's two files come of one drawing."""
     drawn = []
@@ -195,5 +197,6 @@ def test_compiled_programs_need_not_be_kept(tmp_path):
     assert not [*tmp_path.iterdir()], "without the cache nothing is kept"
 
 
+@pytest.mark.slow
 def test_a_cache_that_cannot_be_written_is_no_error():
     assert measured(Path(os.devnull) / "nowhere")

@@ -76,6 +76,7 @@ def test_the_start_imports_neither_dask_nor_jax():
     assert not loaded & {"dask", "distributed", "tornado", "jax", "moderngl"}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
     """One worker of two has no GL: rows by both back ends are those of one process, and it is said who is left out."""
@@ -97,6 +98,7 @@ def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
     assert "left out: steps that need the GL device" in err or err == ""
 
 
+@pytest.mark.slow
 def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
     """Only workers without GL: rows by GLSL are there all the same, and a line says who measured them."""
     monkeypatch.setattr("normalbench.bench.workers.pool.WAIT_S", 0.5)

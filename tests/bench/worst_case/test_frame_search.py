@@ -32,6 +32,7 @@ def test_smallest_three_is_worst_where_all_components_are_a_half():
     assert found.moved_deg < 1e-6 * found.angle_deg
 
 
+@pytest.mark.slow
 def test_the_frame_that_is_named_is_turned_so_far():
     """By the codec's float64 maths, an operation at a time. It lies at a corner of a cell, so that its last bit decides
     which of two codes it gets, which are nearly as far."""
@@ -52,6 +53,7 @@ def test_no_sample_is_above_the_supremum(name):
     assert 0.75 < met / worst_frame(codec).angle_deg < 1.001
 
 
+@pytest.mark.slow
 def test_the_table_has_the_supremum_where_it_is_asked_for(run):
     words = ["frames", "--encoding", "hexadecachoral", "--storage", "rgba8", "--backend", "jax", "--count", "4096"]
     (plain,) = json.loads(run(*words, "--format", "json")[1])
