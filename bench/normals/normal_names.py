@@ -20,6 +20,7 @@ from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from .pixel_files import MAX_PIXELS
 from .pixel_files import READERS as IMAGES
 
+SEES_NOTHING = "its camera sees nothing; move it, or leave it out to have everything framed"
 MAX_SIDE = 16384
 ENDINGS = (*IMAGES, *files.READERS)
 JPEG = "JPEG changes normals; save the frame as EXR or PNG"
@@ -101,7 +102,7 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
     file = mesh_file(path)
     seen = files.seen(file, sides)
     if not seen.covered.any():
-        raise UsageError(f"{path}: its camera sees nothing; move it, or leave it out to have everything framed")
+        raise UsageError(f"{path}: {SEES_NOTHING}")
     notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
     name = called(path.name)
     made = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])

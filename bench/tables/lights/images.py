@@ -27,6 +27,7 @@ from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import Colour, Scene
 from ...metrics.images import squared_error
 from ...metrics.totals import psnr_db
+from ...output.errors import UsageError
 
 Row = dict[str, Any]
 # Lamps and sun this much brighter: highlights then reach several times what a display shows.
@@ -150,6 +151,8 @@ class Lit:
             self.reference = displayed(made.image())
             # The most light that any target keeps in a pixel.
             self._brightest = np.max([light[..., :3].max(axis=-1) for light in made.read(LIGHT)], axis=0)
+        if not self._brightest.any():
+            raise UsageError(f"{shot.name}: no light reaches what its camera sees; every light buffer would be exact")
 
     @contextmanager
     def _rendered(self, encoding: LightCodec, targets: int) -> Iterator[Rendering]:

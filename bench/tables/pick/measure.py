@@ -267,6 +267,7 @@ class Pictures:
         """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
 
         def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
+            render.require_surface(case.maker, len(n) > 0)
             return quality.round_trip(case.codec, n, position)
 
         return self._drawn(case, LAYOUTS["fp32"], keeps)

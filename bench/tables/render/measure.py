@@ -23,11 +23,15 @@ from ....gbuffer.scenes.setting import Setting
 from ...metrics.angles import angles_deg
 from ...metrics.images import flip, squared_error
 from ...metrics.totals import Worst, psnr_db
+from ...normals.normal_names import SEES_NOTHING
+from ...output.errors import UsageError
 from .table import TABLE
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
 # Why a device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
+# What 8 bits show as 0.
+BLACK = 0.5 / 255
 # Codecs are ranked among rows that agree in these.
 SAME = ("scene", "power", "effects", "pipeline", "light_buffer", "light_targets", "shadow")
 Row = dict[str, Any]
@@ -123,6 +127,12 @@ def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
     return Drawn(made.image(), direction[..., :3], kinds)
 
 
+def require_surface(maker: SceneMaker, is_seen: bool) -> None:
+    """Raises UsageError where no surface of a scene is seen."""
+    if not is_seen:
+        raise UsageError(f"{maker.name}: {SEES_NOTHING}")
+
+
 class Bench:
     """Measures cases, each reference once.
 
@@ -154,11 +164,17 @@ class Bench:
         self._references[case] = [replace(frame, display=display) for frame in frames]
 
     def _covered(self, case: Case, reference: list[Drawn]) -> list[np.ndarray]:
-        """Where there is opaque surface in each frame, bool of shape (height, width)."""
+        """Where there is opaque surface in each frame, bool of shape (height, width).
+
+        Raises:
+            UsageError: nowhere; figures of no pixels would say that every code is exact.
+        """
         if reference[0].kinds is None and case.coverage not in self._references:
             self._references[case.coverage] = self._frames(case.coverage)
         frames = self._references[case.coverage] if reference[0].kinds is None else reference
-        return [frame.kinds >= 0 for frame in frames if frame.kinds is not None]
+        covered = [frame.kinds >= 0 for frame in frames if frame.kinds is not None]
+        require_surface(case.maker, any(where.any() for where in covered))
+        return covered
 
     def _frames(self, case: Case, then: Callable[[Rendering], None] = lambda _: None) -> list[Drawn]:
         """A case's frames; `then` is called with the last one, still on the device."""
@@ -171,7 +187,11 @@ class Bench:
         return frames
 
     def measure(self, case: Case) -> tuple[Row, Drawn | None]:
-        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`."""
+        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`.
+
+        Raises:
+            UsageError: the scene draws nothing.
+        """
         stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
         row = TABLE.empty(stages) | _described(case) | {"device": self._device.renderer}
         times: Row = {}
@@ -229,6 +249,7 @@ def _seen(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
         "exposure": display.exposure,
         "covered_percent": 100.0 * float(np.mean(covered)),
         "clipped_percent": 100.0 * display.clipped(surface),
+        "black_percent": 100.0 * float(np.mean(np.all(display.image(surface) < BLACK, axis=-1))),
     }
 
 

@@ -124,6 +124,12 @@ COLUMNS = (
         unit="%",
         drops=13,
     ),
+    Column(
+        "black_percent",
+        "Covered pixels of the reference that 8 bits show as black. Errors there cannot be seen either.",
+        unit="%",
+        drops=18,
+    ),
     Column("covered_percent", "Pixels with an opaque surface.", unit="%", drops=11),
     Column("flip", "NVIDIA FLIP, a perceptual difference.", better="less", option="flip"),
     Column(

@@ -38,7 +38,8 @@ from .measure import Bench, Case, described, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
-# Percent of covered pixels beyond which a line says that they are clipped.
+# Percent of covered pixels beyond which a line says that they are black, or clipped.
+MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
 
 T = TypeVar("T")
@@ -178,18 +179,22 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         if row["invalid"]:
             what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
             yield f"{what} on {row['scene']}: {row['invalid']} pixels are NaN or infinite"
-    for scene, clipped in _clipped(rows).items():
+    for scene, black in _most(rows, "black_percent").items():
+        if black > MOSTLY_BLACK:
+            remedy = "it has no light that reaches what is seen, or needs --exposure auto"
+            yield f"{scene}: {black:.0f} % of the covered pixels are black, where errors cannot be seen; {remedy}"
+    for scene, clipped in _most(rows, "clipped_percent").items():
         if clipped > MUCH_CLIPPED:
             remedy = "--exposure auto or --tone-mapping reinhard shows them"
             yield f"{scene}: {clipped:.0f} % of the covered pixels are clipped, where errors cannot be seen; {remedy}"
 
 
-def _clipped(rows: Sequence[Row]) -> dict[str, float]:
-    """The most clipped pixels of each scene in percent."""
+def _most(rows: Sequence[Row], column: str) -> dict[str, float]:
+    """The largest value of a column, in percent, by scene."""
     found: dict[str, float] = {}
     for row in rows:
         scene = shown_scene(row)
-        found[scene] = max(found.get(scene, 0.0), row["clipped_percent"] or 0.0)
+        found[scene] = max(found.get(scene, 0.0), row[column] or 0.0)
     return found
 
 

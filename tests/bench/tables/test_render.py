@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from written import as_document
 
 from normalbench.bench.metrics import images as image_metrics
 from normalbench.bench.tables.registry import TABLES
@@ -82,6 +83,28 @@ def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
             expected = row["psnr_db"] + 10 * np.log10(share)
             # Of a pixel at an edge some samples are background.
             assert row["psnr_covered_db"] == pytest.approx(expected, abs=0.2 if more else 1e-6)
+
+
+def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monkeypatch):
+    """A camera that looks the other way: the mean of no pixels is no figure, in every table that draws the scene."""
+    monkeypatch.chdir(tmp_path)
+    document = as_document([sphere(1.0, 16, 8)])
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    document.node(camera=0, translation=[0, 0, -5])
+    document.write(tmp_path / "away.glb")
+    code = ["--encoding", "octahedral", "--storage", "rg8", "--scene", "away.glb", "--size", "64x48"]
+    for words in (["render", "--repeats", "0"], ["render", "--repeats", "0", "--exposure", "auto"], ["pick"]):
+        status, out, err = run(*words, *code)
+        assert (status, out) == (2, "") and "away.glb: its camera sees nothing; move it" in err, words
+        assert len(err.splitlines()) == 1, err
+    status, out, err = run("lights", "--experiment", "image", *code[4:])
+    assert (status, out) == (2, "") and "away.glb: no light reaches what its camera sees" in err, err
+
+
+def test_a_black_image_is_said(run):
+    _, out, err = run("render", *SMALL, "--encoding", "octahedral", "--exposure", "-20", "--format", "json")
+    assert "100 % of the covered pixels are black, where errors cannot be seen" in err
+    assert all(row["black_percent"] == 100 for row in json.loads(out))
 
 
 @pytest.mark.parametrize("name", ["ball", "slab", "pot"])
