@@ -39,7 +39,8 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
         new = [one for one in found if _is_newer(one.file, there.get(one.file.identity))]
         if new:
             run.replace(_with(run.lines, new))
-            write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name in OURS})
+        # Also where nothing is new: an earlier import may have been ended before it wrote them.
+        write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name in OURS})
     names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
     for one in found:
         called = replace(one, name=names[one.file.renderer]).called

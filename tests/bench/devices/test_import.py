@@ -13,6 +13,7 @@ import devices as made
 import pytest
 
 from normalbench.bench.cli import app as cli
+from normalbench.bench.devices import import_command
 from normalbench.bench.output.journal import Journal
 from normalbench.bench.results import runs
 from normalbench.bench.results.runs import read_run
@@ -243,6 +244,22 @@ def test_the_sentences_name_who_agrees_and_where_the_others_differ():
         "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153 % of its codes, by one step each."
     ]
     assert "2 versions of the program" in sentences([*rows, rows[0] | {"sources": "y"}])[-1]
+
+
+def test_tables_of_an_import_that_was_killed_are_written_by_the_next(run, tmp_path, folder, monkeypatch):
+    """It ends between the rows and the tables that are derived from them; nothing is new the second time."""
+    words = ("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))
+
+    def killed(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(import_command, "write_tables", killed)
+        assert run(*words)[0] == 130
+    assert len(read_run(folder).tables["devices"]) == 35 and not (folder / "devices.csv").exists()
+    status, out, _ = run(*words)
+    assert status == 0 and "nothing added" in out
+    assert len(json.loads((folder / "devices.json").read_text())) == 35 and (folder / "devices.csv").exists()
 
 
 @pytest.mark.slow
