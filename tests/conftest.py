@@ -32,7 +32,9 @@ from normalbench.bench.machine.memory import (
 )
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
+from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results import measuring
+from normalbench.bench.results.machine import require_mobile
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 CACHE = Path(__file__).parents[1] / ".pytest_cache"
@@ -130,6 +132,15 @@ def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
 def terascale(radv):  # noqa: ARG001 (asks for the GLSL compiler)
     """Mesa's r600, and what builds the device that it is given."""
     _need([R600], {null_device.COMPILER: null_device.NO_COMPILER})
+
+
+@pytest.fixture(scope="session")
+def phones(radv):  # noqa: ARG001 (asks for the GLSL compiler)
+    """Mesa's turnip and v3dv, which people build themselves: no machine must have them."""
+    try:
+        require_mobile()
+    except MissingError as error:
+        pytest.skip(str(error))
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:

@@ -1,26 +1,13 @@
-"""The simulation of many workers: its arithmetic on cases that can be done by hand, and the manual's table."""
+"""The simulation of many workers: its arithmetic on cases that can be done by hand."""
 
 import json
-import re
-from pathlib import Path
 
 import pytest
-from manual import PAGES, ROOT
 
 from normalbench.bench.output.errors import UsageError
-from normalbench.bench.workers.simulate import ON_A_MACHINE, Costs, Load, recorded, simulated, table
-from normalbench.reports.tables import written
+from normalbench.bench.workers.simulate import ON_A_MACHINE, Costs, Load, recorded, simulated
 
 FREE = Costs(start=0, task=0, row=0, byte=0)
-# Step times of `normalbench run --on local:4`, and costs, by `simulate --record`; the work that is simulated is told in
-# docs/workers.md.
-RECORD = json.loads((Path(__file__).parent / "record.json").read_text())
-
-
-def test_the_manuals_table_is_what_is_simulated():
-    """To the letter."""
-    (shown,) = re.findall(r"<!-- workers simulated -->\n(.*?)<!-- end -->", PAGES[ROOT / "docs" / "workers.md"], re.S)
-    assert shown == written(table(RECORD), "markdown")
 
 
 @pytest.mark.parametrize(("workers", "seconds"), [(1, 1024), (4, 256), (64, 16), (2000, 1)])

@@ -1,0 +1,118 @@
+"""How the tables of the manual are measured, by the command line in this process; and rows of lines made of the rows
+that it prints, where they are others."""
+
+import json
+import re
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from unittest.mock import patch
+
+from .table import Measured, Row, Table
+
+# Step times and costs by `python -m normalbench.bench.workers.simulate --record`.
+RECORD = Path(__file__).parents[1] / "bench" / "workers" / "record.json"
+
+
+def measure(table: Table, is_again: bool = False) -> Measured:
+    """A table, measured now. With `is_again` what takes less time and is compared alone."""
+    rows = (is_again and table.again) or table.rows
+    return table.measured(rows() if callable(rows) else [row for command in rows for row in rows_of(command)])
+
+
+def rows_of(command: str) -> list[Row]:
+    """The rows that a command of normalbench prints."""
+    return json.loads(printed(f"{command} --format json"))
+
+
+def printed(command: str) -> str:
+    """What a command of normalbench prints."""
+    from normalbench.bench.cli import app
+
+    out, err, words = StringIO(), StringIO(), ["normalbench", *command.split()]
+    with redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", words):
+        assert app.main() == 0, f"{command}: {err.getvalue()}"
+    return out.getvalue()
+
+
+def answers() -> list[Row]:
+    """Each sentence or item of `pick`, by the storage that it is of."""
+    _, *parts = re.split(r"^(?=(\w+), on \w+: take )", printed("pick --format markdown"), flags=re.M)
+    return [
+        {"storage": storage, "said": " ".join(text.split())}
+        for storage, part in zip(parts[::2], parts[1::2], strict=True)
+        for text in re.split(r"^- |\n\n", part, flags=re.M)
+    ]
+
+
+def simulated() -> list[Row]:
+    """Runs on many workers, by the step times of a record."""
+    from normalbench.bench.workers.simulate import table
+
+    return table(json.loads(RECORD.read_text()))
+
+
+def for_every_storage(rows: list[Row]) -> list[Row]:
+    """Rows without a storage stand for every storage that their encoding was measured in."""
+    of = [(row["encoding"], row["storage"]) for row in rows if row["encoding"] and row["storage"]]
+    return [
+        row | {"storage": storage}
+        for encoding, storage in dict.fromkeys(of)
+        for row in rows
+        if row["encoding"] == encoding and row["storage"] in (storage, None)
+    ]
+
+
+def of_the_article(rows: list[Row]) -> list[Row]:
+    """With the article's figure."""
+    from normalbench.bench.metrics.published import PSNR_DB
+
+    return [row | {"article_db": PSNR_DB.get(row["encoding"])} for row in rows]
+
+
+def with_limits(rows: list[Row]) -> list[Row]:
+    """With the bound of two bytes for each domain, which `quality` prints for people alone."""
+    from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+
+    names = {"angle_mean_deg": "mean_deg", "angle_rms_deg": "rms_deg", "angle_sup_deg": "max_deg"}
+    return rows + [
+        {"encoding": "limit", "domain": domain, "effective_bits": 16.0}
+        | {name: getattr(code_limit(2**16, area), figure) for name, figure in names.items()}
+        for domain, area in (("sphere", SPHERE), ("hemisphere", HEMISPHERE))
+    ]
+
+
+def parameters_named(rows: list[Row]) -> list[Row]:
+    """With what tuning found: parameters or a table, and how the bits are split."""
+    for row in rows:
+        found, split = (row[f"tuned_{name}"].removeprefix(row[name])[1:] for name in ("encoding", "storage"))
+        row["parameters"] = f"`{found.removesuffix('=FILE')}`" + f", {split.replace('_', ':')}" * bool(split)
+    return rows
+
+
+def arithmetic_apart(rows: list[Row]) -> list[Row]:
+    """The encoding's name, and next to it the arithmetic that the name may end with."""
+    parts = ((row, (row["encoding"] or "").partition(":arithmetic=")) for row in rows)
+    return [row | {"encoding": name, "arithmetic": arithmetic or "float"} for row, (name, _, arithmetic) in parts]
+
+
+def verdicts_of_mixes(rows: list[Row]) -> list[Row]:
+    """A row for each encoding: its verdicts and the worst figures behind them."""
+    from normalbench.bench.tables.mix.verdict import lines
+
+    return list(lines(rows))
+
+
+def in_thousandths(rows: list[Row]) -> list[Row]:
+    """The errors of effects, in 1/1000."""
+    return [row | {name: row[name] and 1e3 * row[name] for name in ("effect_rms", "method_rms")} for row in rows]
+
+
+def most_differing(rows: list[Row]) -> list[Row]:
+    """A row for each encoding: by storage the most texels that differ in a language."""
+    ran = sorted((row for row in rows if "differing" in row), key=lambda row: row["differing"])
+    return [
+        {"encoding": encoding} | {row["storage"]: row["differing"] for row in ran if row["encoding"] == encoding}
+        for encoding in dict.fromkeys(row["encoding"] for row in rows)
+    ]

@@ -1,0 +1,53 @@
+"""How figures of the manual are written, and texts that are no plain table."""
+
+import textwrap
+
+from .table import Measured, Table
+
+WIDTH = 120
+
+
+def two_digits(value: float) -> str:
+    """Two digits that count, without an exponent above 1."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def or_zero(value: float) -> str:
+    """Three decimals, and 0 where it is exactly 0."""
+    return f"{value:.3f}" if value else "0"
+
+
+def percent(value: float) -> str:
+    """Two decimals; where they would be 0, the first digit, which of exactly 0 is 0."""
+    return f"{value:.2f}" if value >= 0.005 else f"{value:.1g}"
+
+
+def answer(_: Table, kept: Measured) -> str:
+    """Each storage, and below it a list."""
+    texts = [
+        textwrap.fill(said, WIDTH, initial_indent="- ", subsequent_indent="  ")
+        if not said.startswith(storage)
+        else f"\n{said}"
+        for storage, said in kept.lines
+    ]
+    return "\n".join(texts).strip()
+
+
+def published(table: Table, kept: Measured) -> str:
+    """As the command writes it."""
+    from normalbench.bench.suite import showing
+    from normalbench.bench.tables.registry import TABLES
+    from normalbench.bench.tables.table import Measured as Done
+
+    command = TABLES["published"]
+    rows = [command.empty() | dict(zip((c.name for c in table.columns), line, strict=True)) for line in kept.lines]
+    done = Done(command.options(), command.outputs(), (), rows)
+    return showing.written(command, done, "markdown", WIDTH).rstrip("\n")
+
+
+def simulation(table: Table, kept: Measured) -> str:
+    """As the simulation writes it."""
+    from normalbench.reports.tables import to_markdown
+
+    titles = [column.title for column in table.columns]
+    return to_markdown([dict(zip(titles, line, strict=True)) for line in kept.lines]).rstrip("\n")

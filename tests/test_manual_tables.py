@@ -1,0 +1,104 @@
+"""The measured tables of the manual: pages have what was kept, to the letter; a nightly run measures it anew."""
+
+import math
+import re
+
+import pytest
+from manual import PAGES, README, ROOT
+from manual_tables.measuring import measure
+from manual_tables.table import KEPT, page_with
+from manual_tables.tables import TABLES
+
+from normalbench.bench.metrics import published
+from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+
+VENDORS = PAGES[ROOT / "docs" / "vendors.md"]
+MARKER = re.compile(r"^<!-- (headline|answer: [\w ]+|workers simulated|normalbench [\w ]+) -->$", re.M)
+
+
+def kept_figures(marker: str, column: str) -> dict[tuple, object]:
+    """The kept figures of the columns of one name, by the encoding and the operation."""
+    table = TABLES[marker]
+    columns = [at for at, each in enumerate(table.columns) if each.name == column]
+    return {(line[0], *table.columns[at].of.values()): line[at] for line in table.read().lines for at in columns}
+
+
+def test_every_marker_has_a_table_and_every_table_a_marker():
+    assert sorted(MARKER.findall("\n".join(PAGES.values()))) == sorted(TABLES)
+    assert {table.path for table in TABLES.values()} == set(KEPT.iterdir())
+
+
+@pytest.mark.parametrize("marker", TABLES)
+def test_a_page_has_the_table_that_was_kept(marker):
+    """To the letter, and the table holds what the page concludes."""
+    table = TABLES[marker]
+    kept = table.read()
+    _, text, _ = table.parts(page_with(marker)[1])
+    assert text == table.text(table, kept)
+    table.holds(kept.lines)
+
+
+@pytest.mark.nightly("tests/test_manual_tables.py::test_a_page_has_the_table_that_was_kept")
+@pytest.mark.parametrize("marker", TABLES)
+def test_a_table_is_measured_anew(marker, request):
+    """What a compiler counts is compared where its version is the same."""
+    table = TABLES[marker]
+    for fixture in table.needs:
+        request.getfixturevalue(fixture)
+    kept, measured = table.read(), measure(table, is_again=True)
+    assert not table.differences(kept, measured)
+    if measured.drivers != kept.drivers:
+        pytest.skip(f"counts are by {' and '.join(kept.drivers)}, and here by {' and '.join(measured.drivers)}")
+    table.holds(measured.lines)
+
+
+def test_the_bounds_are_those_that_are_computed():
+    by_domain = {"sphere": code_limit(2**16, SPHERE), "hemisphere": code_limit(2**16, HEMISPHERE)}
+    limits = [line for line in TABLES["normalbench quality"].read().lines if line[0] == "limit"]
+    assert [line[1] for line in limits] == list(by_domain)
+    for _, domain, *figures in limits:
+        least = by_domain[domain]
+        assert figures[:4] == pytest.approx([least.mean_deg, least.rms_deg, least.max_deg, 16.0], rel=5e-4)
+    least = by_domain["sphere"]
+    assert f"{least.mean_deg:.3f}°" in PAGES[README] and f"{least.max_deg:.3f}°" in PAGES[README]
+
+
+def test_the_text_names_the_compilers_that_counted():
+    assert {*re.findall(r"Mesa [\d.]+\d", PAGES[README])} == {*TABLES["headline"].read().drivers}
+    (named,) = re.findall(r"^These are of (NVRTC [\d.]+) and (Mesa [\d.]+)\.", VENDORS, re.M)
+    assert {*named} == {*TABLES["normalbench cost nvidia"].read().drivers}
+
+
+def test_the_articles_figures_are_those_it_printed():
+    for (name, *_), psnr in kept_figures("normalbench run", "article_db").items():
+        assert psnr == published.PSNR_DB.get(name)
+    for (name, operation, *by), count in kept_figures("normalbench cost", "instructions").items():
+        slots = published.SLOTS.get((name, operation))
+        assert by != [published.SLOTS_BY] or count == (slots and sum(slots)), (name, operation)
+    for (name, operation, device), cycles in kept_figures("normalbench cost terascale", "cycles").items():
+        printed = dict(zip(published.GPUS, published.CYCLES.get((name, operation), ()), strict=False))
+        assert cycles == (printed[device][1] if printed else None), (name, operation, device)
+
+
+@pytest.mark.parametrize(
+    "marker, row",
+    [("normalbench cost vendors", r"\| (encode|decode)"), ("normalbench cost nvidia", r"\| to (encode|decode)")],
+)
+def test_the_orders_are_those_of_the_counts(marker, row):
+    """From cheap to dear, by the first GPU of each column; `and` joins equal ones."""
+    counts = kept_figures(marker, "instructions")
+    families = list(dict.fromkeys(family for _, _, family in counts))
+    orders = re.findall(rf"^{row} \| (.+) \| (.+) \| (.+) \|$", VENDORS, re.M)
+    assert len(orders) == 4
+    for operation, *columns in orders:
+        for family, names in zip(families, columns, strict=False):
+            found = [[counts[name, operation, family] for name in same.split(" and ")] for same in names.split(", ")]
+            assert found == sorted(found), (operation, family, names)
+            assert all(len(set(same)) == 1 for same in found), (operation, family, names)
+
+
+def test_every_published_figure_has_a_verdict():
+    lines = TABLES["normalbench published"].read().lines
+    assert {verdict for *_, verdict, _, _ in lines} == {"reproduced", "holds", "short by sampling", "different"}
+    assert all(why and command for *_, verdict, why, command in lines if verdict == "different")
+    assert all(math.isfinite(ours) for _, _, _, ours, *_ in lines)
