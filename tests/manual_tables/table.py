@@ -54,7 +54,7 @@ class Column:
         """Whether a figure is the one that is shown; whether anything else is the same."""
         if not (is_figure([kept]) and is_figure([measured])):
             return kept == measured
-        (shown,) = re.findall(r"[\d.]+(?:e-?\d+)?", self.text(kept))
+        (shown,) = re.findall(r"-?[\d.]+(?:e-?\d+)?", self.text(kept))
         return self.is_near(float(shown), measured)
 
     def is_near(self, shown: float, measured: float) -> bool:
