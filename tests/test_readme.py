@@ -1,25 +1,33 @@
 """What README.md and every page of docs/ say is so: commands run, examples pass."""
 
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
 import sys
 import tomllib
+from contextlib import nullcontext, suppress
 from dataclasses import fields, replace
+from functools import cache
 from pathlib import Path
+from typing import NoReturn
 
 import devices
 import numpy as np
 import pytest
+import typer
 from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench.cli import app as cli
+from normalbench.bench.results import machine, measuring
+from normalbench.bench.suite import code_command, examine, report, run
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.growth import work as growth
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.throughput import measure as throughput
+from normalbench.bench.workers import places
 from normalbench.gbuffer.scenes.mesh import sphere
 
 MOST_LINES = 150
@@ -82,12 +90,36 @@ def test_every_example_is_used():
         assert used or name.startswith("test_") or Path(name).with_suffix(".glsl").name in FILES, name
 
 
-# What renders, tunes, draws or measures many rows.
+# What takes more than a second of processor time: it renders, tunes, draws, compiles or measures many rows.
 LONG = re.compile(
-    r"(pick|mix|maps|render|effects|motion|lights|sweep|throughput|tune|run|report|frames|check|published)\b(?! --help)"
-    r"|^python|growth$|--on |--plot|--report|--worst-case|--encoding all"
+    r"normalbench (pick|mix|maps|render|effects|motion|lights|sweep|throughput|growth|tune|run|report|frames|check|code"
+    r"|published)\b(?! --help)|python|normalbench (doctor|vectors)$"
+    r"|.*(--on |--plot|--report|--worst-case|--encoding all|--arithmetic float|--far|--normals (scene|frame))"
+)
+LONG_COMMANDS = [command for command in COMMANDS if LONG.match(command)]
+BRIEF_COMMANDS = [command for command in COMMANDS if not LONG.match(command)]
+
+
+class BegunError(Exception):
+    """A command has checked what was typed."""
+
+
+def begin(*_: object) -> NoReturn:
+    raise BegunError
+
+
+TAKEN = "tests/test_readme.py::test_every_long_command_is_taken_as_written"
+# What commands do once they have checked what was typed: they measure, run code, and read runs, encoders and machines.
+BEGINNINGS = (
+    (measuring.Here, "measure"),
+    (code_command, "agreement"),
+    (report, "read_run"),
+    (examine, "examined"),
+    (machine, "examine"),
 )
 
+# Made once for all commands.
+parser_of = cache(typer.main.get_command)
 
 # What is measured of less than the command says: how it is written is tried here, its figures are by others.
 SMALL = {"count": "4096", "size": "160x90", "counts": "4", "repeats": "3"}
@@ -100,22 +132,52 @@ def in_small(words: list[str]) -> list[str]:
     return [word for name in SMALL if name in known and f"--{name}" not in words for word in (f"--{name}", SMALL[name])]
 
 
-@pytest.mark.parametrize(
-    "command", [pytest.param(one, marks=[pytest.mark.slow] * bool(LONG.search(one))) for one in COMMANDS]
-)
-def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, request):
+@pytest.fixture
+def readers_folder(tmp_path, monkeypatch):
+    """The working folder, with the files that the commands name."""
     monkeypatch.chdir(tmp_path)
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
+    users_files(tmp_path)
+    readers_devices(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("gl", "readers_folder")
+@pytest.mark.parametrize("command", LONG_COMMANDS)
+def test_every_long_command_is_taken_as_written(command, monkeypatch):
+    """Its options, names and values are checked as the program checks them; then it would begin."""
+    for place, name in BEGINNINGS:
+        monkeypatch.setattr(place, name, begin)
+    # These take time, and check nothing.
+    monkeypatch.setattr(typer.main, "get_command", parser_of)
+    monkeypatch.setattr(run, "facts_of", lambda _: {})
+    monkeypatch.setattr(run, "second_process", nullcontext)
+    monkeypatch.setattr(places, "_local", lambda _: nullcontext(measuring.HERE))
+    words = shlex.split(command)
+    monkeypatch.setattr(sys, "argv", words)
+    if words[0] == "python":
+        # Some measure nothing.
+        with suppress(BegunError):
+            runpy.run_path(words[1])
+        return
+    with pytest.raises(BegunError):
+        cli.main()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        *BRIEF_COMMANDS,
+        *(pytest.param(command, marks=pytest.mark.nightly(TAKEN)) for command in LONG_COMMANDS),
+    ],
+)
+def test_every_command_runs_as_written(command, readers_folder, monkeypatch, capsys, request):
     words = shlex.split(command)
     if "nvidia" in words:
         request.getfixturevalue("nvidia")
     for name in {"before", "after"} & set(words) if words[1] != "run" else ():
-        shutil.copytree(request.getfixturevalue("results")[0], tmp_path / name)
-    if re.search(r"\.(glb|exr|png|npy)\b", command):
-        users_files(tmp_path)
-    if re.search(r"\b(phone\.json|desktop\.json|contributed)\b", command):
-        readers_devices(tmp_path)
+        shutil.copytree(request.getfixturevalue("results")[0], readers_folder / name)
     if words[0] == "python":
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
@@ -129,7 +191,7 @@ def test_every_command_runs_as_written(command, tmp_path, monkeypatch, capsys, r
     assert cli.main() == 0, capsys.readouterr().err
     for option in ("-o", "--images", "--plot"):
         if option in words:
-            assert (tmp_path / words[words.index(option) + 1]).exists()
+            assert (readers_folder / words[words.index(option) + 1]).exists()
 
 
 def test_the_make_targets_exist():
