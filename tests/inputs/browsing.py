@@ -77,15 +77,90 @@ DRAWN = """async () => {
 }"""
 
 
+# What a reader can see or change of an open laboratory, and what a test may have done to the page behind it. A function
+# of the page's keys at first.
+STATE = """() => {
+  const all = (selector) => Array.from(live.root.querySelectorAll(selector));
+  const digest = (text) => {
+    let sum = 0;
+    for (let i = 0; i < text.length; i++) sum = (Math.imul(sum, 31) + text.charCodeAt(i)) | 0;
+    return sum;
+  };
+  const { gl, canvas } = live.device, { checks, codecs, rows } = live.measuring;
+  return {
+    controls: all("input, select, textarea, button").map((one) => [one.value, !!one.checked, one.disabled]),
+    marks: all("[hidden], [aria-pressed], [aria-invalid]").map((one) => [one.outerHTML.split(">")[0]]),
+    unfolded: Array.from(document.querySelectorAll("details"), (one) => one.open),
+    text: live.root.innerText,
+    picture: digest(canvas.toDataURL()),
+    window: [innerWidth, innerHeight, Math.round(live.root.getBoundingClientRect().top), location.href],
+    focus: document.activeElement.tagName,
+    pixel: live.inspect.at,
+    measuring: [rows.length, codecs.length, live.measuring.isBusy],
+    data: digest(JSON.stringify(live.data)),
+    changed: [Object.keys(window), Object.keys(live), Object.keys(gl), Object.getOwnPropertyNames(document)],
+  };
+}"""
+
+# Puts a laboratory back by the page's own means: its controls, and new parts for what was measured.
+RESET = """({ controls, unfolded, pixel }) => {
+  const root = live.root, place = root.querySelector("[data-live=measure]");
+  if (live.measuring.isBusy) return;
+  place.replaceChildren();
+  live.measuring = new Measuring(place, live.device, live.data);
+  for (const [at, one] of document.querySelectorAll("details").entries()) one.open = unfolded[at];
+  live.see.turn(false);
+  for (const [at, one] of root.querySelectorAll("input, select, textarea, button").entries()) {
+    const [value, checked] = controls[at] ?? [];
+    if (one.value === value && !!one.checked === checked) continue;
+    one.value = value;
+    if (one.checked !== undefined) one.checked = checked;
+    if (!one.matches("[data-own], [data-inspect]")) one.dispatchEvent(new Event("input"));
+  }
+  live.own.run();
+  live.inspect.at = pixel;
+  live.see.change();
+  document.querySelector(".laboratory > summary").focus({ preventScroll: true });
+  root.scrollIntoView();
+}"""
+
+
 class Laboratory(Opened):
     """A page with its laboratory open."""
 
     def __init__(self, browser, path, size=DESKTOP, fragment="", **more):
         super().__init__(browser, path, size, fragment=fragment, **more)
-        if not fragment:
+        self.size, self.address = size, path.as_uri() + fragment
+        self.open()
+        self.fresh = self.state()
+
+    def open(self) -> None:
+        if "#" not in self.address:
             self.page.locator(".laboratory > summary").click()
         self.page.wait_for_selector("#live[data-ready]")
+        self.page.evaluate("live.root.scrollIntoView()")
         self.settle()
+
+    def state(self) -> dict:
+        return self.page.evaluate(STATE)
+
+    def reset(self) -> None:
+        """Back to what a fresh load is; loaded anew where a test did what the page's own means do not undo."""
+        width, height = self.size
+        self.page.mouse.move(0, 0)
+        if self.page.viewport_size != {"width": width, "height": height}:
+            self.page.set_viewport_size({"width": width, "height": height})
+            self.settle()
+        self.page.evaluate(RESET, self.fresh)
+        self.settle()
+        if self.state() != self.fresh:
+            self.page.goto("about:blank")
+            self.asked.clear()
+            self.page.goto(self.address)
+            self.page.wait_for_selector("#theme:not([hidden])")
+            self.open()
+            assert self.state() == self.fresh, "a page loaded anew is as the first was"
+        self.said.clear()
 
     def settle(self) -> None:
         """Until what was changed is drawn in every pixel."""

@@ -38,10 +38,18 @@ def opened(browser, report):
     page.context.close()
 
 
-@pytest.fixture
-def laboratory(gl_browser, report):
+@pytest.fixture(scope="module")
+def open_laboratory(gl_browser, report):
+    """The one that a module's tests use in turn."""
     page = Laboratory(gl_browser, report)
     yield page
     page.context.close()
-    assert not page.said, page.said
-    assert page.asked == [report.as_uri()], "a page that asks for nothing"
+
+
+@pytest.fixture
+def laboratory(open_laboratory, report):
+    """A laboratory as it is when it has just been opened."""
+    open_laboratory.reset()
+    yield open_laboratory
+    assert not open_laboratory.said, open_laboratory.said
+    assert open_laboratory.asked == [report.as_uri()], "a page that asks for nothing"

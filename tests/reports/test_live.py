@@ -329,3 +329,34 @@ def test_no_text_of_a_run_ends_its_script():
     made = Live([hostile], []).data({"run": "</script>"})
     assert json.loads(made)["codecs"][0]["label"] == "</script><b> x", "it is packed before it is put into a page"
     assert "</script" not in script()
+
+
+@pytest.mark.slow
+def test_a_laboratory_that_was_reset_is_as_one_that_has_just_been_opened(gl_browser, report, laboratory):
+    """The tests here share a page: what one does to it, the next one does not see."""
+    fresh = Laboratory(gl_browser, report)
+    expected, picture = fresh.state(), fresh.picture()
+    fresh.context.close()
+    began = laboratory.page.evaluate("performance.timeOrigin")
+    assert laboratory.state() == expected
+    laboratory.choose(left="xy rgba8", right="spherical rgba8", subject="0", shown="code")
+    laboratory.press("[data-see=power]", "PageDown")
+    laboratory.press("[data-see=divider]", "End")
+    laboratory.press("[data-see=turn]", "Space")
+    laboratory.page.set_viewport_size({"width": 500, "height": 700})
+    laboratory.page.locator("[data-own=text]").fill("no encoder")
+    laboratory.says("[data-own=said]", "There is no encoder")
+    laboratory.page.locator("[data-own=storage]").select_option("rg16")
+    laboratory.page.locator("[data-inspect=x]").fill("7")
+    laboratory.page.locator("#measure-times").uncheck()
+    laboratory.page.evaluate("live.measuring.codecs = live.measuring.codecs.slice(0, 1)")
+    laboratory.page.locator("[data-measure]").click()
+    laboratory.page.wait_for_selector("[data-save]")
+    assert laboratory.state() != expected
+    laboratory.reset()
+    assert laboratory.state() == expected and (laboratory.picture() == picture).all()
+    assert laboratory.page.evaluate("performance.timeOrigin") == began, "not loaded anew"
+    laboratory.page.evaluate("live.data.checks.sums.sphere[0] ^= 1")
+    laboratory.reset()
+    assert laboratory.state() == expected
+    assert laboratory.page.evaluate("performance.timeOrigin") != began, "loaded anew"

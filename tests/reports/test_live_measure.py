@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from functools import cache
 
 import numpy as np
 import pytest
@@ -34,6 +35,10 @@ class Measured(Laboratory):
         super().__init__(browser, path, **more)
         self.page.locator("#measure-times").uncheck()
 
+    def reset(self):
+        super().reset()
+        self.page.locator("#measure-times").uncheck()
+
     def ask(self, script, *given):
         return self.page.evaluate(script, *given)
 
@@ -56,12 +61,19 @@ class Measured(Laboratory):
         return self.page.locator("[data-measured]").inner_text()
 
 
-@pytest.fixture
-def laboratory(gl_browser, report):
+@pytest.fixture(scope="module")
+def open_laboratory(gl_browser, report):
     opened = Measured(gl_browser, report)
     yield opened
-    assert not [line for line in opened.said if "rror" in line], opened.said
     opened.context.close()
+
+
+@pytest.fixture
+def laboratory(open_laboratory, report):
+    open_laboratory.reset()
+    yield open_laboratory
+    assert not [line for line in open_laboratory.said if "rror" in line], open_laboratory.said
+    assert open_laboratory.asked == [report.as_uri()], "a page that asks for nothing"
 
 
 def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
@@ -248,16 +260,23 @@ def stepped(*changes):
     return codes
 
 
-COMPARE = """([codec, given, exact]) => {
+# As text: Playwright takes seconds to pass as many numbers one by one.
+COMPARE = """(text) => {
+  const [codec, given, exact] = JSON.parse(text);
   const codes = given.map((one) => Int32Array.from(one));
   return live.measuring.checks.compare(codec, codes, exact && Float32Array.from(exact));
 }"""
 
 
 def compared(laboratory, *given, codec=OCTAHEDRAL, exact=None):
-    record = {**programs.program(codec), "checks": checks.checks(codec)}
     numbers = None if exact is None else exact.ravel().tolist()
-    return laboratory.ask(COMPARE, [record, [codes.ravel().tolist() for codes in given], numbers])
+    return laboratory.ask(COMPARE, json.dumps([record_of(codec), [codes.ravel().tolist() for codes in given], numbers]))
+
+
+@cache
+def record_of(codec):
+    """What a page has of a codec, with the sums of its codes."""
+    return {**programs.program(codec), "checks": checks.checks(codec)}
 
 
 def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
