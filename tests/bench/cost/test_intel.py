@@ -4,25 +4,21 @@ import json
 import os
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from vendors import EVERY_OR_SOME, INTEL
 
-from normalbench.bench.isa import intel_disassembly, isa, null_device
-from normalbench.bench.isa import process as isa_process
+from normalbench.bench.isa import intel_disassembly, null_device
 from normalbench.bench.isa.isa import Compiled, Kernel
 from normalbench.bench.options import gpu_families as families
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.options.gpu_families import FAMILIES
 from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.results.machine import require_intel
 from normalbench.bench.suite import report
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.bench.tables.registry import TABLES
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.gbuffer.defines.kernels import STAGES
-from normalbench.gbuffer.defines.packings import PACKINGS
 
 LISTINGS = Path(__file__).with_name("listings")
 # By hand, line by line, of listings that Mesa 22.3.6 wrote for 16 lanes.
@@ -243,101 +239,28 @@ def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
     assert not error.value.is_missing
 
 
-CHILD = """
-import os, sys, time
-from normalbench.bench.isa import child
-if {name!r} in os.environ:
-    {what}
-sys.exit(child.main())
-"""
+# To encode octahedral, by hand; Tiger Lake's wait is one more (Mesa 22.3.6).
+OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
 
 
-@pytest.mark.usefixtures("intel", "own_cache")
-@pytest.mark.parametrize(
-    "what, reason",
-    [
-        ("os.abort()", "SIGABRT"),
-        ("sys.exit('no GPU')", "status 1: no GPU"),
-        pytest.param("time.sleep(60)", "did not answer within", marks=pytest.mark.slow),
-    ],
-)
-def test_a_driver_of_intels_that_fails_costs_its_own_rows(run, monkeypatch, tmp_path, what, reason):
-    script = tmp_path / "child.py"
-    script.write_text(CHILD.format(name=null_device.SAID, what=what))
-    monkeypatch.setattr(isa_process, "CHILD", [sys.executable, str(script)])
-    monkeypatch.setattr(isa_process, "SECONDS", 8.0)
-    status, out, err = run(*EVERY, "--family", "navi21,skl")
-    (lost,) = [row for row in json.loads(out) if row["skipped"]]
-    assert status == 0 and lost["family"] == "skl" and reason in lost["skipped"] and reason in err
-    assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6
-
-
-@pytest.mark.usefixtures("intel", "own_cache")
-def test_rows_are_the_same_from_the_cache_and_another_gpu_is_compiled_for_again(run, monkeypatch):
-    first = run(*EVERY, "--family", "skl")
-    assert first[0] == 0 and all(row["skipped"] is None for row in json.loads(first[1]))
-    monkeypatch.setattr(isa_process, "CHILD", ["false"])
-    assert run(*EVERY, "--family", "skl") == first
-    other = replace(FAMILIES["skl"], null_device="0x1916 7 1 3 8 0")
-    monkeypatch.setattr(isa, "FAMILIES", FAMILIES | {"skl": other})
-    _, out, _ = run(*EVERY, "--family", "skl")
-    assert "status 1" in json.loads(out)[0]["skipped"]
-
-
-@pytest.fixture(scope="module")
-def table(intel, tmp_path_factory):  # noqa: ARG001 (asks for the compilers)
-    """Rows of a few encodings and a packing on every Intel, from an empty cache."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        encodings = [ENCODINGS[name] for name in ("xyz", "xy", "spheremap", "stereographic", "octahedral")]
-        chosen = cost.cases(encodings, PACKINGS["12:12"], cost.OPERATIONS)
-        return [row for row, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["intel"], [], cost.nobody)]
-
-
-def test_doing_nothing_costs_nothing_on_every_intel(table):
-    rows = [row for row in table if row["encoding"] == "xyz"]
-    assert len(rows) == 2 * 2 * 6
-    for row in rows:
-        figures = {column: row[column] for column in ("instructions", *intel_disassembly.KINDS, "branches", "loops")}
-        assert set(figures.values()) == {0}, row
-
-
-def test_the_kinds_add_up_to_the_count_of_intels_driver(table):
-    assert len(table) == 6 * 2 * 2 * 6
-    for row in table:
-        assert row["skipped"] is None and row["simd_width"] == 16, row
-        assert sum(row[kind] for kind in intel_disassembly.KINDS) == row["instructions"], row
-        if row["encoding"] == "octahedral":
-            assert row["transcendental"] == 1, row
+@EVERY_OR_SOME
+def test_known_counts_of_intels_compilers(vendor_rows, is_every):
+    rows = vendor_rows(INTEL, is_every)
+    assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}
+    if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:
+        pytest.skip("counts hold for one Mesa")
+    for name in INTEL.families(is_every):
+        asked = (name, "fragment", "encode")
+        chosen = [row for row in rows if (row["family"], row["stage"], row["operation"]) == asked]
+        found = {row["encoding"]: row["instructions"] for row in chosen}
+        assert found["octahedral"] == OCTAHEDRAL[name], name
+        order = [found[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
+        assert order == sorted(set(order)), name
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("intel", "own_cache")
-def test_every_encoding_and_packing_is_counted_on_every_intel():
-    """For 16 lanes, without spills, and by kinds that add up."""
-    packings = list(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
-    chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
-    rows = [row for row, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["intel"], [], cost.nobody)]
-    assert len(rows) == len(chosen) * len(STAGES) * 6
-    for row in rows:
-        assert (row["skipped"], row["simd_width"], row["spills"]) == (None, 16, 0), row
-        assert sum(row[kind] for kind in intel_disassembly.KINDS) == row["instructions"] >= 0, row
-
-
-def test_known_counts_of_intels_compilers(table):
-    """Octahedral takes 11 to encode by hand on every generation; Tiger Lake's wait is one more (Mesa 22.3.6)."""
-    found = {
-        (row["encoding"], row["operation"], row["family"]): row["instructions"]
-        for row in table
-        if row["stage"] == "fragment"
-    }
-    if {row["driver"] for row in table} != {"Mesa 22.3.6"}:
-        pytest.skip("counts hold for one Mesa")
-    encode = [found["octahedral", "encode", name] for name in CHOICES["intel"]]
-    assert encode == [11, 11, 11, 12, 12, 11]
-    for name in CHOICES["intel"]:
-        order = [found[encoding, "encode", name] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
-        assert order == sorted(set(order)), name
+def test_no_kernel_of_intels_spills(vendor_rows):
+    assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
 
 
 def test_every_family_has_a_title_and_a_driver():

@@ -2,22 +2,18 @@
 
 import json
 import re
-import sys
 from pathlib import Path
 
 import pytest
 from null_devices import NO_DEVICE, tried
+from vendors import EVERY_OR_SOME, TERASCALE
 
 from normalbench.bench.isa import isa, null_device
-from normalbench.bench.isa import process as isa_process
 from normalbench.bench.isa.terascale import disassembly, driver
 from normalbench.bench.metrics import published
 from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results.machine import require_terascale
-from normalbench.bench.tables.cost import measure as cost
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.gbuffer.defines.packings import PACKINGS
 
 LISTINGS = Path(__file__).with_name("terascale_listings")
 # By hand, line by line, of listings that Mesa 22.3.6 wrote: the kinds, then the slots and those of them that are t.
@@ -76,74 +72,31 @@ def test_the_chips_are_the_articles():
     assert titles == ["Radeon HD 3870", "Radeon HD 5870"] and set(titles) < set(published.GPUS)
 
 
-EVERY_PACKING = list(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
-# What tests below ask for, a table to look up, a search and a loop.
-SOME = (
-    "xyz",
-    "xy",
-    "spheremap",
-    "per_pixel_view",
-    "spherical",
-    "spherical_lut",
-    "best_fit_searched",
-    "octahedral_precise",
-)
+# Bundles to encode spheremap, by hand on the HD 3870 (the HD 5870 takes one more to interpolate n.z), to encode
+# per_pixel_view, and to decode spherical.
+BUNDLES = {"rv670": (5, 14, 11), "cypress": (6, 16, 12)}
 
 
-@pytest.fixture(scope="module")
-def table(terascale, tmp_path_factory):  # noqa: ARG001 (asks for the compiler)
-    """Fragment rows of some encodings and packings on both chips, from an empty cache."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        return rows_of(SOME, EVERY_PACKING[::4])
-
-
-def rows_of(names, packings) -> list[dict]:
-    chosen = cost.cases([ENCODINGS[name] for name in names], packings, cost.OPERATIONS)
-    return [row for row, _ in cost.isa_rows(chosen, ["fragment"], CHOICES["terascale"], [], cost.nobody)]
-
-
-def test_doing_nothing_costs_nothing(table):
-    for row in (row for row in table if row["encoding"] == "xyz"):
-        figures = {column: row[column] for column in ("instructions", *disassembly.KINDS, "vliw_slots", "branches")}
-        assert set(figures.values()) == {0}, row
-
-
-@pytest.mark.usefixtures("terascale", "own_cache")
-@pytest.mark.parametrize(
-    "names, packings",
-    [
-        pytest.param(SOME, EVERY_PACKING[::4], id="some"),
-        pytest.param(ENCODINGS, EVERY_PACKING, id="every", marks=pytest.mark.slow),
-    ],
-)
-def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_bundles_that_the_driver_numbers(
-    names, packings, request
-):
-    table = request.getfixturevalue("table") if names is SOME else rows_of(names, packings)
-    assert len(table) == 2 * 2 * (len(names) + len(packings))
-    for row in table:
-        assert row["skipped"] is None and row["simd_width"] == 64, row
-        assert sum(row[kind] for kind in disassembly.KINDS) == row["instructions"] >= 0, row
-        assert row["t_slots"] <= row["vliw_slots"] <= 5 * row["issue_slots"] + 5, row
-
-
-def test_known_counts(table):
-    """Spheremap encodes in 5 bundles by hand on the HD 3870; the HD 5870 takes one more to interpolate n.z."""
-    if {row["driver"] for row in table} != {"Mesa 22.3.6"}:
+@EVERY_OR_SOME
+def test_known_counts(vendor_rows, is_every):
+    """Per-pixel view is cheaper than spherical, as in the article: bundles compute vectors at once, as ps_3_0 does; the
+    order is not that of today's GPUs."""
+    rows = vendor_rows(TERASCALE, is_every)
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    for chip in TERASCALE.families(is_every):
+        encode = [found[name, "encode", chip] for name in ("xy", "spheremap", "per_pixel_view", "spherical")]
+        assert encode == sorted(set(encode)), chip
+    if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:
         pytest.skip("counts hold for one Mesa")
-    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in table}
-    chips = CHOICES["terascale"]
-    assert [found["spheremap", "encode", chip] for chip in chips] == [5, 6]
-    assert [found["per_pixel_view", "encode", chip] for chip in chips] == [14, 16]
-    assert [found["spherical", "decode", chip] for chip in chips] == [11, 12]
+    for chip in TERASCALE.families(is_every):
+        counts = found["spheremap", "encode", chip], found["per_pixel_view", "encode", chip]
+        assert (*counts, found["spherical", "decode", chip]) == BUNDLES[chip], chip
 
 
-def test_per_pixel_view_is_cheaper_than_spherical_as_in_the_article(table):
-    """Bundles compute vectors at once, as ps_3_0 does; the order is the article's, not that of today's GPUs."""
-    for chip in CHOICES["terascale"]:
-        found = {r["encoding"]: r["instructions"] for r in table if (r["family"], r["operation"]) == (chip, "encode")}
-        assert found["xy"] < found["spheremap"] < found["per_pixel_view"] < found["spherical"], chip
+@EVERY_OR_SOME
+def test_a_bundle_has_at_most_five_operations(vendor_rows, is_every):
+    for row in vendor_rows(TERASCALE, is_every):
+        assert row["t_slots"] <= row["vliw_slots"] <= 5 * row["issue_slots"] + 5, row
 
 
 @pytest.mark.usefixtures("terascale", "own_cache")
@@ -154,28 +107,6 @@ def test_compute_shaders_are_left_out_and_alone_are_one_row_with_the_reason(run)
     assert [row["skipped"] for row in json.loads(out) if row["family"]] == [
         "Radeon HD 3870: compute shaders are not counted; ask for --stage fragment"
     ]
-
-
-@pytest.mark.usefixtures("terascale", "own_cache")
-def test_rows_are_the_same_from_the_cache_and_stand_beside_the_articles(run, monkeypatch):
-    asked = [*EVERY, "--family", "terascale", "--article"]
-    first = run(*asked)
-    rows = json.loads(first[1])
-    assert first[0] == 0 and {row["measure"] for row in rows} == {"isa", "article"}
-    monkeypatch.setattr(isa_process, "GL_CHILD", ["false"])
-    assert run(*asked) == first
-
-
-@pytest.mark.usefixtures("terascale", "own_cache")
-@pytest.mark.parametrize("what, reason", [("os.abort()", "SIGABRT"), ("time.sleep(60)", "did not answer within")])
-def test_a_driver_that_fails_costs_its_own_rows(run, monkeypatch, what, reason):
-    monkeypatch.setattr(isa_process, "GL_CHILD", [sys.executable, "-c", f"import os, time; {what}"])
-    monkeypatch.setattr(isa_process, "SECONDS", 4.0 if "sleep" in what else isa_process.SECONDS)
-    isa._loaded.cache_clear()
-    status, out, err = run(*EVERY, "--family", "navi21,rv670")
-    isa._loaded.cache_clear()
-    (lost,) = [row for row in json.loads(out) if row["skipped"]]
-    assert status == 0 and lost["family"] == "rv670" and reason in lost["skipped"] and reason in err
 
 
 @pytest.mark.usefixtures("terascale", "own_cache")

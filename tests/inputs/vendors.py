@@ -1,0 +1,135 @@
+"""Vendors' compilers as tests of what they share take them; Radeons' own are tested apart, as their figures are."""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import ModuleType
+
+import pytest
+
+from normalbench.bench.isa import intel_disassembly, isa, null_device
+from normalbench.bench.isa import process as isa_process
+from normalbench.bench.isa.nvidia import sass, tools
+from normalbench.bench.isa.terascale import disassembly as terascale_disassembly
+from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.gbuffer.defines.packings import PACKINGS
+
+EVERY_PACKING = tuple(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
+CHEAP = ("xyz", "xy", "spheremap", "stereographic", "octahedral")
+# Sleeps or ends where Intel's driver is told of its GPU; Radeons' compile as ever.
+INTELS_CHILD = """
+import os, sys, time
+from normalbench.bench.isa import child
+if {variable!r} in os.environ:
+    {code}
+sys.exit(child.main())
+"""
+
+
+@dataclass(frozen=True)
+class Vendor:
+    """A vendor's GPUs and what compiles for them.
+
+    Attributes:
+        name: what --family calls its GPUs together; the fixture that asks for its compilers, too.
+        quick: one family for each compiler.
+        stages: the kinds of shaders that it is counted for.
+        lanes: how many each of its kernels works on.
+        reader: what reads its listings.
+        zero: the columns that are 0 where nothing is done, beside the kinds of instructions.
+        encodings, packings: what is compiled where not every one is.
+        runs: makes this vendor's child processes, and no other's, run Python code.
+        changes: makes the compiler another one, or the GPU of `quick[-1]`.
+    """
+
+    name: str
+    quick: tuple[str, ...]
+    stages: tuple[str, ...]
+    lanes: int
+    reader: ModuleType
+    zero: tuple[str, ...]
+    runs: Callable[[pytest.MonkeyPatch, str], None]
+    changes: Callable[[pytest.MonkeyPatch], None]
+    encodings: tuple[str, ...] = CHEAP
+    packings: tuple = PACKINGS["12:12"]
+
+    def families(self, is_every: bool) -> tuple[str, ...]:
+        return CHOICES[self.name] if is_every else self.quick
+
+    def shaders(self, is_every: bool) -> tuple[tuple[str, ...], tuple]:
+        """Encodings and packings."""
+        return (tuple(ENCODINGS), EVERY_PACKING) if is_every else (self.encodings, self.packings)
+
+    def rows(self, is_every: bool) -> list[dict]:
+        """Compiled, or from the cache."""
+        encodings, packings = self.shaders(is_every)
+        chosen = cost.cases([ENCODINGS[name] for name in encodings], packings, cost.OPERATIONS)
+        families = list(self.families(is_every))
+        return [row for row, _ in cost.isa_rows(chosen, list(self.stages), families, [], cost.nobody)]
+
+
+def _intels_child_runs(patch: pytest.MonkeyPatch, code: str) -> None:
+    script = INTELS_CHILD.format(variable=null_device.SAID, code=code)
+    patch.setattr(isa_process, "CHILD", [sys.executable, "-c", script])
+
+
+def _nvidias_child_runs(patch: pytest.MonkeyPatch, code: str) -> None:
+    patch.setattr(isa, "python", lambda _: [sys.executable, "-c", f"import os, sys, time; {code}"])
+
+
+def _terascales_child_runs(patch: pytest.MonkeyPatch, code: str) -> None:
+    patch.setattr(isa_process, "GL_CHILD", [sys.executable, "-c", f"import os, sys, time; {code}"])
+
+
+def _another_gpu(family: str, words: str) -> Callable[[pytest.MonkeyPatch], None]:
+    other = FAMILIES | {family: replace(FAMILIES[family], null_device=words)}
+    return lambda patch: patch.setattr(isa, "FAMILIES", other)
+
+
+def _another_build(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(tools, "fingerprint", lambda path: f"another {path}")
+
+
+INTEL = Vendor(
+    "intel",
+    quick=("hsw", "dg2"),
+    stages=("fragment", "compute"),
+    lanes=16,
+    reader=intel_disassembly,
+    zero=("instructions", "branches", "loops"),
+    runs=_intels_child_runs,
+    changes=_another_gpu("dg2", "0x1916 7 1 3 8 0"),
+)
+NVIDIA = Vendor(
+    "nvidia",
+    quick=("sm_86",),
+    stages=("compute",),
+    lanes=32,
+    reader=sass,
+    zero=("instructions", "branches", "loops", "stall_cycles", "vgprs", "code_bytes", "spills"),
+    runs=_nvidias_child_runs,
+    changes=_another_build,
+)
+TERASCALE = Vendor(
+    "terascale",
+    quick=("rv670",),
+    stages=("fragment",),
+    lanes=64,
+    reader=terascale_disassembly,
+    zero=("instructions", "vliw_slots", "branches"),
+    runs=_terascales_child_runs,
+    changes=_another_gpu("rv670", "0x9999"),
+    # A table to look up, a search and a loop.
+    encodings=(
+        *("xyz", "xy", "spheremap", "per_pixel_view", "spherical"),
+        *("spherical_lut", "best_fit_searched", "octahedral_precise"),
+    ),
+    packings=EVERY_PACKING[::4],
+)
+VENDORS = (INTEL, NVIDIA, TERASCALE)
+# Some rows, compiled in the quick tests, or all of them.
+EVERY_OR_SOME = pytest.mark.parametrize(
+    "is_every", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["some", "every"]
+)
