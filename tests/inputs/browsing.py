@@ -20,7 +20,7 @@ class Opened:
     """A page, and everything that it asked for or complained of."""
 
     def __init__(self, browser, path, size=DESKTOP, theme="light", motion="reduce", fragment="", scale=1, before=""):
-        self.asked, self.said = [], []
+        self.asked, self.said, self.theme = [], [], theme
         width, height = size
         self.context = browser.new_context(
             viewport={"width": width, "height": height},
@@ -35,8 +35,23 @@ class Opened:
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
-        self.page.goto(path.as_uri() + fragment)
+        self.address, self.is_new = path.as_uri() + fragment, True
+        self.page.goto(self.address)
         self.page.wait_for_selector("#theme:not([hidden])")
+
+    def load_anew(self) -> None:
+        """As a new window has it: nothing that was typed, chosen, remembered or allowed is left."""
+        if not self.is_new:
+            self.page.evaluate("localStorage.clear()")
+            self.context.clear_permissions()
+            self.page.emulate_media(media="screen", color_scheme=self.theme)
+            self.page.mouse.move(0, 0)
+            self.page.goto("about:blank")
+            self.asked.clear()
+            self.page.goto(self.address)
+            self.page.wait_for_selector("#theme:not([hidden])")
+            self.said.clear()
+        self.is_new = False
 
     def come_to(self, selector: str, until: str) -> None:
         """Scroll there, and wait for what is drawn when it comes into view."""
@@ -130,9 +145,9 @@ class Laboratory(Opened):
 
     def __init__(self, browser, path, size=DESKTOP, fragment="", **more):
         super().__init__(browser, path, size, fragment=fragment, **more)
-        self.size, self.address = size, path.as_uri() + fragment
+        self.size = size
         self.open()
-        self.fresh = self.state()
+        self.fresh, self.is_new = self.state(), False
 
     def open(self) -> None:
         if "#" not in self.address:
@@ -154,10 +169,7 @@ class Laboratory(Opened):
         self.page.evaluate(RESET, self.fresh)
         self.settle()
         if self.state() != self.fresh:
-            self.page.goto("about:blank")
-            self.asked.clear()
-            self.page.goto(self.address)
-            self.page.wait_for_selector("#theme:not([hidden])")
+            self.load_anew()
             self.open()
             assert self.state() == self.fresh, "a page loaded anew is as the first was"
         self.said.clear()

@@ -31,11 +31,18 @@ def report(results):
     return results[0] / "report.html"
 
 
-@pytest.fixture
-def opened(browser, report):
+@pytest.fixture(scope="module")
+def opened_once(browser, report):
     page = Opened(browser, report)
     yield page
     page.context.close()
+
+
+@pytest.fixture
+def opened(opened_once):
+    """The report as it has just been opened: a module's tests use one window, which a page is loaded into anew."""
+    opened_once.load_anew()
+    return opened_once
 
 
 @pytest.fixture(scope="module")

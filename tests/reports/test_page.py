@@ -297,3 +297,30 @@ def test_printing_shows_every_row_on_white(opened):
     assert opened.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert not opened.page.locator("nav").is_visible() and not opened.page.locator("#viewer").is_visible()
     assert opened.page.locator(".sheet .scroll").first.evaluate("e => e.scrollHeight <= e.clientHeight + 1")
+
+
+FORMS = (
+    "Array.from(document.querySelectorAll('input, select, button'), (one) => [one.value, one.checked, one.textContent])"
+)
+
+
+@pytest.mark.slow
+def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, opened):
+    """The tests here share a window: what one does to the page, the next one does not see."""
+    fresh = Opened(browser, report)
+    expected = (
+        fresh.page.evaluate(FORMS),
+        fresh.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
+    )
+    fresh.context.close()
+    opened.page.locator(f"{TABLE} >> [data-filter]").fill("octahedral")
+    opened.page.get_by_role("button", name=re.compile("Theme")).click()
+    opened.page.get_by_label("the largest").check()
+    opened.page.emulate_media(media="print", color_scheme="dark")
+    opened.load_anew()
+    found = (
+        opened.page.evaluate(FORMS),
+        opened.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
+    )
+    assert found == expected and opened.asked == [report.as_uri()] and opened.said == []
+    assert opened.page.evaluate("matchMedia('screen').matches && matchMedia('(prefers-color-scheme: light)').matches")
