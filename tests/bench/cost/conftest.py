@@ -3,24 +3,39 @@
 import fcntl
 import json
 import os
+from contextlib import contextmanager
 
 import pytest
 
 
 @pytest.fixture(scope="session")
-def vendor_rows(request, tmp_path_factory):
+def shared(tmp_path_factory):
+    """A folder of all workers, and a lock of it."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cost"
+    folder.mkdir(exist_ok=True)
+
+    @contextmanager
+    def locked(name: str):
+        with (folder / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield folder
+
+    return locked
+
+
+@pytest.fixture(scope="session")
+def vendor_rows(request, shared):
     """A function that gives a vendor's rows, compiled from an empty cache: some on a family for each of its compilers,
     or every encoding and packing on all of its families."""
-    base = tmp_path_factory.getbasetemp()
-    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
     def rows(vendor, is_every: bool) -> list[dict]:
         request.getfixturevalue(vendor.name)
-        path = shared / f"{vendor.name}-{'every' if is_every else 'some'}.json"
-        with path.with_suffix(".lock").open("w") as lock, pytest.MonkeyPatch.context() as patch:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        name = f"{vendor.name}-{'every' if is_every else 'some'}"
+        with shared(name) as folder, pytest.MonkeyPatch.context() as patch:
+            path = folder / f"{name}.json"
             if not path.exists():
-                patch.setenv("XDG_CACHE_HOME", str(path.with_suffix(".cache")))
+                patch.setenv("XDG_CACHE_HOME", str(folder / name))
                 path.write_text(json.dumps(vendor.rows(is_every)))
         return json.loads(path.read_text())
 

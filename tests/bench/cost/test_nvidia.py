@@ -272,7 +272,7 @@ PACKED = ("rgba8", "12:12", "16:16", "11:10:11", "11:11", "rgba8_snorm")
 
 
 @pytest.fixture(scope="module")
-def called(tmp_path_factory):
+def called(shared):
     """Every operation's CUDA as the machine's own C++ compiles it: (operation, given, beside) to what is made."""
     import ctypes
 
@@ -285,14 +285,15 @@ def called(tmp_path_factory):
     text += "}\n"
     sizes = [{"at": at, "given": o.given, "beside": o.beside, "made": o.made} for at, o in enumerate(operations)]
     text += "".join(CALL.format(**size) for size in sizes)
-    folder = tmp_path_factory.mktemp("cuda")
-    (folder / "all.cpp").write_text(text)
     command = ["c++", "-std=c++17", "-O1", "-w", "-ffp-contract=off", "-shared", "-fPIC", "-o", "all.so", "all.cpp"]
-    try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    except FileNotFoundError:
-        pytest.skip("no C++ compiler: c++ is not on the path")
-    assert done.returncode == 0, done.stderr[:2000]
+    with shared("cuda") as folder:
+        if not (folder / "all.so").exists():
+            (folder / "all.cpp").write_text(text)
+            try:
+                done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+            except FileNotFoundError:
+                pytest.skip("no C++ compiler: c++ is not on the path")
+            assert done.returncode == 0, done.stderr[:2000]
     library = ctypes.CDLL(str(folder / "all.so"))
 
     def call(at: int, given: np.ndarray, beside: np.ndarray) -> np.ndarray:
