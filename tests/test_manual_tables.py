@@ -38,7 +38,7 @@ def test_a_page_has_the_table_that_was_kept(marker):
     table.holds(kept.lines)
 
 
-@pytest.mark.nightly("tests/test_manual_tables.py::test_a_page_has_the_table_that_was_kept")
+@pytest.mark.nightly("test_manual_tables.py::test_a_page_has_the_table_that_was_kept")
 @pytest.mark.parametrize("marker", TABLES)
 def test_a_table_is_measured_anew(marker, request):
     """What a compiler counts is compared where its version is the same."""

@@ -108,7 +108,7 @@ def begin(*_: object) -> NoReturn:
     raise BegunError
 
 
-TAKEN = "tests/test_readme.py::test_every_long_command_is_taken_as_written"
+TAKEN = "test_readme.py::test_every_long_command_is_taken_as_written"
 # What commands do once they have checked what was typed: they measure, run code, and read runs, encoders and machines.
 BEGINNINGS = (
     (measuring.Here, "measure"),
