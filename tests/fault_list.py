@@ -665,7 +665,7 @@ FAULTS = (
         "stale cache",
         'kept.key_of("isa", identity, family, gpu, job.stage, *job',
         'kept.key_of("isa", identity, family, job.stage, *job',
-        "test_intel.py",
+        "test_vendors.py",
         "another_gpu",
     ),
     Fault(

@@ -18,7 +18,7 @@ from normalbench.gbuffer.defines.packings import PACKINGS
 
 EVERY_PACKING = tuple(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
 CHEAP = ("xyz", "xy", "spheremap", "stereographic", "octahedral")
-# Sleeps or ends where Intel's driver is told of its GPU; Radeons' compile as ever.
+# Runs the code where the driver is told of an Intel GPU; for a Radeon it compiles as always.
 INTELS_CHILD = """
 import os, sys, time
 from normalbench.bench.isa import child
@@ -38,7 +38,7 @@ class Vendor:
         stages: the kinds of shaders that it is counted for.
         lanes: how many each of its kernels works on.
         reader: what reads its listings.
-        zero: the columns that are 0 where nothing is done, beside the kinds of instructions.
+        zero: the columns that are 0 where nothing is done, besides the kinds of instructions.
         encodings, packings: what is compiled where not every one is.
         runs: makes this vendor's child processes, and no other's, run Python code.
         changes: makes the compiler another one, or the GPU of `quick[-1]`.
