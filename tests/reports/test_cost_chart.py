@@ -134,6 +134,7 @@ def test_the_page_says_why_a_codec_has_no_place_in_its_chart(tmp_path):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=str)
 def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder, browser, size):
     reported(run, run_folder)

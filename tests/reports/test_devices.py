@@ -3,6 +3,7 @@
 import devices as made
 import pytest
 from browsing import AXE, DESKTOP, PHONE, Opened
+from slowly import all_but
 from test_report import a_run, quality_row
 
 from normalbench.bench.devices.site_command import site_command
@@ -80,7 +81,7 @@ def test_a_runs_page_shows_devices_side_by_side(run, opener, tmp_path):
     assert violations(page) == [] == page.said
 
 
-@pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
+@pytest.mark.parametrize("size, theme", all_but(1, [(DESKTOP, "light"), (PHONE, "dark")]))
 @pytest.mark.parametrize(
     "name", ["index.html", "devices/mali-g78-chromium-156.html", "devices/apple-gpu-safari-18.html"]
 )

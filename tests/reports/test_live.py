@@ -39,6 +39,7 @@ def test_the_section_is_small_and_unpacked_only_when_it_is_opened(gl_browser, re
     page.context.close()
 
 
+@pytest.mark.slow
 def test_a_browser_without_webgl2_sees_the_page_without_it(gl_browser, report):
     page = Opened(gl_browser, report, before="delete window.WebGL2RenderingContext")
     assert page.page.locator("#live").is_hidden() and page.page.locator("nav [href='#live']").is_hidden()

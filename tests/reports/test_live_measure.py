@@ -76,6 +76,7 @@ def laboratory(open_laboratory, report):
     assert open_laboratory.asked == [report.as_uri()], "a page that asks for nothing"
 
 
+@pytest.mark.slow
 def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
     """Of all codecs of the small run at least 99.9 % of the codes are equal, and the angles are the run's."""
     laboratory.start()
@@ -186,6 +187,7 @@ def test_an_altered_constant_is_found_and_named(laboratory):
     assert name == "octahedral rgba8"
 
 
+@pytest.mark.slow
 def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
     laboratory.start()
     laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
@@ -368,7 +370,7 @@ def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
     assert found == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("reports/test_live_measure.py::test_every_code_of_a_run_is_this_devices_and_saved")
 def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_path):
     """At 8 and 10 bits at least 99.9 % of the codes are equal and none is further than a step; by SwiftShader, which
     rounds every sum and root as IEEE 754 says, all of them are."""

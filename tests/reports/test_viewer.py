@@ -153,6 +153,7 @@ def test_a_codec_chosen_anywhere_is_highlighted_everywhere(opened, by):
     assert opened.page.evaluate(CHOSEN)["rows"] == []
 
 
+@pytest.mark.slow
 def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tmp_path):
     folder = rendered_run(tmp_path / "run")
     assert run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "page.html"))[0] == 0
@@ -169,6 +170,7 @@ def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tm
     page.context.close()
 
 
+@pytest.mark.slow
 def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")

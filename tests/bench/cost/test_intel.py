@@ -244,6 +244,7 @@ OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
 
 
 @EVERY_OR_SOME
+@pytest.mark.slow
 def test_known_counts_of_intels_compilers(vendor_rows, is_every):
     rows = vendor_rows(INTEL, is_every)
     assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}

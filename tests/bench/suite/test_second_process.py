@@ -81,6 +81,7 @@ def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
     assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_an_error_there_is_an_error_here(run, tmp_path, cores, monkeypatch):
     """One line, the same exit status, and what was measured is kept."""

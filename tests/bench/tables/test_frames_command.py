@@ -147,6 +147,7 @@ def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
     assert all(a[0] == b[0] and {a[1], b[1]} == {"jax", "glsl"} for a, b in zip(lines[::2], lines[1::2], strict=True))
 
 
+@pytest.mark.slow
 def test_the_frames_of_a_mesh_are_its_vertices(run, tmp_path):
     """Authored tangents and their signs under a mirrored node; no limit, for they are not spread evenly."""
     as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")

@@ -118,6 +118,7 @@ def test_the_sentences_say_the_rows_figures(rows):
         assert any(lost in said for said in rest), rest
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl", "radv")
 def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_path):
     path = tmp_path / "flat.glsl"
@@ -151,6 +152,7 @@ def test_what_cannot_be_asked_is_one_line(run, words, said):
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
 
+@pytest.mark.slow
 def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch, tmp_path):
     """A second answer measures nothing; other normals are measured."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))

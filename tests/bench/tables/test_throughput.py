@@ -22,6 +22,7 @@ needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 
 
 @needs_c
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(c_baseline.ENCODINGS))
 def test_the_c_program_measures_what_the_table_measures(name):
     """Mean, RMS and largest angle of its row and its mean squared error agree with the quality table's. With

@@ -143,6 +143,7 @@ def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp
     assert sorted(files.values()) == [[], ["scene0.glb"], ["scene1.glb"], ["scene2.glb"]]
 
 
+@pytest.mark.slow
 def test_python_takes_workers_as_well(scheduler):
     found, same = (
         nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (scheduler, None)
@@ -150,6 +151,7 @@ def test_python_takes_workers_as_well(scheduler):
     pd.testing.assert_frame_equal(found, same)
 
 
+@pytest.mark.slow
 def test_a_value_of_pythons_own_is_refused(scheduler):
     """Workers measure what has a name or is a file."""
     normals = {"own": np.eye(3)}
