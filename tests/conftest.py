@@ -50,6 +50,18 @@ def pytest_configure(config):
         config.option.normalbench_require_gl = True
 
 
+# What takes seconds to begin with, and a test of it seldom fails where no other one does.
+SLOW_FIXTURES = frozenset({"browser", "gl_browser", "chromium", "results", "scheduler", "nvidia", "vendor_rows"})
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """A test that opens a browser, starts workers or asks for a vendor's compilers is slow without saying so."""
+    for item in items:
+        if SLOW_FIXTURES & set(item.fixturenames) and not item.get_closest_marker("nightly"):
+            item.add_marker(pytest.mark.slow)
+
+
 def pytest_collection_finish():
     """What there is by now stays to the end, as in a run."""
     look_for_garbage_seldom()

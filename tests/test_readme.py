@@ -168,7 +168,7 @@ def test_every_long_command_is_taken_as_written(command, monkeypatch):
 @pytest.mark.parametrize(
     "command",
     [
-        *BRIEF_COMMANDS,
+        *(pytest.param(command, marks=pytest.mark.slow) for command in BRIEF_COMMANDS),
         *(pytest.param(command, marks=pytest.mark.nightly(TAKEN)) for command in LONG_COMMANDS),
     ],
 )

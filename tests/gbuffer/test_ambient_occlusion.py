@@ -39,6 +39,8 @@ from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box, rotation
 from normalbench.gbuffer.scenes.scene import KINDS, View
 
+pytestmark = pytest.mark.slow
+
 SIZE = (96, 72)
 BOTH = [f"{name}:size={size}" for name in METHODS for size in ("full", "half")]
 

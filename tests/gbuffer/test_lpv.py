@@ -25,6 +25,8 @@ from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
 from normalbench.gbuffer.scenes.scene import KINDS, Light, Material, Part, Scene, View, placed
 
+pytestmark = pytest.mark.slow
+
 SIZE = (80, 60)
 CELLS, TEXELS = 16, 64
 SMALL = {"cells": CELLS, "texels": TEXELS}

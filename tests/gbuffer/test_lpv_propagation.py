@@ -21,6 +21,8 @@ from normalbench.gbuffer.passes.forward import forward
 from normalbench.gbuffer.passes.shadow_map import shadow_map
 from normalbench.gbuffer.render import rendering
 
+pytestmark = pytest.mark.slow
+
 PLAN = Plan((8, 6), 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
 CELLS = 17
 MIDDLE = (CELLS // 2,) * 3

@@ -28,6 +28,8 @@ from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box
 from normalbench.gbuffer.scenes.scene import KINDS, Light, Part, Scene, placed
 
+pytestmark = pytest.mark.slow
+
 METHODS = {
     "separable": {"method": "separable"},
     "gaussians": {"method": "gaussians", "samples": 25},

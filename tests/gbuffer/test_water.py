@@ -32,6 +32,8 @@ from normalbench.gbuffer.scenes.mesh import box, plane
 from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View, Water, placed
 from normalbench.gbuffer.scenes.setting import Setting
 
+pytestmark = pytest.mark.slow
+
 SIZE = (96, 72)
 LIGHT = {"texels": "128", "rings": "96", "spokes": "96"}
 EFFECT = EFFECTS["water"]

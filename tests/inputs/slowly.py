@@ -7,7 +7,10 @@ import pytest
 
 
 def all_but(quick: int, values: Iterable[Any]) -> list[Any]:
-    """Values for `pytest.mark.parametrize`, as they are or as `pytest.param`, a tuple being of several parameters; those after the first few are slow."""
+    """Values for `pytest.mark.parametrize`, as they are or as `pytest.param`; those after the first few are slow.
+
+    A tuple is of several parameters.
+    """
     every = list(values)
     return [*every[:quick], *map(_slow, every[quick:])]
 

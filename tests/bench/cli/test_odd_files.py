@@ -85,6 +85,7 @@ def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
     assert time.process_time() - began < 5
 
 
+@pytest.mark.slow
 def test_without_standard_output_a_file_will_do(tmp_path):
     script = (
         "import os, sys; os.close(1); sys.stdout = None; from normalbench.bench.cli.app import main; sys.exit(main())"

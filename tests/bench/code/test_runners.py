@@ -12,6 +12,8 @@ from normalbench.bench.output.errors import MissingError
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.gl.shader import ShaderError
 
+pytestmark = pytest.mark.slow
+
 FOLDER = Path(__file__).parents[2] / "inputs" / "code"
 ENDINGS = {"python": "py", "msl": "metal"}
 STEPS = np.array([[[3.0, 0.5], [5.0, 0.25]]], np.float32)

@@ -78,6 +78,7 @@ BUNDLES = {"rv670": (5, 14, 11), "cypress": (6, 16, 12)}
 
 
 @EVERY_OR_SOME
+@pytest.mark.slow
 def test_known_counts(vendor_rows, is_every):
     """Per-pixel view is cheaper than spherical, as in the article: bundles compute vectors at once, as ps_3_0 does; the
     order is not that of today's GPUs."""

@@ -120,6 +120,7 @@ def test_a_truncated_exr_is_one_line(tmp_path, capfd, share):
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["png8", "tiff", "float tiff", "dds", "hdr", "webp"])
 def test_a_truncated_image_is_one_line(tmp_path, capfd, kind):
     data = picture(tmp_path, kind)

@@ -105,10 +105,9 @@ def is_there(process: int) -> bool:
         return False
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize(
-    "ended", [*(pytest.param(one, marks=pytest.mark.slow) for one in (signal.SIGINT, signal.SIGTERM)), signal.SIGKILL]
-)
+@pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_a_run(tmp_path, ended):
     """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
     words = ("run", "--tables", "effects,depth", "-o", "ended")

@@ -49,6 +49,7 @@ PROTOTYPE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROTOTYPE)
 def test_the_wobble_is_that_of_the_prototype(name):
     """Within 3 %: normals over z >= 0.2 of the first frame, 32 frames of yaw."""
@@ -346,6 +347,7 @@ def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
     assert status == 0, err
 
 
+@pytest.mark.slow
 def test_a_plot_is_drawn(run, tmp_path):
     plot = tmp_path / "plot.png"
     words = ("motion", "--encoding", "octahedral,spheremap", "--axis", "yaw,roll", "--picture-turn", "none", *SMALL)

@@ -81,6 +81,7 @@ def command(copy: Path, *arguments: str) -> subprocess.CompletedProcess:
     return subprocess.run(words, cwd=copy, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_it_is_a_command_with_help_and_formats(copy):
     assert "Words to repeat" in command(copy, "echo", "--help").stdout
     done = command(copy, "echo", "--word", "one,three", "--format", "json")
