@@ -15,12 +15,12 @@ export PYTHONDONTWRITEBYTECODE =
 bench: .venv/ready
 	$(BIN)/normalbench run
 
-# One more than two cores: a test that waits for a command or a browser leaves its core to another.
+# Twice as many as two cores: a test that waits for a command, a file or a browser leaves its core to another.
 test: .venv/ready
-	$(BIN)/python -m pytest -n 3 $(if $(ALL),-m "$(if $(filter nightly,$(ALL)),nightly or not nightly,not nightly)")
+	$(BIN)/python -m pytest -n 4 $(if $(ALL),-m "$(if $(filter nightly,$(ALL)),nightly or not nightly,not nightly)")
 
 slow: .venv/ready
-	$(BIN)/python -m pytest -n 3 -m "slow and not nightly"
+	$(BIN)/python -m pytest -n 4 -m "slow and not nightly"
 
 setup: .venv/ready
 

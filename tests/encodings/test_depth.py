@@ -184,6 +184,7 @@ def cases(backend: str, camera: Camera) -> list:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", CAMERAS, ids=lambda c: f"{c.near:g} to {c.far:g}")
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 @pytest.mark.usefixtures("gl")

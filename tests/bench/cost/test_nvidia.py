@@ -194,6 +194,7 @@ def test_an_installed_cuda_is_found_by_its_variable(monkeypatch, tmp_path):
     assert taken(tmp_path) == ["lib64/libnvrtc.so.12", "bin/nvdisasm"] and not tools.missing()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatch):
     monkeypatch.setattr(tools, "library", lambda: None)
@@ -316,6 +317,7 @@ def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
     return (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32), view.astype(np.float32)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", range(len(PLAIN)), ids=[encoding.name for encoding in PLAIN])
 def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
     """As Python's twin has it: codes of normals to 2^-19, and the normals of these codes."""

@@ -35,6 +35,7 @@ def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_cou
 
 @pytest.mark.usefixtures("own_cache")
 @named
+@pytest.mark.slow
 def test_rows_are_the_same_from_the_cache_and_another_gpu_or_build_is_compiled_for_again(
     request, run, monkeypatch, vendor
 ):
@@ -60,6 +61,7 @@ FAILING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_cache")
 @pytest.mark.parametrize("vendor, code, reason", FAILING, ids=[vendor.name for vendor, *_ in FAILING])
 def test_a_compiler_that_fails_costs_its_own_rows(request, run, monkeypatch, vendor, code, reason):

@@ -59,6 +59,7 @@ def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
     assert (found["encoding"], found["storage"], found["same_percent"]) == ("my_own", "mine", 100)
 
 
+@pytest.mark.slow
 def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):
     """The run's own rows stay, the run stays finished, and the same file again changes no byte."""
     sources = json.loads((folder / "run.json").read_text())["sources"]

@@ -51,6 +51,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_ten_devices_take_less_than_ten_seconds(run, tmp_path, monkeypatch):
     """With nothing in the cache, so that instructions are counted anew. The best of three, on a machine that may do
     other things."""

@@ -65,6 +65,7 @@ def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path)
         assert figures(capture(tmp_path / name, Reading())) == expected, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how, angle", [("half", 0.03), ("half npy", 0.03), ("png16", 0.002), ("png8", 0.4)])
 def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how, angle):
     """Half steps of half floats are 2^-12 beside 1, of 16 bits 2^-16, of 8 bits 1/255; up to sqrt 3 of that is lost."""
@@ -107,6 +108,7 @@ def test_a_list_of_normals_is_a_set_without_a_picture(tmp_path, run):
     assert (row["normals"], row["count"], row["not_finite"]) == ("list.npy", 48 * 64, 0)
 
 
+@pytest.mark.slow
 def test_pictures_are_drawn_of_a_capture(tmp_path, run):
     (tmp_path / "frame.png").write_bytes(png_bytes(packed(some_normals(), np.uint16)))
     arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--images", str(tmp_path / "p"))
@@ -398,6 +400,7 @@ def test_an_interlaced_png_is_read(tmp_path, size):
     assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(pixels, -1, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", [(1080, 1920, 3), (1, 262144, 3), (262144, 1, 3)])
 def test_16_bits_of_any_shape_are_read_in_seconds(tmp_path, shape):
     n = np.random.default_rng(0).integers(0, 2**16, shape, np.uint16)

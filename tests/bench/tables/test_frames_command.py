@@ -139,6 +139,7 @@ def test_json_is_flat_rows_the_best_first(run):
     assert all(tuple(row) == tuple(TABLES["frames"].empty()) and row["count"] == 4096 for row in rows)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl", "rows_are_kept")
 def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
     status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")

@@ -47,6 +47,7 @@ def small(height, width, covered=None):
     return from_arrays("corner", "a corner", n, np.broadcast_to(np.float32([0, 0, -1]), n.shape), covered, n.shape[:2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MAPS)
 @pytest.mark.parametrize("block", TOOLS)
 def test_the_psnr_of_the_channels_is_what_another_tool_gives(block, name):

@@ -85,6 +85,7 @@ def test_sources_are_chosen_by_words(run):
     assert (status, out) == (2, "") and err.count("\n") == 1 and "--source knuth: a word of one of these names" in err
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("rows_are_kept")
 def test_what_is_counted_is_what_is_printed(run):
     """Of the sources that take no samples: layouts, light, depth, points on rings."""

@@ -71,6 +71,7 @@ def test_rows_stand_by_bits_and_then_the_best_first(run):
     assert [row["encoding"] for row in json.loads(out)] == ["octahedral", "xy", "xyz"]
 
 
+@pytest.mark.slow
 def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
     """It is black in both images, so that the mean over every pixel is that over covered ones times their share."""
     words = ["--scene", "playground", "--encoding", "octahedral", "--storage", "rg8", "--format", "json"]
@@ -107,6 +108,7 @@ def test_a_black_image_is_said(run):
     assert all(row["black_percent"] == 100 for row in json.loads(out))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ball", "slab", "pot"])
 def test_a_mesh_of_ones_own_clips_at_most_a_hundredth(run, tmp_path, name):
     """Whatever its size and shape: sphere, plate and teapot a thousand times as large and as small."""
@@ -282,6 +284,7 @@ def test_lower_resolutions_of_inferred_are_reported(run):
     assert [row["bytes_per_pixel"] for row in figures] == [101, 101 / 4 + 5, 101 / 16 + 5]
 
 
+@pytest.mark.slow
 def test_samples_beyond_the_device_are_asked_and_given(run, gl):
     status, out, _ = run(*QUICK, "--samples", "64", "--pipeline", "deferred,inferred")
     assert status == 0

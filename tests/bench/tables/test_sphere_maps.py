@@ -20,6 +20,7 @@ def row(name: str, normals) -> dict:
     return quality.measure(quality.Case(codec(name), normals, "jax"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["octahedral", "xy", "spheremap", "spherical"])
 def test_a_map_agrees_with_the_hemisphere_row(name):
     """Cells, each as often as directions lie in it, have the mean of the uniform set and nearly its largest angle."""

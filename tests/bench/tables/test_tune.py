@@ -66,6 +66,7 @@ def anything_in_the_view(fov_deg: float, count: int) -> Normals:
     return seen(all_of(sphere(count)).n, np.stack([r * np.cos(around), r * np.sin(around), -z], axis=1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, storage",
     all_but(
@@ -86,6 +87,7 @@ def test_the_smooth_objective_is_what_is_measured(name, storage):
     assert math.degrees(expected) == pytest.approx(measured, rel=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("goal", all_but(1, ["rms", "mean", "max"]))
 @pytest.mark.parametrize("name, values", [("stereographic", [1.1]), ("spherical", [0.35, 0.6])])
 def test_gradients_are_those_of_differences(name, values, goal):
@@ -133,6 +135,7 @@ def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
         assert 0.6 * edge < found < 1.005 * edge, (goal, found, edge)
 
 
+@pytest.mark.slow
 def test_the_scale_of_2010_was_found_well():
     """On the scene it was found on 1.7777 is within 1 % of the best for PSNR, and what is found is no worse there."""
     chosen = halves_of(playground(), 0, by_tiles=False)
@@ -146,6 +149,7 @@ def test_the_scale_of_2010_was_found_well():
     assert after >= before, found
 
 
+@pytest.mark.slow
 def test_bits_are_split_as_the_closed_form_says():
     """Longitude is worth 8/3 of latitude on the sphere: a mean of (pi sin)^2 against (pi / 2)^2, as log4."""
     wanted = wanted_bits(codec_of("latitude_longitude", "rg16"), {}, all_of(sphere(2**16)))
@@ -213,6 +217,7 @@ def test_the_gain_is_of_the_held_out_half(run):
     assert f"--encoding {rows['psnr_db']['tuned_encoding']}" in err
 
 
+@pytest.mark.slow
 def test_where_nothing_is_gained_that_is_said(run):
     """Octahedral treats its two numbers alike, and so does the sphere."""
     rows, err = rows_of(run, "octahedral", "--storage", "rg8", "--normals", "sphere", "--count", "65536")
@@ -227,6 +232,7 @@ def test_the_same_is_found_again(run):
     assert rows_of(run, *arguments) == rows_of(run, *arguments)
 
 
+@pytest.mark.slow
 def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
     """A few half steps of 1 / 255, as everywhere: the last ring of normals is clipped for finer steps."""
     rows, _ = rows_of(run, "stereographic", "--normals", "hemisphere", "--count", "65536", "--parameter", "scale")
