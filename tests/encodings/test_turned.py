@@ -36,6 +36,7 @@ def test_the_pole_of_the_code_is_where_it_was_asked_for(name, values):
     assert np.abs(np.stack(code)).max() < 1e-6, f"the code of {pole} is {code}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("values", TURNS, ids=str)
 @pytest.mark.parametrize("name", ["octahedral", "spheremap", "spherical", "cube", "best_fit", "tetrahedral"])
 def test_both_languages_turn_alike(gl, name, values):

@@ -91,6 +91,7 @@ def in_world(light: Light, view: View) -> Light:
     return replace(light, position=tuple(position), direction=tuple(to_world[:3, :3] @ np.array(light.direction)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("far", [40.0, 11.0])
 @pytest.mark.parametrize("placed_at", IN_VIEW)
 def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at, far):

@@ -284,6 +284,7 @@ def test_output_that_cannot_be_written_is_one_line():
     assert done.returncode == 2 and done.stderr == "normalbench: cannot write: No space left on device\n"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkeypatch):
     """Mesa would print a line of its own."""

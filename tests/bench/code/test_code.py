@@ -232,6 +232,7 @@ def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
 # The command.
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_code_prints_one_file_that_says_what_it_is(run):
     """Codec, figures, how it was verified, the command that made it, licence; then the functions."""
@@ -249,6 +250,7 @@ def test_code_prints_one_file_that_says_what_it_is(run):
     assert "vec2 sm_encode(vec3 n) {" in out
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("gl")
 def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
     """The header of C and the texture of shaders lie beside them."""

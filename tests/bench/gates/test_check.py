@@ -73,6 +73,7 @@ def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_p
     assert (status, out) == (2, "") and f"{folder} has no angle_sup_deg; measure the run with --worst-case" in err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "encoding, said",
     [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],

@@ -48,12 +48,8 @@ def test_half_the_sphere_is_held_to_half_the_area():
     assert half.max_deg == pytest.approx(whole.max_deg / math.sqrt(2), rel=1e-4)
 
 
-FIRST = ("rg8",)
-
-
-@pytest.mark.parametrize(
-    "name", [*FIRST, *(pytest.param(name, marks=pytest.mark.slow) for name in STORAGES if name not in FIRST)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STORAGES)
 def test_no_row_is_below_its_limit(name):
     """The whole catalogue: every encoding that fits, on the sphere and on half of it."""
     codecs = [Codec(encoding, STORAGES[name]) for encoding in ENCODINGS.values()]

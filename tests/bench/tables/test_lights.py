@@ -84,6 +84,7 @@ def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
             assert apart.max() <= allowed, f"{name}, {count} lights that sum to {total}: {apart.max()} steps apart"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
 def test_random_lights_add_up_to_the_same_texels(gl, name):
     """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
@@ -106,6 +107,7 @@ def test_no_error_is_beyond_the_blends_times_half_a_step(name):
         assert error <= row["bound"] + row["lights"] * 2.0**-23, f"{name}: {row}"
 
 
+@pytest.mark.slow
 def test_light_beyond_the_range_is_in_the_bound():
     for name, total in (("linear:0.01", 1.0), ("srgb", 4.0), ("rgbm:1", 30.0)):
         (encoding,) = light_buffers_named(name)
@@ -120,6 +122,7 @@ def test_the_bound_is_half_a_code_a_blend():
     assert abs(log["bound"] / (64 * 0.5 / (255 * 0.5 * np.log(2))) - 1) < 0.01, log
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f")])
 def test_dim_lights_first_lose_less(name):
     """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere."""

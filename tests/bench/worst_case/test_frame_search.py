@@ -21,6 +21,7 @@ def codec_of(encoding: str, storage: str) -> FrameCodec:
     return FrameCodec(FRAME_ENCODINGS[encoding], FRAME_STORAGES[storage])
 
 
+@pytest.mark.slow
 def test_smallest_three_is_worst_where_all_components_are_a_half():
     """There the largest component makes up for the others: half steps of e, e and, of the one that has the hand's bit,
     2 e move the quaternion by sqrt(1 + 1 + 4 + 16) e, where e is sqrt(1/2) / 65535 at 16 bits. The rotation is twice

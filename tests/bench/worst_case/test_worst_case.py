@@ -104,6 +104,7 @@ def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where
     assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", ["rg8", "rg8_snorm"])
 def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
     """The search decodes all codes around as one array; the codec decodes one after the other."""
