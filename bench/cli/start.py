@@ -12,7 +12,7 @@ def program() -> NoReturn:
     """The command line as a process of its own."""
     # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    _end_on_an_unsupported_system()
+    _prepare()
     # OpenBLAS waits for work in a loop that takes a whole core. What is multiplied here is small: 3 x 3 by many.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Mesa says on standard error that it cannot make its folder, in GL and in Vulkan; it does without one anyway.
@@ -27,12 +27,12 @@ def program() -> NoReturn:
     run()
 
 
-def _end_on_an_unsupported_system() -> None:
-    from ..machine.system import require_supported_system
+def _prepare() -> None:
+    from ..machine.system import prepare
     from ..output.errors import MissingError, tell
 
     try:
-        require_supported_system()
+        prepare()
     except MissingError as error:
         tell(str(error))
         raise SystemExit(error.exit_code) from None

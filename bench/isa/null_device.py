@@ -33,10 +33,19 @@ class NullDeviceError(Exception):
 
 def library(source: Path | None = None) -> Path:
     """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
-    folder, source = kept.folder(), source or SOURCE
+    folder, source = _folder(), source or SOURCE
     stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
     sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _name(stem, path))
     return next(sound, None) or _built(folder, stem, source)
+
+
+def _folder() -> Path:
+    """Where libraries are built that processes can load."""
+    try:
+        return kept.folder_to_execute_from()
+    except OSError:
+        # Building there says why it cannot be.
+        return kept.folder()
 
 
 def variables(words: str) -> dict[str, str]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import atexit
 import json
-import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -111,7 +109,7 @@ def _by_child(path: Path, asked: tuple[str, str] | None) -> dict[str, Any]:
 def _file(name: str, text: str) -> Path:
     """A file of this name and text in the cache; where that cannot be written, in a folder of this process."""
     for folder in (kept.folder() / "translated", None):
-        path = (folder or _own_folder()) / name
+        path = (folder or kept.folder_of_this_process()) / name
         try:
             if not kept.is_private(path) or path.read_text(encoding="utf-8") != text:
                 _write(path, text)
@@ -131,10 +129,3 @@ def _write(path: Path, text: str) -> None:
             Path(file.name).replace(path)
         finally:
             Path(file.name).unlink(missing_ok=True)
-
-
-@cache
-def _own_folder() -> Path:
-    folder = tempfile.mkdtemp(prefix="normalbench-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return Path(folder)

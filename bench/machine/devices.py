@@ -35,6 +35,7 @@ def keep_programs() -> None:
     if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache and not cache.is_off():
         try:
             cache.make_folder(programs_folder())
+            cache.keep_only_files(programs_folder())
         except OSError:
             return
         jax.config.update("jax_compilation_cache_dir", str(programs_folder()))

@@ -1,8 +1,12 @@
-"""Which systems the program runs on. Imports nothing that one of them lacks."""
+"""Which systems the program runs on, and what it needs of a user there. Imports nothing that one of them lacks."""
 
 from __future__ import annotations
 
+import os
+import stat
 import sys
+import tempfile
+from pathlib import Path
 
 from ..output.errors import MissingError
 
@@ -13,7 +17,28 @@ WINDOWS = (
 UNSUPPORTED = {"win32": WINDOWS, "cygwin": WINDOWS}
 
 
-def require_supported_system() -> None:
-    """Raises MissingError on a system that the program does not run on yet."""
+def prepare() -> None:
+    """Before anything else is used.
+
+    Raises:
+        MissingError: a system that the program does not run on yet.
+    """
     if sys.platform in UNSUPPORTED:
         raise MissingError(UNSUPPORTED[sys.platform])
+    try:
+        Path.home()
+    except RuntimeError:
+        # An unknown user id, as containers have it. Caches and settings of libraries lie in the home folder.
+        os.environ["HOME"] = str(_home_for_the_unknown())
+
+
+def _home_for_the_unknown() -> Path:
+    """A folder that this user alone can have written into; another one for each process where there is none."""
+    home = Path(tempfile.gettempdir()) / f"normalbench-home-{os.geteuid()}"
+    try:
+        home.mkdir(0o700, exist_ok=True)
+        found = home.lstat()
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="normalbench-home-"))
+    is_private = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
+    return home if is_private else Path(tempfile.mkdtemp(prefix="normalbench-home-"))

@@ -137,10 +137,31 @@ def _is_whole(path: Path) -> bool:
 
 
 def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
-    found = ctypes.CDLL(str(path))
+    """A library, which its file need not outlive. Raises NoCompilerError where it lacks a function, and OSError."""
+    try:
+        found = ctypes.CDLL(str(path))
+    except OSError:
+        found = _loaded_elsewhere(path)
     if missing := [name for name in functions if not hasattr(found, name)]:
         raise NoCompilerError(f"cc: {', '.join(missing)} is not in what it made")
     return found
+
+
+def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
+    """A copy of a library that lies where nothing may be executed, as some mount their home or their /tmp.
+
+    Raises:
+        OSError: it is not a library, or no folder will do.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            return ctypes.CDLL(shutil.copy(path, folder))
+        except OSError:
+            if kept.is_off():
+                raise
+    kept.make_folder(kept.folder())
+    with tempfile.TemporaryDirectory(dir=kept.folder()) as folder:
+        return ctypes.CDLL(shutil.copy(path, folder))
 
 
 # Set once the compiler did not end.

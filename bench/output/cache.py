@@ -6,6 +6,8 @@ may have written.
 
 from __future__ import annotations
 
+import atexit
+import functools
 import hashlib
 import json
 import os
@@ -77,11 +79,22 @@ def require_folder() -> None:
         raise MissingError(f"{error.strerror or error}: {folder()}; XDG_CACHE_HOME names another one") from error
 
 
+def keep_only_files(path: Path) -> None:
+    """Take out of a folder what others read by names of theirs and is not a file: a pipe would be waited for, and a
+    device read without an end. Raises OSError."""
+    with os.scandir(path) as entries:
+        for entry in entries:
+            if not entry.is_file(follow_symlinks=False):
+                shutil.rmtree(entry) if entry.is_dir(follow_symlinks=False) else Path(entry).unlink()
+
+
 def is_private(path: Path) -> bool:
-    """Whether nobody but this user can have written a file of the cache, or put it there."""
+    """Whether there is a file, which nobody but this user can have written or put there."""
     above = [one for one in path.parents if one.is_relative_to(folder())]
     try:
-        return _is_private(path.lstat()) and all(_is_private(one.stat()) for one in above)
+        found = path.lstat()
+        # A pipe would be waited for, and a device read without an end.
+        return stat.S_ISREG(found.st_mode) and _is_private(found) and all(_is_private(one.stat()) for one in above)
     except OSError:
         return False
 
@@ -92,6 +105,24 @@ def _is_private(found: os.stat_result) -> bool:
 
 def _is_own(found: os.stat_result) -> bool:
     return found.st_uid == os.geteuid()
+
+
+@functools.cache
+def folder_of_this_process() -> Path:
+    """For what the cache cannot take; it goes with the process."""
+    path = tempfile.mkdtemp(prefix="normalbench-")
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
+    return Path(path)
+
+
+def folder_to_execute_from() -> Path:
+    """The cache, or a folder of this process where the cache lies on a file system that nothing is executed from.
+
+    Raises:
+        OSError: the cache cannot be made, or it is another user's.
+    """
+    make_folder(folder())
+    return folder_of_this_process() if os.statvfs(folder()).f_flag & os.ST_NOEXEC else folder()
 
 
 def key_of(*parts: str | bytes) -> str:

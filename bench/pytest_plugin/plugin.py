@@ -87,10 +87,10 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
     """What measures for the tests of a folder; where the program does not run they fail, and other tests do not."""
-    from ..machine.system import require_supported_system
+    from ..machine.system import prepare
 
     try:
-        require_supported_system()
+        prepare()
     except MissingError as error:
         pytest.fail(str(error), pytrace=False)
     from .session import Normalbench, session_of

@@ -1,5 +1,10 @@
 """On a system that the program does not run on yet it says so in one line."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from other_systems import on_windows
 
@@ -35,6 +40,42 @@ def test_pytest_on_windows_runs_the_tests_that_measure_nothing(pytester):
     found = pytester.runpytest()
     found.assert_outcomes(passed=1, errors=1)
     found.stdout.fnmatch_lines([f"*{SAYS[:60]}*"])
+
+
+NOBODY = """
+import os, pwd, sys
+os.environ.pop("HOME", None), os.environ.pop("XDG_CACHE_HOME", None)
+def unknown(*_):
+    raise KeyError("uid not found")
+pwd.getpwuid = unknown
+"""
+
+
+def as_nobody(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """What a program does for a user whom the system does not know, with a folder for temporary files."""
+    ours = {name: value for name, value in os.environ.items() if not name.startswith("JAX_")}
+    variables = ours | {"TMPDIR": str(folder)}
+    return subprocess.run([sys.executable, "-c", NOBODY + code], capture_output=True, text=True, env=variables)
+
+
+@pytest.mark.parametrize(
+    "words", [["doctor"], ["quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax"]]
+)
+def test_a_user_without_a_home_is_served(tmp_path, words):
+    """Nothing is said, and what is kept lies in a folder that is this user's alone."""
+    done = as_nobody(f"sys.argv = ['normalbench', *{words}]\n{START}", tmp_path)
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    (home,) = [path for path in tmp_path.iterdir() if "home" in path.name]
+    assert home.stat().st_mode & 0o777 == 0o700 and (home / ".cache/normalbench").is_dir()
+
+
+def test_a_home_that_somebody_else_made_is_not_used(tmp_path):
+    planted = tmp_path / f"normalbench-home-{os.geteuid()}"
+    planted.mkdir()
+    planted.chmod(0o777)
+    code = "from normalbench.bench.machine.system import prepare; prepare(); print(os.environ['HOME'])"
+    home = Path(as_nobody(code, tmp_path).stdout.strip())
+    assert home.parent == tmp_path and home != planted and home.stat().st_mode & 0o777 == 0o700
 
 
 def test_the_plugin_is_loaded_on_windows():

@@ -2,6 +2,8 @@
 
 import os
 import stat
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -58,6 +60,69 @@ def test_a_value_of_anothers_is_made_anew(folder, done_to):
     done_to(folder / KEY[:2] / f"{KEY}.json")
     assert cache.read(KEY) is None and cache.kept(KEY, lambda: {"bits": 9}) == {"bits": 9}
     assert cache.read(KEY) == {"bits": 9}, "and that is kept"
+
+
+def pipe(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+def endless(path):
+    path.unlink()
+    path.symlink_to("/dev/zero")
+
+
+@pytest.mark.parametrize("put", [pipe, endless])
+def test_a_pipe_or_a_device_in_place_of_a_file_is_not_read(folder, put):
+    """Neither values nor libraries nor JAX's programs: what is there is made anew, or taken out."""
+    cache.write(KEY, {"bits": 8})
+    put(folder / KEY[:2] / f"{KEY}.json")
+    assert cache.read(KEY) is None
+    if native.compiler():
+        native._made.cache_clear()
+        native.library("int answer(void) { return 7; }", "answer")
+        (kept,) = (folder / "native").glob("*.so")
+        put(kept)
+        native._made.cache_clear()
+        assert native.library("int answer(void) { return 7; }", "answer").answer() == 7
+    programs = folder / "programs"
+    cache.make_folder(programs)
+    for name in ("file", "odd"):
+        (programs / name).touch()
+    put(programs / "odd")
+    cache.keep_only_files(programs)
+    assert [path.name for path in programs.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize("nowhere", ["normalbench", "tmp"])
+@pytest.mark.usefixtures("folder")
+def test_a_library_is_loaded_whichever_folder_nothing_is_executed_from(monkeypatch, tmp_path, nowhere):
+    """The cache, or the folder for temporary files: a row is measured by C the second time as the first."""
+    if not native.compiler():
+        pytest.skip("no C compiler")
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
+    load = native.ctypes.CDLL
+
+    def guarded(path):
+        if nowhere in Path(path).relative_to(tmp_path).parts[:2]:
+            raise OSError(f"{path}: failed to map segment from shared object")
+        return load(path)
+
+    monkeypatch.setattr(native.ctypes, "CDLL", guarded)
+    for _ in range(2):
+        native._made.cache_clear()
+        assert native.library("int answer(void) { return 5; }", "answer").answer() == 5
+
+
+def test_a_device_is_built_elsewhere_where_nothing_is_executed_from_the_cache(folder, monkeypatch):
+    """The loader passes over a library that it cannot map, and then there is no device."""
+    flags = SimpleNamespace(f_flag=os.ST_NOEXEC)
+    monkeypatch.setattr(cache.os, "statvfs", lambda _: flags)
+    there = null_device.library()
+    assert not there.is_relative_to(folder) and there.parent == cache.folder_of_this_process()
+    flags.f_flag = 0
+    assert null_device.library().is_relative_to(folder)
 
 
 def test_folders_are_for_their_user_alone(folder):
