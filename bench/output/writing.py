@@ -33,12 +33,12 @@ def check_writable(path: Path, makes_folder: bool = False) -> None:
             raise UsageError(f"{path} is a folder; name a file")
         if is_special(path):
             return
-        _check_own(path.resolve())
+        _check_own(target_of(path))
         # Asked of what it will be called while it is written, so that a name that is too long is noticed.
         _partial(path).exists()
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
-    folder = path.resolve().parent
+    folder = target_of(path).parent
     if not (makes_folder or folder.is_dir()):
         raise UsageError(f"cannot write {path}: there is no folder {path.parent}")
     check_folder(folder)
@@ -70,6 +70,14 @@ def check_folder(folder: Path) -> None:
             pass
     except OSError as error:
         raise UsageError(f"cannot write to {folder}: {error.strerror or error}") from error
+
+
+def target_of(path: Path) -> Path:
+    """The file that links lead to, which is what is written. Raises UsageError where they lead back to themselves."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError) as error:
+        raise UsageError(f"cannot write to {path}: links lead back to themselves; name another file") from error
 
 
 def is_special(path: Path) -> bool:
@@ -104,7 +112,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     Raises:
         UsageError: it cannot be written.
     """
-    path = path.resolve()
+    path = target_of(path)
     partial = path if is_special(path) else _partial(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -18,7 +18,7 @@ from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
 from ..output.progress import progress
-from ..output.writing import is_special
+from ..output.writing import is_special, target_of
 from ..tables.table import Measured, Row, Step, Table, Tick
 from .plain import key_text, plain
 
@@ -274,7 +274,7 @@ def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
     if output is None or is_special(output):
         yield None
         return
-    output = output.resolve()
+    output = target_of(output)
     with journal(output.with_name(f".{output.name}.rows")) as kept:
         header = {"work": plain([work])[0]}
         if not kept.lines:

@@ -242,6 +242,18 @@ def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
     assert pipe.is_fifo()
 
 
+@pytest.mark.parametrize("output", ["-o a.json", "-o a.json/below.json", "--plot a.png", "--report a.html"])
+def test_links_that_go_round_are_one_line(run, tmp_path, monkeypatch, output):
+    monkeypatch.chdir(tmp_path)
+    option, name = output.split()
+    for one, other in (("a", "b"), ("b", "a")):
+        for suffix in (".json", ".png", ".html"):
+            Path(one + suffix).symlink_to(other + suffix)
+    status, out, err = run("depth", option, name)
+    why = "links lead back to themselves; name another file"
+    assert (status, out, err) == (2, "", f"normalbench: cannot write to {name}: {why}\n")
+
+
 @pytest.mark.parametrize("target", ["nowhere", "link"], ids=["to nothing", "to itself"])
 @pytest.mark.parametrize("output", ["link", "link/below"])
 def test_a_link_that_leads_to_no_folder_is_one_line(run, tmp_path, monkeypatch, target, output):
