@@ -38,8 +38,8 @@ from normalbench.bench.results.machine import require_mobile
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 CACHE = Path(__file__).parents[1] / ".pytest_cache"
-# What a process of the tests may hold on to between two modules, in bytes.
-LARGE = 10**9
+# What a process of the tests may hold on to between two tests, in bytes.
+LARGE = 1_400_000_000
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
@@ -69,7 +69,7 @@ def pytest_collection_finish():
     have_few_heaps()
 
 
-@pytest.fixture(scope="module", autouse=True)
+@pytest.fixture(autouse=True)
 def memory_is_given_back():
     """A command keeps what it freed for its own next step; a process of thousands of tests would grow to gigabytes."""
     yield

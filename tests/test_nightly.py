@@ -89,7 +89,14 @@ def test_a_run_says_how_old_the_nightly_is_and_fails_where_it_is_too_old(tmp_pat
     git(there, "init", "-q")
     git(there, "add", ".")
     git(there, "commit", "-qm", "first")
-    assert aged(there).returncode == 1 and "have never passed" in aged(there).stdout
+    assert aged(there).returncode == 0 and "have not passed in the 1 commits" in aged(there).stdout, "no script either"
+    (there / ".ci/nightly").touch()
+    (there / ".ci/nightly-passed").write_text("somewhen\n")
+    git(there, "add", ".")
+    git(there, "commit", "-qm", "added")
+    for age in range(4):
+        assert aged(there).returncode == int(age > 2) and f"in the {age} commits" in aged(there).stdout
+        git(there, "commit", "-q", "--allow-empty", "-m", f"{age}")
     (there / ".ci/nightly-passed").write_text("2026-01-01, at commit abc\n")
     git(there, "add", ".")
     git(there, "commit", "-qm", "passed")

@@ -53,8 +53,9 @@ def make_folder(path: Path) -> None:
         OSError: it cannot be made, or it is another user's.
     """
     for one in reversed((path, *path.parents)):
-        if not one.exists():
-            one.mkdir(PRIVATE, exist_ok=True)
+        if not one.is_dir():
+            # Something else of that name is an error.
+            one.mkdir(PRIVATE, exist_ok=not one.is_symlink())
         elif one.is_relative_to(folder()) and not _is_private(one.stat()):
             _close(one)
 

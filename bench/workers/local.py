@@ -8,6 +8,7 @@ from typing import IO
 
 from ..machine.children import environment, python
 from ..output.errors import UsageError, tell
+from .worker import ENCRYPTED
 
 START_S, END_S = 60.0, 5.0
 # Workers that end by themselves, one for each that there should be, this often: none will stay.
@@ -25,7 +26,8 @@ class Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
-            env=environment(),
+            # Nothing of them leaves this machine, and certificates may name another one.
+            env=environment() | {ENCRYPTED: "False"},
             start_new_session=True,
             text=True,
         )

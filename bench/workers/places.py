@@ -42,11 +42,17 @@ def place(on: str | None) -> Iterator[Here | Pool]:
 
 @contextmanager
 def _local(count: int) -> Iterator[Pool]:
+    from dask import config
+
     from .local import LocalProcesses
 
     processes = LocalProcesses(count)
     try:
-        with _crew(processes.address, processes.look_after) as pool:
+        # They listen on this machine alone.
+        with (
+            config.set({"distributed.comm.require-encryption": False}),
+            _crew(processes.address, processes.look_after) as pool,
+        ):
             yield pool
     finally:
         processes.close()

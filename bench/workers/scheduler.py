@@ -9,14 +9,16 @@ import asyncio
 import signal
 import sys
 
-from .worker import HTTP, end_now, end_with_parent, quiet
+from .worker import HTTP, end_now, end_with_parent, own_dask_folder, quiet
 
 HOST = "127.0.0.1"
 
 
 async def _run(port: int) -> None:
+    from dask import config
     from distributed import Scheduler
 
+    config.set(temporary_directory=own_dask_folder())
     async with Scheduler(host=HOST, port=port, dashboard=False, dashboard_address=HTTP) as scheduler:
         print(scheduler.address, flush=True)
         await scheduler.finished()

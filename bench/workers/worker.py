@@ -34,10 +34,23 @@ from .words import checked_address, require_dask
 RESOURCE = "normalbench"
 # What dask serves over HTTP is read by nobody; it listens all the same, so it listens here.
 HTTP = "127.0.0.1:0"
+# Dask's own variables.
+TLS, ENCRYPTED = "DASK_DISTRIBUTED__COMM__TLS__", "DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION"
 # How long a worker waits for its scheduler, and how often it asks, in seconds.
 PATIENCE_S, AGAIN_S = 60.0, 0.5
 
 Job = tuple["Future[Any]", Callable[..., Any], tuple[Any, ...], dict[str, Any]]
+
+
+# What dask writes into, which goes with the process however it ends by itself.
+DASK_FOLDER = "normalbench-dask-"
+_folders: list[str] = []
+
+
+def own_dask_folder() -> str:
+    """A folder for what dask writes; `end_now` takes it away."""
+    _folders.append(tempfile.mkdtemp(prefix=DASK_FOLDER))
+    return _folders[-1]
 
 
 class MainThread(Executor):
@@ -96,7 +109,8 @@ class Connection(threading.Thread):
     async def _join(self) -> None:
         from distributed import Worker
 
-        with tempfile.TemporaryDirectory(prefix="normalbench-dask-") as folder:
+        with tempfile.TemporaryDirectory(prefix=DASK_FOLDER) as folder:
+            _folders.append(folder)
             worker = Worker(
                 self._address,
                 host=interface_towards(self._address),
@@ -115,7 +129,8 @@ class Connection(threading.Thread):
 
 
 def check_certificates(option: str, address: str, role: str) -> None:
-    """Raises UsageError where an address asks for TLS and dask's configuration has no certificate to show.
+    """Raises UsageError where an address asks for TLS and dask's configuration has no certificate to show, or the
+    configuration wants TLS and the address does not.
 
     Args:
         option: what the address was given to.
@@ -123,16 +138,19 @@ def check_certificates(option: str, address: str, role: str) -> None:
     """
     from distributed.security import Security
 
+    given = Security()
     if not address.startswith("tls://"):
+        if given.require_encryption:
+            raise UsageError(f"{option} {address}: {ENCRYPTED} is set, which wants an address such as tls://HOST:PORT")
         return
-    names = ("CA_FILE", f"{role.upper()}__CERT", f"{role.upper()}__KEY")
+    names = (f"{TLS}{name}" for name in ("CA_FILE", f"{role.upper()}__CERT", f"{role.upper()}__KEY"))
+    named = f"{', '.join(names)} (docs/secure-workers.md)"
     try:
-        is_there = Security().get_connection_args(role).get("ssl_context") is not None
+        is_there = given.get_connection_args(role).get("ssl_context") is not None
     except OSError as error:
-        raise UsageError(f"{option} {address}: the certificates cannot be read: {error}") from error
+        raise UsageError(f"{option} {address}: these files cannot be read: {named}: {error}") from error
     if not is_there:
-        missing = ", ".join(f"DASK_DISTRIBUTED__COMM__TLS__{name}" for name in names)
-        raise UsageError(f"{option} {address}: no certificates; set {missing} (docs/secure-workers.md)")
+        raise UsageError(f"{option} {address}: no certificates; set {named}")
 
 
 def interface_towards(address: str) -> str:
@@ -217,8 +235,8 @@ def end_with_parent() -> None:
 def end_now(*_: int | FrameType | None) -> NoReturn:
     """End this process at once, whatever it computes."""
     tasks = sys.modules.get(f"{__package__}.tasks")
-    if tasks:
-        shutil.rmtree(tasks.own_folder(), ignore_errors=True)
+    for folder in [*_folders, *([tasks.own_folder()] if tasks else [])]:
+        shutil.rmtree(folder, ignore_errors=True)
     os._exit(0)
 
 

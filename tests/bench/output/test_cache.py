@@ -10,6 +10,7 @@ import pytest
 from normalbench.bench.isa import null_device
 from normalbench.bench.native import library as native
 from normalbench.bench.output import cache
+from normalbench.bench.output.errors import MissingError
 
 ELSE = 12345
 FOLDERS = ("native", "programs", "translated")
@@ -149,6 +150,17 @@ def test_a_folder_that_was_open_is_closed_and_rid_of_what_others_put_there(folde
     programs.chmod(0o777)
     cache.make_folder(programs)
     assert [path.name for path in programs.iterdir()] == ["mine"] and stat.S_IMODE(programs.stat().st_mode) == 0o700
+
+
+@pytest.mark.parametrize("put", [lambda path: path.write_text("mine"), os.mkfifo, lambda path: path.symlink_to("none")])
+def test_what_is_no_folder_keeps_nothing_and_is_left_as_it_is(folder, put):
+    folder.parent.mkdir(parents=True)
+    put(folder)
+    before = folder.lstat()
+    cache.write(KEY, {})
+    with pytest.raises(MissingError, match="XDG_CACHE_HOME names another one"):
+        cache.require_folder()
+    assert cache.read(KEY) is None and folder.lstat().st_mode == before.st_mode
 
 
 @as_root

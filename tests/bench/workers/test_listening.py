@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from dask import config
 from manual import PAGES, ROOT
 
 from normalbench.bench.workers.scheduler import HOST
@@ -117,6 +118,34 @@ def test_tls_without_certificates_is_one_line(run, monkeypatch, tmp_path, comman
     assert f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY (docs/secure-workers.md)" in err
 
 
+def test_tcp_where_encryption_is_wanted_is_one_line(run):
+    """Dask would say that nobody answers."""
+    with config.set({"distributed.comm.require-encryption": True}):
+        status, _, err = run("quality", "--normals", "axes", "--on", "tcp://127.0.0.1:1")
+    assert status == 2 and "REQUIRE_ENCRYPTION is set, which wants an address such as tls://HOST:PORT" in err
+
+
+@pytest.mark.slow
+def test_local_workers_want_no_certificates_and_leave_nothing_behind(tmp_path):
+    words = (
+        "quality",
+        "--encoding",
+        "xy",
+        "--storage",
+        "rg8",
+        "--normals",
+        "axes",
+        "--backend",
+        "jax",
+        "--on",
+        "local:2",
+    )
+    variables = os.environ | {"DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": "True", "TMPDIR": str(tmp_path)}
+    done = subprocess.run([*NORMALBENCH, *words], capture_output=True, text=True, env=variables)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    assert not [path for path in tmp_path.iterdir() if "dask" in path.name], "what dask wrote is left"
+
+
 def block(name: str) -> list[str]:
     return re.search(rf"<!-- tls {name} -->\n```text\n(.*?)```", MANUAL, re.S)[1].splitlines()
 
@@ -146,8 +175,8 @@ def test_the_manuals_commands_measure_over_tls(started, tmp_path):
     assert rows.returncode == 0 and rows.stdout == alone.stdout, rows.stderr
     stranger = subprocess.run(asks, capture_output=True, text=True, cwd=tmp_path)
     assert stranger.returncode == 2 and "no certificates" in stranger.stderr
-    plain = subprocess.run([*asks[:-1], f"tcp://{HOST}:{port}"], capture_output=True, text=True, cwd=tmp_path)
-    assert plain.returncode == 2 and len(plain.stderr.splitlines()) == 1 and "nobody answers" in plain.stderr
+    plain = subprocess.run([*asks[:-1], f"tcp://{HOST}:{port}"], capture_output=True, text=True, **there)
+    assert plain.returncode == 2 and len(plain.stderr.splitlines()) == 1 and "REQUIRE_ENCRYPTION is set" in plain.stderr
 
 
 MODULES = {"dask": "dask", "normalbench": "normalbench.bench"}
