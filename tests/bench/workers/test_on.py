@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -176,14 +177,26 @@ def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number
     assert (tmp_path / "rows.json").read_bytes() == rows_alone
 
 
+def a_process_of(pid: int, module: str) -> int:
+    """A process that runs a module, of those that a command started; it may be starting one anew."""
+    until = time.monotonic() + 30
+    while time.monotonic() < until:
+        for child in children(pid):
+            # Others end at any moment.
+            with suppress(OSError, ValueError):
+                if module in Path(f"/proc/{child}/cmdline").read_text():
+                    return child
+        time.sleep(0.05)
+    raise AssertionError(f"no process of {pid} runs {module}")
+
+
 @pytest.mark.slow
 def test_a_killed_worker_and_a_killed_scheduler_cost_no_row(tmp_path, rows_alone):
     process = begun(tmp_path, "--on", "local:2")
     for steps, victim in ((3, "bench.workers.worker"), (8, "bench.workers.scheduler")):
         wait_for(tmp_path, steps)
         assert process.poll() is None, "it ended before anything was killed"
-        (first, *_) = [pid for pid in children(process.pid) if victim in Path(f"/proc/{pid}/cmdline").read_text()]
-        os.kill(first, signal.SIGKILL)
+        os.kill(a_process_of(process.pid, victim), signal.SIGKILL)
     _, err = process.communicate(timeout=300)
     assert process.returncode == 0 and "the scheduler was lost; another one is started" in err, err
     assert (tmp_path / "rows.json").read_bytes() == rows_alone
