@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -28,11 +29,9 @@ MANUAL = PAGES[ROOT / "docs" / "secure-workers.md"]
 def family_of(pid: int) -> set[int]:
     """A process and all that it started."""
     parents = {}
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            parents[int(path.parent.name)] = int(path.read_text().rpartition(")")[2].split()[1])
-        except OSError:
-            continue
+    for folder in (path for path in Path("/proc").iterdir() if path.name.isdecimal()):
+        with suppress(OSError):
+            parents[int(folder.name)] = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
     found = {pid}
     while more := {child for child, parent in parents.items() if parent in found} - found:
         found |= more
@@ -40,14 +39,13 @@ def family_of(pid: int) -> set[int]:
 
 
 def sockets_of(pid: int) -> set[str]:
-    """The inodes of a process's sockets."""
+    """The inodes of a process's sockets; none of one that has just ended."""
     found = set()
-    for path in Path(f"/proc/{pid}/fd").glob("*"):
-        try:
-            if match := re.fullmatch(r"socket:\[(\d+)\]", str(path.readlink())):
-                found.add(match[1])
-        except OSError:
-            continue
+    with suppress(OSError):
+        for path in Path(f"/proc/{pid}/fd").iterdir():
+            with suppress(OSError):
+                if match := re.fullmatch(r"socket:\[(\d+)\]", str(path.readlink())):
+                    found.add(match[1])
     return found
 
 
