@@ -34,11 +34,14 @@ def prepare() -> None:
 
 def _home_for_the_unknown() -> Path:
     """A folder that this user alone can have written into; another one for each process where there is none."""
+    from ..output.cache import PRIVATE, is_closed
+
     home = Path(tempfile.gettempdir()) / f"normalbench-home-{os.geteuid()}"
     try:
-        home.mkdir(0o700, exist_ok=True)
+        home.mkdir(PRIVATE, exist_ok=True)
         found = home.lstat()
     except OSError:
         return Path(tempfile.mkdtemp(prefix="normalbench-home-"))
-    is_private = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
-    return home if is_private else Path(tempfile.mkdtemp(prefix="normalbench-home-"))
+    return (
+        home if stat.S_ISDIR(found.st_mode) and is_closed(found) else Path(tempfile.mkdtemp(prefix="normalbench-home-"))
+    )

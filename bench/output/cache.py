@@ -56,7 +56,7 @@ def make_folder(path: Path) -> None:
         if not one.is_dir():
             # Something else of that name is an error.
             one.mkdir(PRIVATE, exist_ok=not one.is_symlink())
-        elif one.is_relative_to(folder()) and not _is_private(one.stat()):
+        elif one.is_relative_to(folder()) and not is_closed(one.stat()):
             _close(one)
 
 
@@ -95,12 +95,13 @@ def is_private(path: Path) -> bool:
     try:
         found = path.lstat()
         # A pipe would be waited for, and a device read without an end.
-        return stat.S_ISREG(found.st_mode) and _is_private(found) and all(_is_private(one.stat()) for one in above)
+        return stat.S_ISREG(found.st_mode) and is_closed(found) and all(is_closed(one.stat()) for one in above)
     except OSError:
         return False
 
 
-def _is_private(found: os.stat_result) -> bool:
+def is_closed(found: os.stat_result) -> bool:
+    """Whether a file or folder is this user's, and nobody else may write it."""
     return _is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
