@@ -47,6 +47,9 @@ def _local(count: int) -> Iterator[Pool]:
     from .local import LocalProcesses
 
     processes = LocalProcesses(count)
+    # Its defaults are part of dask's configuration from now on: imported below, they would be gone with the setting.
+    import distributed  # noqa: F401
+
     try:
         # They listen on this machine alone.
         with (

@@ -1,6 +1,8 @@
 """What workers measure is what one process measures, to the digit, with the same pictures."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -149,6 +151,15 @@ def test_python_takes_workers_as_well(scheduler):
         nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (scheduler, None)
     )
     pd.testing.assert_frame_equal(found, same)
+
+
+@pytest.mark.slow
+def test_a_process_may_start_workers_twice():
+    """In a process of its own: the first to import dask.distributed has found its settings gone."""
+    code = "from normalbench.bench.workers.places import place\n"
+    code += "for _ in range(2):\n    with place('local:1'):\n        print('started')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.stdout.split() == ["started", "started"], done.stderr
 
 
 @pytest.mark.slow
