@@ -51,7 +51,9 @@ def pytest_configure(config):
 
 
 # What takes seconds to begin with, and a test of it seldom fails where no other one does.
-SLOW_FIXTURES = frozenset({"browser", "gl_browser", "chromium", "results", "scheduler", "nvidia", "vendor_rows"})
+SLOW_FIXTURES = frozenset(
+    {"browser", "gl_browser", "chromium", "results", "scheduler", "radv", "intel", "nvidia", "vendor_rows"}
+)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -14,7 +14,7 @@ FEW = [kind for kind in KINDS if kind.few]
 # Each of these is a command, and takes half a second.
 COSTLY = ("run: read", "words")
 HERE = "test_attack.py::test_what_is_damaged_is_measured_or_refused_in_a_line"
-PARTS = [pytest.param(kind, kind.few, id=kind.name) for kind in FEW if kind.name not in COSTLY]
+PARTS = [pytest.param(kind, kind.few, id=kind.name, marks=pytest.mark.slow) for kind in FEW if kind.name not in COSTLY]
 SLOW = [
     pytest.param(kind, count, id=f"{count} of {kind.name}", marks=mark)
     for kind in FEW

@@ -22,7 +22,8 @@ def marks(path: Path) -> dict[str, tuple[str, bool]]:
             (cheaper,) = call.args
             value = named[cheaper.id] if isinstance(cheaper, ast.Name) else cheaper
             assert isinstance(value, ast.Constant), f"{path.name}: {test.name} names no test"
-            found[f"{path.relative_to(TESTS)}::{test.name}"] = value.value, call in test.decorator_list
+            is_whole = call in test.decorator_list and not is_parametrised(call)
+            found[f"{path.relative_to(TESTS)}::{test.name}"] = value.value, is_whole
     return found
 
 
@@ -30,11 +31,17 @@ def is_name(node: ast.Assign) -> bool:
     return len(node.targets) == 1 and isinstance(node.targets[0], ast.Name)
 
 
+def is_parametrised(node: ast.AST) -> bool:
+    """Whether it is the mark of `vendors.py`, one of whose two parameters is left to the nightly."""
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "every_or_some"
+
+
 def calls(nodes, named, seen) -> list[ast.Call]:
     """The calls of `pytest.mark.nightly` in decorators, also by way of a list or function of the module."""
     found = []
     for node in (inner for outer in nodes for inner in ast.walk(outer)):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "nightly":
+        is_marked = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "nightly"
+        if is_marked or is_parametrised(node):
             found.append(node)
         elif isinstance(node, ast.Name) and node.id in named and node.id not in seen:
             found += calls([named[node.id]], named, seen | {node.id})

@@ -90,7 +90,7 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         program = program_of(codec, prefix)
         interface = interface_of(codec, prefix, _takes_view(program, prefix))
         writer = LANGUAGES[language].writer
-        sizes = {name: (table.shape[1], table.shape[2]) for name, table in interface.tables.items()}
+        sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
         body = writer(prefix, sizes).program(program) if writer else _python(codec, prefix)
     except TranslationError as error:
         raise UsageError(_untranslatable(codec, str(error))) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import jax
@@ -63,7 +63,8 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
     return n.astype(np.float32), view.astype(np.float32)
 
 
-@cache
+# Each has megabytes; the languages of one codec follow each other.
+@lru_cache(8)
 def reference(codec: Codec) -> Reference:
     """What the catalogue makes of the normals of a codec's domain."""
     return reference_of(codec, *normals(codec.encoding.domain))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..translator import tree
 from ..translator.glsl_writer import GlslWriter
-from ..translator.reduce import reduced
+from ..translator.reduce import numbered, reduced
 from ..translator.wgsl_parser import read_wgsl
 from .pairs import Function
 from .programs import TranslationError, template
@@ -38,21 +38,14 @@ def functions(text: str) -> list[Function]:
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
     """A function of a source as a fragment shader in GLSL: see `plain.py`. Raises TranslationError."""
     program = reduced(_program(source), {function.name: "entry"}, "wgsl", "")
-    for number, one in enumerate([*program.constants, *program.functions]):
-        # Names that end in a number are those that `plain.py` makes its own.
-        _rename(program, one.name, f"wgsl_{number}")
+    # Names that end in a number are those that `plain.py` makes its own: none is a word of GLSL's.
+    numbered(program, "wgsl")
     entry = program.functions[-1]
     given = ["wgsl_given_0", "wgsl_view_0"][: len(entry.parameters)]
     view = "layout(location = 1) in vec3 wgsl_view_0;" if len(given) > 1 else ""
     words = {"VIEW": view, "RESULT": f"vec{function.result}", "GIVEN": f"vec{function.given[0]}"}
     made = template("entry.frag", FUNCTION=entry.name, ARGUMENTS=", ".join(given), **words)
     return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + made
-
-
-def _rename(program: tree.Program, old: str, new: str) -> None:
-    for node in tree.inside([program.constants, program.functions]):
-        if getattr(node, "name", None) == old:
-            node.name = new
 
 
 def _program(source: Source) -> tree.Program:

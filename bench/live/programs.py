@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,12 +54,20 @@ def program(codec: Codec) -> Record:
         "rounding": codec.rounding,
         "domain": encoding.domain,
         "source": code.body,
-        "text": "" if is_catalogues(encoding) else own.read_text(encoding="utf-8", errors="replace"),
+        "text": "" if is_catalogues(encoding) else _read(own),
         "sign_bits": code.interface.sign_bits,
         "takes_view": code.interface.takes_view,
         "tables": {name: _table(table) for name, table in code.interface.tables.items()},
         **_stored(codec, code),
     }
+
+
+def _read(own: Path) -> str:
+    """A user's file. Raises NotLiveError."""
+    try:
+        return own.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise NotLiveError(f"{own} cannot be read") from error
 
 
 def _stored(codec: Codec, code: Code) -> Record:

@@ -7,6 +7,8 @@ import tempfile
 from functools import cache
 from typing import Any
 
+NO_DRIVER = "WGSL needs a Vulkan driver; install one (Debian: apt-get install mesa-vulkan-drivers)"
+
 
 @cache
 def adapters() -> tuple[Any, ...]:

@@ -29,6 +29,8 @@ Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
 LONGEST = 60
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
+# What no compiler of its own runs here, and what is run in its place, the first that can be.
+WITNESSED, WITNESSES = ("msl",), ("c", "glsl")
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
@@ -86,12 +88,12 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
     status = 0
     # Measured once, and only where something is written.
     said = cache(partial(figures, codec))
-    for code in _all_made([codec], languages, prefix):
+    made = [(code, verified(code)) for code in _all_made([codec], languages, prefix)]
+    for code, row in made:
         language = code.language
-        row = verified(code)
-        if row["verdict"] == DIFFERS:
+        if why := _why_not(code, row, made):
             status = 1
-            tell(f"{codec.name} in {language}: {row['says']}; it is not written")
+            tell(f"{codec.name} in {language}: {why}; it is not written")
             continue
         if row["verdict"] == NOT_RUN:
             tell(f"{codec.name} in {language}: {row['says']}")
@@ -99,6 +101,29 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
             raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
         _save(code, head(code, _command(codec, language, prefix), row["says"], said()), output)
     return status
+
+
+def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
+    """Why a language is not written; empty where it is.
+
+    All languages but Python are written from one tree. Where the tree has been seen to be wrong in one, it is wrong in
+    all. What its own compiler does not run here, as Metal, is written where another language of the tree agrees.
+    """
+    if row["verdict"] == DIFFERS:
+        return row["says"]
+    if not LANGUAGES[code.language].writer:
+        return ""
+    others = [(one.language, said) for one, said in made if one is not code and LANGUAGES[one.language].writer]
+    if row["verdict"] == NOT_RUN or code.language in WITNESSED:
+        others = others or [_witness(code)]
+    wrong = [language for language, said in others if said["verdict"] == DIFFERS]
+    return f"its translation is seen to be wrong in {wrong[0]}" if wrong else ""
+
+
+def _witness(code: Code) -> tuple[str, Row]:
+    """Another language of the same tree that is run here, if there is one."""
+    rows = ((name, verified(code_of(code.codec, name, code.prefix))) for name in WITNESSES if name != code.language)
+    return next(((name, row) for name, row in rows if row["verdict"] != NOT_RUN), ("", {"verdict": NOT_RUN}))
 
 
 def _all_made(codecs: Sequence[Codec], languages: Sequence[str], prefix: str) -> list[Code]:

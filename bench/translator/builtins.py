@@ -12,9 +12,11 @@ LIKE_GIVEN = frozenset(
     (
         *("abs", "sign", "floor", "ceil", "fract", "trunc", "round", "roundEven", "sqrt", "inversesqrt", "normalize"),
         *("min", "max", "clamp", "mix", "step", "smoothstep", "pow", "exp", "exp2", "log", "log2", "fma"),
-        *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "radians", "degrees", "reflect"),
+        *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "reflect"),
     )
 )
+# Those that have no whole numbers: GLSL makes floats of what they are given.
+OF_FLOATS = LIKE_GIVEN - {"abs", "sign", "min", "max", "clamp"} | {"dot", "length", "distance", "cross"}
 OF_VECTORS = frozenset(("dot", "length", "distance"))
 BITS: Mapping[str, str] = MappingProxyType(
     {"floatBitsToInt": "int", "floatBitsToUint": "uint", "intBitsToFloat": "float", "uintBitsToFloat": "float"}
@@ -31,6 +33,8 @@ def result_of(name: str, given: Sequence[str]) -> str | None:
         return "float"
     if name == "cross":
         return "vec3"
+    if name == "transpose":
+        return given[0] if given[0].startswith("mat") else None
     if name in ("any", "all"):
         return "bool"
     if name in BITS:

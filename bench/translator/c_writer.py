@@ -1,12 +1,18 @@
-"""C99, which has no vectors: what a shader says of a vector is said of each of its components."""
+"""C99, which has no vectors: what a shader says of a vector is said of each of its components.
+
+What GLSL leaves undefined has a meaning in the file. As an integer, what is not a number is 0 and what is out of range
+the nearest one, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts go modulo 32, sums of integers wrap, and
+an index that an array does not have is its nearest.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from .builtins import BITS, FETCH
-from .parser import BINDING
+from .parser import BINDING, SHIFTS
 from .tree import SCALARS as LETTERS
 from .tree import (
     Assign,
@@ -19,7 +25,6 @@ from .tree import (
     Expression,
     For,
     Function,
-    If,
     Index,
     Literal,
     Name,
@@ -34,9 +39,10 @@ from .tree import (
     scalar_of,
     size_of,
 )
-from .writer import CHOICE, INDENT, PRIMARY, UNARY, Writer, words
+from .writer import CHOICE, FIELDS, INDENT, PRIMARY, UNARY, Writer, base_of, words
 
 Part = tuple[str, int]
+Range = tuple[int, int]
 # Scalars in, a scalar out, component by component.
 FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
@@ -57,10 +63,47 @@ FORMULAS: Mapping[str, str] = MappingProxyType(
     }
 )
 STRUCTS = tuple(f"{letter}vec{size}" for letter in LETTERS.values() for size in (2, 3, 4))
+MATRICES = ("mat2", "mat3", "mat4")
 SCALARS: Mapping[str, str] = MappingProxyType({"float": "float", "int": "int32_t", "uint": "uint32_t", "bool": "bool"})
-FIELDS = "xyzw"
 # A part that may stand in several places without being computed twice.
 PLAIN = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.")
+WHOLE = ("int", "uint")
+INT = (-(2**31), 2**31 - 1)
+# Functions of the file's own: what C leaves undefined, or has for no such type.
+HELPERS: Mapping[str, str] = MappingProxyType(
+    {
+        "min": "float {0}(float a, float b) {{ return a < b ? a : b; }}",
+        "max": "float {0}(float a, float b) {{ return a > b ? a : b; }}",
+        "imin": "int32_t {0}(int32_t a, int32_t b) {{ return a < b ? a : b; }}",
+        "imax": "int32_t {0}(int32_t a, int32_t b) {{ return a > b ? a : b; }}",
+        "umin": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a < b ? a : b; }}",
+        "umax": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a > b ? a : b; }}",
+        "iabs": "int32_t {0}(int32_t a) {{ return a < 0 && a != INT32_MIN ? -a : a; }}",
+        "isign": "int32_t {0}(int32_t a) {{ return (a > 0) - (a < 0); }}",
+        "floatBitsToInt": "int32_t {0}(float x) {{ int32_t y; memcpy(&y, &x, sizeof y); return y; }}",
+        "floatBitsToUint": "uint32_t {0}(float x) {{ uint32_t y; memcpy(&y, &x, sizeof y); return y; }}",
+        "intBitsToFloat": "float {0}(int32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
+        "uintBitsToFloat": "float {0}(uint32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
+        "to_int": "int32_t {0}(float x) {{ return x >= 2147483648.0f ? INT32_MAX : x >= -2147483648.0f ? (int32_t)x"
+        " : x < 0.0f ? INT32_MIN : 0; }}",
+        "to_uint": "uint32_t {0}(float x) {{ return x >= 4294967296.0f ? UINT32_MAX : x >= 0.0f ? (uint32_t)x : 0; }}",
+        "at": "int32_t {0}(int32_t i, int32_t count) {{ return i < 0 ? 0 : i < count ? i : count - 1; }}",
+        "add": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a + (uint32_t)b); }}",
+        "subtract": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a - (uint32_t)b); }}",
+        "multiply": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a * (uint32_t)b); }}",
+        "divide": "int32_t {0}(int32_t a, int32_t b) {{ return !b || (b == -1 && a == INT32_MIN) ? a : a / b; }}",
+        "remainder": "int32_t {0}(int32_t a, int32_t b) {{ return !b || b == -1 ? 0 : a % b; }}",
+        "udivide": "uint32_t {0}(uint32_t a, uint32_t b) {{ return b ? a / b : a; }}",
+        "uremainder": "uint32_t {0}(uint32_t a, uint32_t b) {{ return b ? a % b : 0; }}",
+        "left": "int32_t {0}(int32_t a, uint32_t b) {{ return (int32_t)((uint32_t)a << (b & 31)); }}",
+        "right": "int32_t {0}(int32_t a, uint32_t b) {{ return a >> (b & 31); }}",
+        "uleft": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a << (b & 31); }}",
+        "uright": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a >> (b & 31); }}",
+    }
+)
+OPERATIONS: Mapping[str, str] = MappingProxyType(
+    {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "%": "remainder", "<<": "left", ">>": "right"}
+)
 
 
 class CWriter(Writer):
@@ -68,112 +111,211 @@ class CWriter(Writer):
 
     float_suffix = "f"
     has_tables = False
+    assigns_to_parts = False
+    functions = FUNCTIONS
     reserved = words(
         "auto char double enum extern inline long register restrict short signed sizeof static struct switch typedef "
-        "union unsigned void volatile half small near far y0 y1 yn j0 j1 jn"
+        "union unsigned void volatile half small near far y0 y1 yn j0 j1 jn break case const continue default do else "
+        "float for goto if int return while bool true false asm typeof int8_t int16_t int32_t int64_t uint8_t uint16_t "
+        "uint32_t uint64_t size_t memcpy NULL NAN INFINITY HUGE_VAL INT32_MAX INT32_MIN UINT32_MAX M_PI M_E M_PI_2 "
+        "M_PI_4 M_1_PI M_2_PI M_SQRT2 DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS linux unix math_errhandling I complex"
     )
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
         super().__init__(prefix, sizes)
         self._hoisted: list[str] = []
         self._indent, self._count = INDENT, 0
+        self._helpers: dict[str, str] = {}
+        # Constants that C computes when they are asked for.
+        self._computed: set[str] = set()
+        # Counters of loops that nothing else assigns to: what they are in the loop.
+        self._ranges: dict[str, Range] = {}
 
     # The file.
 
+    def _program(self, program: Program) -> str:
+        constants = [self._constant(each) for each in program.constants]
+        functions = [self._function(each) for each in program.functions]
+        parts = [
+            *map(self._struct, program.structs),
+            *self._head(program),
+            *(["\n".join(constants)] if constants else []),
+            *functions,
+        ]
+        return "\n\n".join(parts) + "\n"
+
     def _head(self, program: Program) -> list[str]:
-        functions = program.functions
-        nodes = [node for f in functions for node in inside(f)]
-        kinds = {getattr(node, "kind", "") for node in nodes}
-        used = [kind for kind in STRUCTS if kind in kinds]
+        kinds = {getattr(node, "kind", "").partition("[")[0] for node in inside([program.constants, program.functions])}
+        kinds |= {f"vec{kind[3]}" for kind in kinds & set(MATRICES)}
         includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>", "#include <string.h>"]
         includes += [f'#include "{self._prefix}_tables.h"'] if program.tables else []
         contract = "#ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif"
-        calls = {(node.name, scalar_of(node.kind)) for node in nodes if isinstance(node, Call) and not node.is_own}
-        return ["\n".join(includes), contract, self._structs(used, "mat3" in kinds), *self._helpers(calls)]
-
-    def _structs(self, kinds: list[str], has_matrix: bool) -> str:
-        kinds = ["vec3", *kinds] if has_matrix and "vec3" not in kinds else kinds
-        lines = [
-            f"typedef struct {{ {SCALARS[scalar_of(kind)]} {', '.join(FIELDS[: size_of(kind)])}; }} {self._kind(kind)};"
-            for kind in kinds
+        helpers = [
+            f"static inline {HELPERS[name].format(self._helpers[name])}" for name in HELPERS if name in self._helpers
         ]
-        if has_matrix:
-            lines.append(f"typedef struct {{ {self._kind('vec3')} x, y, z; }} {self._kind('mat3')};")
-        return "\n".join(lines)
+        structs = [self._structure(kind) for kind in (*STRUCTS, *MATRICES) if kind in kinds]
+        return [part for part in ("\n".join(includes), contract, "\n".join(structs), "\n".join(helpers)) if part]
 
-    def _helpers(self, calls: set[tuple[str, str]]) -> list[str]:
-        p, found = self._prefix, []
-        ordered = (("min", "a < b ? a : b"), ("max", "a > b ? a : b"))
-        for scalar, kind in SCALARS.items():
-            for name, text in ordered:
-                if {(name, scalar), ("clamp", scalar)} & calls:
-                    helper = f"{p}_{LETTERS[scalar]}{name}({kind} a, {kind} b)"
-                    found.append(f"static inline {kind} {helper} {{ return {text}; }}")
-        for name in sorted({name for name, _ in calls} & set(BITS)):
-            given = "float" if BITS[name] != "float" else SCALARS["int" if name.startswith("int") else "uint"]
-            made = SCALARS[BITS[name]]
-            body = f"{made} y; memcpy(&y, &x, sizeof y); return y;"
-            found.append(f"static inline {made} {p}_{name}({given} x) {{ {body} }}")
-        return ["\n".join(found)] if found else []
+    def _structure(self, kind: str) -> str:
+        if kind in MATRICES:
+            size, scalar = int(kind[3]), self._kind(f"vec{kind[3]}")
+        else:
+            size, scalar = size_of(kind), SCALARS[scalar_of(kind)]
+        return f"typedef struct {{ {scalar} {', '.join(FIELDS[:size])}; }} {self._kind(kind)};"
+
+    def _helper(self, name: str, *given: str) -> Part:
+        """A call of a function of the file's own."""
+        if name not in self._helpers:
+            self._helpers[name] = self._global_name(name)
+        return f"{self._helpers[name]}({', '.join(given)})", PRIMARY
 
     def _kind(self, kind: str) -> str:
         return SCALARS.get(kind) or f"{self._prefix}_{kind}"
 
     def _global(self, constant: Declare) -> str:
-        return f"static const {self._declared(constant)};"
+        if not any(isinstance(node, Call | Name) for node in inside(constant.value)):
+            return f"static const {self._declared(constant)};"
+        if "[" in constant.kind:
+            raise TranslationError(f"{constant.name}: an array of what is computed is not written in C")
+        self._hoisted, self._indent = [], INDENT
+        self._used, self._count = set(self._taken), 0
+        assert constant.value
+        text = self._whole(constant.value)
+        hoisted, self._hoisted = "".join(self._hoisted), []
+        self._computed.add(constant.name)
+        return (
+            f"static inline {self._kind(constant.kind)} {constant.name}(void) {{\n{hoisted}{INDENT}return {text};\n}}"
+        )
+
+    def _name(self, name: str) -> str:
+        return f"{name}()" if name in self._computed else super()._name(name)
 
     def _declared(self, declared: Declare) -> str:
         kind, _, count = declared.kind.partition("[")
-        value = declared.value
-        text = f" = {self._whole(value, is_initial=True)}" if value is not None else ""
-        return f"{self._kind(kind)} {self._name(declared.name)}{'[' + count if count else ''}{text}"
+        value, array = declared.value, f"[{count}" if count else ""
+        # What is read before it is assigned to is the same wherever it is compiled.
+        nothing = "{0}" if array or kind not in SCALARS else {"float": "0.0f", "bool": "false"}.get(kind, "0")
+        if array and value is not None and not isinstance(value, Elements):
+            raise TranslationError(f"{declared.name}: an array that is another one is not written in C")
+        text = self._whole(value, is_initial=True) if value is not None else nothing
+        return f"{self._kind(kind)} {self._name(declared.name)}{array} = {text}"
 
     def _signature(self, function: Function) -> str:
-        return "static inline " + super()._signature(function)
+        parameters = ", ".join(f"{self._kind(p.kind)} {self._name(p.name)}" for p in function.parameters) or "void"
+        return f"static inline {self._kind(function.kind)} {function.name}({parameters})"
+
+    def _function(self, function: Function) -> str:
+        self._count, self._ranges = 0, {}
+        return super()._function(function)
 
     # Statements: what they need is said before them.
 
     def _statement(self, statement: Statement, indent: str) -> str:
-        outer, self._hoisted, self._indent = self._hoisted, [], indent
-        text = self._one(statement, indent)
-        hoisted, self._hoisted = self._hoisted, outer
-        above = self._comments(statement, indent)
-        return above + "".join(hoisted) + text
+        (text, hoisted) = self._apart(lambda: self._one(statement, indent), indent)
+        return self._comments(statement, indent) + hoisted + text
+
+    def _apart(self, write: Callable[[], str], indent: str) -> tuple[str, str]:
+        """A text, and what is to be said before it."""
+        outer = self._hoisted, self._indent
+        self._hoisted, self._indent = [], indent
+        text = write()
+        hoisted = "".join(self._hoisted)
+        self._hoisted, self._indent = outer
+        return text, hoisted
 
     def _one(self, statement: Statement, indent: str) -> str:
-        behind = f"  // {statement.behind}" if statement.behind else ""
         match statement:
-            case If():
-                return self._if(statement, indent)
-            case For(start, condition, step, body):
-                head = f"for ({self._plain(start)}; {self._text(condition)}; {self._plain(step)})"
-                return self._block(head, body, indent)
+            case For():
+                return self._loop(statement, indent)
             case While(condition, body):
-                return self._block(f"while ({self._text(condition)})", body, indent)
-        return f"{indent}{self._plain(statement)};{behind}\n"
+                inner = indent + INDENT
+                text, hoisted = self._apart(lambda: self._text(condition), inner)
+                if not hoisted:
+                    return self._block(f"while ({text})", body, indent)
+                ends = f"{inner}if (!({text})) break;\n"
+                return f"{indent}for (;;) {{\n{hoisted}{ends}{self._statements(body, inner)}{indent}}}\n"
+        return super()._statement(_without_comments(statement), indent)
+
+    def _loop(self, loop: For, indent: str) -> str:
+        known = _counted(loop)
+        self._ranges |= known
+        start = self._plain(loop.start) if loop.start else ""
+        inner = indent + INDENT
+        condition, before = self._apart(lambda: self._text(loop.condition), inner)
+        step, before_step = self._apart(lambda: self._plain(loop.step) if loop.step else "", inner)
+        if before or before_step:
+            text = self._statement(self._loop_without_head(loop), indent)
+        else:
+            text = self._block(f"for ({start}; {condition}; {step})", loop.body, indent)
+        for name in known:
+            del self._ranges[name]
+        return text
 
     def _plain(self, statement: Statement) -> str:
         match statement:
-            case Assign(target, mark, value) if size_of(target.kind) > 1:
+            case Assign(target, mark, value):
+                if mark != "=" and self._is_plain(target, mark, value):
+                    return super()._plain(statement)
                 made = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
-                return f"{self._text(target)} = {self._whole(made)}"
+                return f"{self._place(target)} = {self._whole(made)}"
             case Return(value) if value is not None:
                 return f"return {self._whole(value)}"
         return super()._plain(statement)
 
-    def _whole(self, value: Expression, is_initial: bool = False) -> str:
+    def _is_plain(self, target: Expression, mark: str, value: Expression) -> bool:
+        """Whether C's own operator with = does it."""
+        if target.kind not in SCALARS or not isinstance(target, Name):
+            return False
+        return scalar_of(target.kind) not in WHOLE or self._is_safe(Binary(target.kind, mark[:-1], target, value))
+
+    def _whole(self, value: Expression | None, is_initial: bool = False) -> str:
         """A value as C has it: a scalar, or a structure."""
+        assert value
         if isinstance(value, Elements):
-            return f"{{{self._listed(value)}}}"
-        if size_of(value.kind) == 1 and not value.kind.startswith("mat"):
+            values = [self._whole(one, is_initial=True) for one in value.values]
+            return f"{{{self._rows(values)}}}"
+        if value.kind in SCALARS:
             return self._text(value)
         if isinstance(value, Name) or (isinstance(value, Call) and value.is_own):
-            return self._text(value)
+            return self._written(value)[0]
         texts = [text for text, _ in self._parts(value)]
-        if value.kind == "mat3":
-            texts = [f"{{{', '.join(texts[at : at + 3])}}}" for at in (0, 3, 6)]
+        if value.kind in MATRICES:
+            size = int(value.kind[3])
+            texts = [f"{{{', '.join(texts[at : at + size])}}}" for at in range(0, size**2, size)]
         parts = ", ".join(texts)
         return f"{{{parts}}}" if is_initial else f"({self._kind(value.kind)}){{{parts}}}"
+
+    # Places: what can be assigned to, and read without being computed.
+
+    def _place(self, value: Expression) -> str:
+        """A variable, or a part of one."""
+        match value:
+            case Name(_, name):
+                return self._name(name)
+            case Swizzle(_, inner, names) if len(names) == 1:
+                return self._component(inner, names)
+            case Index(_, inner, at) if inner.kind.endswith("]"):
+                count = int(inner.kind.partition("[")[2].rstrip("]"))
+                return f"{self._place(inner)}[{self._within(at, count)}]"
+            case Index(_, inner, Literal(_, text)):
+                return f"{self._place(inner)}.{FIELDS[int(text, 0)]}"
+            case Index(_, inner, at):
+                # The members of a structure of one type lie one after the other.
+                size = int(inner.kind[3]) if inner.kind in MATRICES else size_of(inner.kind)
+                return f"(&{self._place(inner)}.x)[{self._within(at, size)}]"
+        raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be assigned to in C")
+
+    def _component(self, inner: Expression, field: str) -> str:
+        while isinstance(inner, Swizzle):
+            field, inner = inner.fields[FIELDS.index(field)], inner.value
+        return f"{self._place(inner)}.{field}"
+
+    def _within(self, at: Expression, count: int) -> str:
+        """An index that an array of some elements has."""
+        known = self._range(at)
+        if known and known[0] >= 0 and known[1] < count:
+            return self._text(at)
+        return self._helper("at", self._text(at), str(count))[0]
 
     # Values: a vector is the list of its components.
 
@@ -191,8 +333,12 @@ class CWriter(Writer):
         match value:
             case Literal():
                 return [(self._literal(value), PRIMARY)]
+            case Name(kind, name) if name in self._computed and kind not in SCALARS:
+                return self._made(self._name(name), kind)
             case Name():
                 return self._members(self._name(value.name), value.kind)
+            case Unary(kind, "-", inner) if scalar_of(kind) == "int" and not isinstance(inner, Literal):
+                return [self._helper("subtract", "0", part[0]) for part in self._parts(inner)]
             case Unary(_, mark, inner):
                 parts = self._parts(inner)
                 return [(f"{mark}{_in(part, UNARY + (mark == part[0][:1]))}", UNARY) for part in parts]
@@ -207,32 +353,55 @@ class CWriter(Writer):
             case Swizzle(_, inner, names):
                 parts = self._parts(inner)
                 return [parts[FIELDS.index(name)] for name in names]
-            case Index(_, inner, at) if inner.kind.endswith("]"):
-                return [(f"{self._text(inner)}[{self._text(at)}]", PRIMARY)]
-            case Index(_, Name(_, name), at):
-                # The members of a structure of one type lie one after the other.
-                return [(f"(&{self._name(name)}.x)[{self._text(at)}]", PRIMARY)]
+            case Index():
+                return self._indexed(value)
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
 
+    def _indexed(self, value: Index) -> list[Part]:
+        inner, at = value.value, value.at
+        base = inner
+        while isinstance(base, Index | Swizzle):
+            base = base.value
+        is_there = isinstance(base, Name) and base.name not in self._computed
+        if isinstance(inner, Swizzle) and not isinstance(at, Literal):
+            is_there = False
+        if is_there and not isinstance(inner, Swizzle):
+            return self._members(self._place(value), value.kind)
+        if inner.kind.endswith("]"):
+            raise TranslationError("an element of an array without a name cannot be written in C")
+        parts, size = self._parts(inner), size_of(value.kind)
+        if isinstance(at, Literal):
+            return parts[int(at.text, 0) * size :][:size]
+        self._count += 1
+        whole = self._temporary(self._kind(inner.kind), self._whole(inner))
+        count = len(parts) // size
+        return self._members(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
+
     def _members(self, name: str, kind: str) -> list[Part]:
-        if kind == "mat3":
-            return [(f"{name}.{column}.{row}", PRIMARY) for column in "xyz" for row in "xyz"]
+        if kind in MATRICES:
+            fields = FIELDS[: int(kind[3])]
+            return [(f"{name}.{column}.{row}", PRIMARY) for column in fields for row in fields]
         if size_of(kind) == 1 or kind.endswith("]"):
             return [(name, PRIMARY)]
         return [(f"{name}.{field}", PRIMARY) for field in FIELDS[: size_of(kind)]]
 
     def _once(self, part: Part, kind: str) -> Part:
         """A scalar that is used several times, computed once."""
-        if all(letter in PLAIN for letter in part[0]):
+        if PLAIN.issuperset(part[0].removeprefix("-")):
             return part
-        self._count += 1
-        name = f"t{self._count}"
-        self._hoisted.append(f"{self._indent}const {self._kind(kind)} {name} = {part[0]};\n")
-        return name, PRIMARY
+        return self._temporary(self._kind(kind), part[0]), PRIMARY
 
-    def _function(self, function: Function) -> str:
-        self._count = 0
-        return super()._function(function)
+    def _temporary(self, kind: str, text: str) -> str:
+        """A value under a name of its own, before the statement."""
+        name = self._fresh()
+        self._hoisted.append(f"{self._indent}const {kind} {name} = {text};\n")
+        return name
+
+    def _fresh(self) -> str:
+        self._count += 1
+        while (name := f"t{self._count}") in self._used:
+            self._count += 1
+        return name
 
     def _broad(self, value: Expression, size: int) -> list[Part]:
         """A value's components, a scalar as many times."""
@@ -240,32 +409,126 @@ class CWriter(Writer):
         return [self._once(parts[0], scalar_of(value.kind))] * size if len(parts) == 1 < size else parts
 
     def _combination(self, value: Binary) -> list[Part]:
-        if "mat" in value.left.kind or "mat" in value.right.kind:
+        left, right, mark = value.left, value.right, value.operator
+        if mark == "*" and "mat" in left.kind and right.kind != "float":
             return self._product(value)
-        size, level = size_of(value.kind), BINDING[value.operator]
+        if mark == "*" and "mat" in right.kind and left.kind != "float":
+            return self._product(value)
+        if mark in ("&&", "||"):
+            return [self._logical(value)]
+        level, size = BINDING[mark], self._size(value)
+        scalar = scalar_of(left.kind)
+        if scalar in WHOLE and mark in OPERATIONS and not self._is_safe(value):
+            name = f"{'u' * (scalar == 'uint')}{OPERATIONS[mark]}"
+            pairs = zip(self._broad(left, size), self._broad(right, size), strict=True)
+            return [self._helper(name, a[0], b[0]) for a, b in pairs]
         if size == 1:
-            left, right = self._operand(value, value.left, level), self._operand(value, value.right, level + 1)
-            return [(f"{left} {value.operator} {right}", level)]
-        pairs = zip(self._broad(value.left, size), self._broad(value.right, size), strict=True)
-        return [(f"{_in(a, level)} {value.operator} {_in(b, level + 1)}", level) for a, b in pairs]
+            texts = self._operand(value, left, level), self._operand(value, right, level + 1)
+            return [(f"{texts[0]} {mark} {texts[1]}", level)]
+        pairs = zip(self._broad(left, size), self._broad(right, size), strict=True)
+        return [(f"{_in(a, level)} {mark} {_in(b, level + 1)}", level) for a, b in pairs]
+
+    def _size(self, value: Binary) -> int:
+        """How many components an operation has."""
+        kinds = (value.kind, value.left.kind, value.right.kind)
+        return max(int(kind[3]) ** 2 if kind in MATRICES else size_of(kind) for kind in kinds)
+
+    def _is_safe(self, value: Binary) -> bool:
+        """Whether C defines what an operation of whole numbers gives."""
+        left, right = self._range(value.left), self._range(value.right)
+        if value.operator in SHIFTS:
+            is_left_safe = (
+                value.operator == ">>" or scalar_of(value.left.kind) == "uint" or self._range(value) is not None
+            )
+            return right is not None and right[0] >= 0 and right[1] < 32 and is_left_safe
+        if value.operator in ("/", "%"):
+            return right is not None and right[0] > 0
+        return scalar_of(value.kind) == "uint" or self._range(value) is not None or left == right == (0, 0)
+
+    def _range(self, value: Expression) -> Range | None:
+        """What a signed number is at least and at most; None where that is not known."""
+        match value:
+            case Literal("int" | "uint", text):
+                return int(text, 0), int(text, 0)
+            case Name(_, name):
+                return self._ranges.get(name)
+            case Construct("int" | "uint", [Literal("int" | "uint", text)]):
+                return int(text, 0), int(text, 0)
+            case Binary(_, mark, left, right):
+                return _range_of(mark, self._range(left), self._range(right))
+        return None
+
+    def _logical(self, value: Binary) -> Part:
+        """&& and ||: what is right of them is computed where the left does not decide."""
+        level = BINDING[value.operator]
+        left = self._operand(value, value.left, level)
+        text, hoisted = self._apart(lambda: self._operand(value, value.right, level + 1), self._indent + INDENT)
+        if not hoisted:
+            return f"{left} {value.operator} {text}", level
+        name, no = self._fresh(), "" if value.operator == "&&" else "!"
+        self._hoisted.append(f"{self._indent}bool {name} = {left};\n")
+        inner = f"{hoisted}{self._indent}{INDENT}{name} = {text};\n"
+        self._hoisted.append(f"{self._indent}if ({no}{name}) {{\n{inner}{self._indent}}}\n")
+        return name, PRIMARY
 
     def _product(self, value: Binary) -> list[Part]:
         """A matrix's columns by a vector from the left, or summed by a vector's components."""
-        if value.left.kind == "vec3":
-            n, columns = self._named(value.left), self._parts(value.right)
-            return [_sum(list(zip(n, columns[at : at + 3], strict=True))) for at in (0, 3, 6)]
-        columns, n = self._parts(value.left), self._named(value.right)
-        return [_sum([(n[at], columns[3 * at + row]) for at in range(3)]) for row in range(3)]
+        left, right = value.left, value.right
+        size = int((left if "mat" in left.kind else right).kind[3])
+        if "mat" not in left.kind:
+            n, columns = self._named(left), self._parts(right)
+            return [_sum(list(zip(n, columns[at : at + size], strict=True))) for at in range(0, size**2, size)]
+        columns, others = self._named(left), self._named(right)
+        return [
+            _sum([(columns[size * at + row], others[first + at]) for at in range(size)])
+            for first in range(0, len(others), size)
+            for row in range(size)
+        ]
 
     def _named(self, value: Expression) -> list[Part]:
         """A vector's components, each computed once."""
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
     def _choices(self, value: Choice) -> list[Part]:
-        size, conditions = size_of(value.kind), self._broad(value.condition, size_of(value.kind))
-        conditions = conditions if size > 1 else [(self._text(value.condition, CHOICE + 1), UNARY)]
-        parts = zip(conditions, self._parts(value.chosen), self._parts(value.other), strict=True)
-        return [(f"{_in(c, CHOICE + 1)} ? {_in(a, CHOICE + 1)} : {b[0]}", CHOICE) for c, a, b in parts]
+        count = int(value.kind[3]) ** 2 if value.kind in MATRICES else size_of(value.kind)
+        if size_of(value.condition.kind) > 1:
+            parts = zip(*(self._parts(one) for one in (value.condition, value.chosen, value.other)), strict=True)
+            return [_chosen(*three) for three in parts]
+        condition = self._text(value.condition, CHOICE + 1), UNARY
+        inner = self._indent + INDENT
+        chosen, before_chosen = self._parts_apart(value.chosen, inner)
+        other, before_other = self._parts_apart(value.other, inner)
+        if not before_chosen and not before_other:
+            condition = self._once(condition, "bool") if count > 1 else condition
+            return [_chosen(condition, a, b) for a, b in zip(chosen, other, strict=True)]
+        # What one of the two needs is computed where that one is chosen.
+        name, kind = self._fresh(), self._kind(value.kind)
+        texts = [self._assembled(parts, value.kind) for parts in (chosen, other)]
+        nothing = "{0}" if value.kind not in SCALARS else "0"
+        self._hoisted.append(
+            f"{self._indent}{kind} {name} = {nothing};\n{self._indent}if ({condition[0]}) {{\n{before_chosen}"
+            f"{inner}{name} = {texts[0]};\n{self._indent}}} else {{\n{before_other}{inner}{name} = {texts[1]};\n"
+            f"{self._indent}}}\n"
+        )
+        return self._members(name, value.kind)
+
+    def _parts_apart(self, value: Expression, indent: str) -> tuple[list[Part], str]:
+        parts: list[Part] = []
+
+        def write() -> str:
+            parts.extend(self._parts(value))
+            return ""
+
+        return parts, self._apart(write, indent)[1]
+
+    def _assembled(self, parts: list[Part], kind: str) -> str:
+        texts = [text for text, _ in parts]
+        if kind in SCALARS:
+            return texts[0]
+        if kind in MATRICES:
+            size = int(kind[3])
+            texts = [f"{{{', '.join(texts[at : at + size])}}}" for at in range(0, size**2, size)]
+        return f"({self._kind(kind)}){{{', '.join(texts)}}}"
 
     def _calls(self, value: Call) -> list[Part]:
         if value.is_own:
@@ -273,47 +536,56 @@ class CWriter(Writer):
             return [(text, PRIMARY)] if value.kind in SCALARS else self._made(text, value.kind)
         if value.name == FETCH:
             return self._fetched(value)
-        of_vectors = (
-            getattr(self, f"_{value.name}", None) if value.name in ("dot", "cross", "normalize", "length") else None
-        )
-        if of_vectors:
-            return of_vectors(*value.arguments)
-        size = size_of(value.kind)
+        if value.name in OF_WHOLE:
+            return getattr(self, f"_{value.name}")(*value.arguments)
+        scalar, size = scalar_of(value.kind), size_of(value.kind)
         given = [self._broad(a, size) for a in value.arguments]
+        if scalar == "int" and value.name in ("abs", "sign"):
+            return [self._helper(f"i{value.name}", x) for ((x, _),) in zip(*given, strict=True)]
         if value.name in FORMULAS:
             once = ([self._once(part, "float")[0] for part in parts] for parts in zip(*given, strict=True))
             return [(FORMULAS[value.name].format(*parts), CHOICE) for parts in once]
+        if value.name == "smoothstep":
+            return [self._smoothstep(*parts) for parts in zip(*given, strict=True)]
         if value.name == "inversesqrt":
             return [(f"1.0f / sqrtf({x})", BINDING["/"]) for ((x, _),) in zip(*given, strict=True)]
-        return [
-            (self._scalar_call(value.name, scalar_of(value.kind), parts), PRIMARY) for parts in zip(*given, strict=True)
-        ]
+        return [self._scalar_call(value.name, scalar, parts) for parts in zip(*given, strict=True)]
 
     def _made(self, text: str, kind: str) -> list[Part]:
         """A structure under a name, as its components."""
-        self._count += 1
-        name = f"t{self._count}"
-        self._hoisted.append(f"{self._indent}const {self._kind(kind)} {name} = {text};\n")
-        return self._members(name, kind)
+        return self._members(self._temporary(self._kind(kind), text), kind)
 
-    def _scalar_call(self, name: str, scalar: str, parts: tuple[Part, ...]) -> str:
-        texts, p = [text for text, _ in parts], self._prefix
-        sign = LETTERS[scalar]
+    def _scalar_call(self, name: str, scalar: str, parts: tuple[Part, ...]) -> Part:
+        texts, sign = [text for text, _ in parts], LETTERS[scalar]
         if name == "clamp":
-            return f"{p}_{sign}min({p}_{sign}max({texts[0]}, {texts[1]}), {texts[2]})"
+            return self._helper(f"{sign}min", self._helper(f"{sign}max", *texts[:2])[0], texts[2])
         if name in ("min", "max"):
-            return f"{p}_{sign}{name}({', '.join(texts)})"
+            return self._helper(f"{sign}{name}", *texts)
         if name in BITS:
-            return f"{p}_{name}({texts[0]})"
+            return self._helper(name, texts[0])
         if name not in FUNCTIONS:
             raise TranslationError(f"{name} cannot be written in C")
-        return f"{FUNCTIONS[name]}({', '.join(texts)})"
+        return f"{FUNCTIONS[name]}({', '.join(texts)})", PRIMARY
+
+    def _smoothstep(self, low: Part, high: Part, x: Part) -> Part:
+        share = f"({_in(x, 10)} - {_in(low, 11)}) / ({_in(high, 10)} - {_in(low, 11)})"
+        t = self._temporary("float", self._helper("min", self._helper("max", share, "0.0f")[0], "1.0f")[0])
+        return f"{t} * {t} * (3.0f - 2.0f * {t})", BINDING["*"]
 
     def _dot(self, a: Expression, b: Expression) -> list[Part]:
         return [_sum(list(zip(self._named(a), self._named(b), strict=True)))]
 
     def _length(self, value: Expression) -> list[Part]:
-        return [(f"sqrtf({self._dot(value, value)[0][0]})", PRIMARY)]
+        parts = self._named(value)
+        return [(f"sqrtf({_sum(list(zip(parts, parts, strict=True)))[0]})", PRIMARY)]
+
+    def _distance(self, a: Expression, b: Expression) -> list[Part]:
+        return self._length(Binary(a.kind, "-", a, b))
+
+    def _reflect(self, incident: Expression, normal: Expression) -> list[Part]:
+        i, n = self._named(incident), self._named(normal)
+        twice = self._once((f"2.0f * ({_sum(list(zip(n, i, strict=True)))[0]})", BINDING["*"]), "float")
+        return [(f"{_in(a, 10)} - {twice[0]} * {_in(b, 12)}", BINDING["-"]) for a, b in zip(i, n, strict=True)]
 
     def _cross(self, a: Expression, b: Expression) -> list[Part]:
         u, v = self._named(a), self._named(b)
@@ -327,31 +599,103 @@ class CWriter(Writer):
         scale = self._once((f"1.0f / sqrtf({length2[0]})", BINDING["/"]), "float")
         return [(f"{_in(part, 11)} * {scale[0]}", 11) for part in parts]
 
+    def _transpose(self, value: Expression) -> list[Part]:
+        size, parts = int(value.kind[3]), self._parts(value)
+        return [parts[size * row + column] for column in range(size) for row in range(size)]
+
+    def _all(self, value: Expression) -> list[Part]:
+        return [_joined("&&", self._parts(value))]
+
+    def _any(self, value: Expression) -> list[Part]:
+        return [_joined("||", self._parts(value))]
+
     def _fetched(self, value: Call) -> list[Part]:
         table, place, _ = value.arguments
-        x, y = self._named(place)
         name = getattr(table, "name", "")
-        width, channels = self._sizes[name]
-        first = f"{channels} * ({_in(y, 11)} * {width} + {_in(x, 11)})"
+        height, width, channels = self._sizes[name]
+        x, y = (
+            self._helper("at", part[0], str(most))
+            for part, most in zip(self._parts(place), (width, height), strict=True)
+        )
+        first = self._temporary("int32_t", f"{channels} * ({y[0]} * {width} + {x[0]})")
         parts = [(f"{name}[{first}{f' + {channel}' if channel else ''}]", PRIMARY) for channel in range(channels)]
         return parts + [("0.0f", PRIMARY)] * (4 - channels)
 
     def _constructs(self, value: Construct) -> list[Part]:
         parts = [(part, scalar_of(a.kind)) for a in value.arguments for part in self._parts(a)]
-        if value.kind == "mat3":
+        if value.kind in MATRICES:
             return [part for part, _ in parts]
         scalar, size = scalar_of(value.kind), size_of(value.kind)
         if len(parts) == 1 < size:
             parts = [(self._once(parts[0][0], parts[0][1]), parts[0][1])] * size
-        return [_cast(part, SCALARS[scalar]) if kind != scalar else part for part, kind in parts[:size]]
+        return [self._cast(part, kind, scalar) for part, kind in parts[:size]]
+
+    def _cast(self, part: Part, kind: str, scalar: str) -> Part:
+        if kind == scalar:
+            return part
+        if kind == "float" and scalar in WHOLE:
+            return self._helper(f"to_{scalar}", part[0])
+        return f"({SCALARS[scalar]}){_in(part, UNARY)}", UNARY
+
+
+# Functions of whole vectors, each a method of its name.
+OF_WHOLE = frozenset(words("dot cross normalize length distance reflect transpose all any"))
+
+
+def _without_comments(statement: Statement) -> Statement:
+    return replace(statement, above=[])
+
+
+def _counted(loop: For) -> dict[str, Range]:
+    """The counter of a loop from a number up to another, and what it is in the loop."""
+    match loop:
+        case For(
+            Declare("int" | "uint", name, Literal(_, first)),
+            Binary(_, "<" | "<=" as mark, Name(_, same), Literal(_, end)),
+            Assign(Name(_, counted), "+=", Literal(_, by)),
+        ) if name == same == counted and int(by, 0) > 0:
+            changed = [node for node in inside(loop.body) if isinstance(node, Assign) and base_of(node) == name]
+            # The counter goes one step beyond.
+            last = int(end, 0) - (mark == "<")
+            return {} if changed or last + int(by, 0) > INT[1] else {name: (int(first, 0), last)}
+    return {}
+
+
+def _range_of(mark: str, left: Range | None, right: Range | None) -> Range | None:
+    """What an operation of two ranges gives; None where that is not known or does not fit."""
+    if mark == "&":
+        known = [most for one in (left, right) if one and one[0] >= 0 for most in one[1:]]
+        return (0, min(known)) if known else None
+    if not left or not right:
+        return None
+    match mark:
+        case "+":
+            made = left[0] + right[0], left[1] + right[1]
+        case "-":
+            made = left[0] - right[1], left[1] - right[0]
+        case "*":
+            corners = [a * b for a in left for b in right]
+            made = min(corners), max(corners)
+        case "<<" if left[0] >= 0 and right[0] >= 0 and right[1] < 32:
+            made = left[0] << right[0], left[1] << right[1]
+        case ">>" if left[0] >= 0 and right[0] >= 0:
+            made = left[0] >> right[1], left[1] >> right[0]
+        case _:
+            return None
+    return made if INT[0] <= made[0] and made[1] <= INT[1] else None
 
 
 def _in(part: Part, least: int) -> str:
     return f"({part[0]})" if part[1] < least else part[0]
 
 
-def _cast(part: Part, kind: str) -> Part:
-    return f"({kind}){_in(part, UNARY)}", UNARY
+def _chosen(condition: Part, chosen: Part, other: Part) -> Part:
+    return f"{_in(condition, CHOICE + 1)} ? {_in(chosen, CHOICE + 1)} : {other[0]}", CHOICE
+
+
+def _joined(mark: str, parts: list[Part]) -> Part:
+    level = BINDING[mark]
+    return f" {mark} ".join(_in(part, level + 1) for part in parts), level
 
 
 def _sum(pairs: list[tuple[Part, Part]]) -> Part:

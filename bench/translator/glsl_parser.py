@@ -4,23 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .parser import Parser
+from .parser import FOLDED, Parser
 from .tokens import END, Preprocessor, Token, suffixed
 from .tree import (
+    Assign,
+    Binary,
+    Block,
+    Call,
     Declare,
     Elements,
     Expression,
     For,
     Function,
     If,
+    Index,
     Leave,
     Literal,
+    Name,
     Parameter,
     Program,
     Return,
     Statement,
     Table,
+    Unary,
     While,
+    one_error_type,
+    scalar_of,
     size_of,
 )
 
@@ -36,8 +45,9 @@ PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
 def read_glsl(text: str) -> Program:
     """A program of GLSL's text, its includes in place. Raises TranslationError."""
     before = Preprocessor()
-    given = before.tokens(text)
-    return GlslParser(given, before.constants).program()
+    with one_error_type():
+        parser = GlslParser(before.tokens(text), before.constants)
+    return parser.program()
 
 
 class GlslParser(Parser):
@@ -62,8 +72,7 @@ class GlslParser(Parser):
         self._made.constants.append(Declare(value.kind, name, value, is_constant=True))
         self._declared(name, value.kind)
 
-    def program(self) -> Program:
-        """All of it."""
+    def _program(self) -> Program:
         while self._next is not END:
             if not self._skip(";"):
                 self._global()
@@ -110,7 +119,7 @@ class GlslParser(Parser):
         function = Function(kind, name, parameters, [])
         self._scopes.append({})
         for parameter in parameters:
-            self._declared(parameter.name, parameter.kind)
+            parameter.name = self._declared(parameter.name, parameter.kind)
         function.body = self._block()
         self._scopes.pop()
         self._add(function)
@@ -144,10 +153,22 @@ class GlslParser(Parser):
         return length
 
     def _array_of(self, kind: str, length: Expression) -> str:
-        constant = next((c.value for c in self._made.constants if c.name == getattr(length, "name", "")), length)
-        if not isinstance(constant, Literal) or constant.kind != "int":
+        count = self._whole_number(length)
+        if count is None:
             raise self._error("an array's length is not a number")
-        return f"{kind}[{constant.text}]"
+        return f"{kind}[{count}]"
+
+    def _whole_number(self, value: Expression | None) -> int | None:
+        """What a constant expression of whole numbers is; None of any other."""
+        match value:
+            case Literal("int" | "uint", text):
+                return int(text, 0)
+            case Name(_, name):
+                return self._whole_number(next((c.value for c in self._made.constants if c.name == name), None))
+            case Binary(_, mark, left, right) if mark in FOLDED:
+                first, second = self._whole_number(left), self._whole_number(right)
+                return None if first is None or second is None else FOLDED[mark](first, second)
+        return None
 
     # Statements.
 
@@ -164,14 +185,14 @@ class GlslParser(Parser):
         if self._skip(";"):
             return []
         if first.text == "{":
-            return self._block()
-        if (first.text in TYPES and self._ahead(1) not in ("(", "[")) or first.text in ("const", *PRECISIONS):
+            return [Block(self._block())]
+        if (first.text in TYPES and self._ahead(1) != "(") or first.text in ("const", *PRECISIONS):
             made = self._declaration()
         else:
             made = [self._simple(first)]
         if made:
             made[0].above = [*first.above, *made[0].above]
-            if not isinstance(made[-1], If | For | While):
+            if not isinstance(made[-1], If | For | While | Block):
                 made[-1].behind = self._tokens[self._at - 1].behind
         return made
 
@@ -185,6 +206,8 @@ class GlslParser(Parser):
             condition = self._expression()
             self._take(")")
             return While(condition, self._body())
+        if self._skip("do"):
+            return self._do()
         if first.text in ("break", "continue"):
             return Leave(self._ended(self._take().text))
         if self._skip("return"):
@@ -205,51 +228,76 @@ class GlslParser(Parser):
     def _for(self) -> Statement:
         self._take("(")
         self._scopes.append({})
-        declared = self._declaration()
-        if len(declared) != 1:
-            raise self._error("a loop counts one number")
-        condition = self._ended(self._expression())
-        step = self._assignment()
+        starts = self._starts()
+        condition = Literal("bool", "true") if self._next.text == ";" else self._expression()
+        self._take(";")
+        step = None if self._next.text == ")" else self._assignment()
         self._take(")")
         body = self._body()
         self._scopes.pop()
-        return For(declared[0], condition, step, body)
+        if len(starts) > 1:
+            return Block([*starts, For(None, condition, step, body)])
+        return For(starts[0] if starts else None, condition, step, body)
+
+    def _starts(self) -> list[Statement]:
+        """What stands first between a loop's parentheses."""
+        if self._skip(";"):
+            return []
+        if self._next.text in TYPES or self._next.text in ("const", *PRECISIONS):
+            return self._declaration()
+        return [self._ended(self._assignment())]
+
+    def _do(self) -> Statement:
+        """do BODY while (CONDITION), as a loop that does not ask before its first turn."""
+        is_first = self._unused("is_first")
+        body = self._body()
+        self._take("while")
+        self._take("(")
+        condition = self._expression()
+        self._take(")")
+        self._take(";")
+        first = Name("bool", is_first)
+        begun = Assign(first, "=", Literal("bool", "false"))
+        loop = While(Binary("bool", "||", first, condition), [begun, *body])
+        return Block([Declare("bool", is_first, Literal("bool", "true")), loop])
 
     def _declaration(self) -> list[Statement]:
         """One statement for each name; a constant that stands for another is that other."""
         is_constant = self._skip("const")
-        kind = self._kind()
-        found = [d for d in [self._declarator(kind, is_constant)] if d]
+        kind, is_open = self._kind(), self._next.text == "[" and self._ahead(1) == "]"
+        self._at += 2 * is_open
+        kind = self._sized(kind)
+        found = [d for d in [self._declarator(kind, is_constant, is_open)] if d]
         while self._skip(","):
-            found += [d for d in [self._declarator(kind, is_constant)] if d]
+            found += [d for d in [self._declarator(kind, is_constant, is_open)] if d]
         self._take(";")
         return found
 
-    def _declarator(self, kind: str, is_constant: bool) -> Statement | None:
-        name, is_array, length = self._word().text, self._next.text == "[", None
-        if is_array and self._ahead(1) == "]":
+    def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:
+        """A name of a declaration; `is_open` where it is an array as long as its value."""
+        name = self._word().text
+        if self._next.text == "[" and self._ahead(1) == "]":
             self._at += 2
-        elif is_array:
-            length = self._length()
+            is_open = True
+        kind = self._sized(kind)
         value = self._expression() if self._skip("=") else None
-        if value is None and length is not None:
-            kind = self._array_of(kind, length)
-        names = {each.name for each in self._made.constants}
-        if is_constant and value is not None and getattr(value, "name", None) in names:
+        if value is None and is_open:
+            raise self._error(f"{name} has neither a length nor a value")
+        if is_constant and getattr(value, "name", None) in {each.name for each in self._made.constants}:
+            assert value
             self._declared(name, value.kind, value)
             return None
-        if value is not None and not is_array:
-            value = self._converted(value, kind) if size_of(kind) == 1 else value
-        kind = value.kind if is_array and value is not None else kind
-        self._declared(name, kind)
-        return Declare(kind, name, value, is_constant)
+        if value is not None and not is_open and "[" not in kind:
+            value = self._converted(value, scalar_of(kind))
+        kind = value.kind if value is not None and is_open else kind
+        return Declare(kind, self._declared(name, kind), value, is_constant)
 
     # What expressions are made of.
 
     def _primary(self) -> Expression:
         token = self._take()
         if token.kind == "number":
-            return Literal(*suffixed(token.text))
+            return _number(token.text)
         if token.text == "(":
             value = self._expression()
             self._take(")")
@@ -273,8 +321,28 @@ class GlslParser(Parser):
             self._expression()
         self._take("]")
         self._take("(")
-        values = self._arguments()
-        return Elements(f"{kind}[{len(values)}]", [self._converted(value, kind) for value in values])
+        values = [self._converted(value, scalar_of(kind)) for value in self._arguments()]
+        return Elements(f"{kind}[{len(values)}]", values)
+
+    def _behind(self, value: Expression) -> Expression:
+        """As in every language; an element of an array that has no name is one of its values."""
+        value = super()._behind(value)
+        if isinstance(value, Index) and isinstance(value.value, Elements):
+            return self._element_of(value.value, value.at)
+        return value
+
+    def _element_of(self, array: Elements, at: Expression) -> Expression:
+        found = array.values[-1]
+        for number, value in reversed([*enumerate(array.values[:-1])]):
+            found = self._chosen(Binary("bool", "==", at, Literal(at.kind, str(number))), value, found)
+        return found
+
+    def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
+        """== and != of vectors are one truth value."""
+        found = self._combined(mark, left, right)
+        if mark in ("==", "!=") and size_of(found.kind) > 1:
+            return Call("bool", "all" if mark == "==" else "any", [found])
+        return found
 
     def _member(self, value: Expression, word: Token) -> Expression:
         is_vector = size_of(value.kind) > 1
@@ -283,3 +351,11 @@ class GlslParser(Parser):
             self._take(")")
             return Literal("int", str(size_of(value.kind)) if is_vector else value.kind.partition("[")[2].rstrip("]"))
         return super()._member(value, word)
+
+
+def _number(text: str) -> Expression:
+    """A number; a whole one of 32 bits with the highest set is negative."""
+    kind, plain = suffixed(text)
+    if kind == "int" and int(plain, 0) >= 2**31:
+        return Unary(kind, "-", Literal(kind, str(2**32 - int(plain, 0))))
+    return Literal(kind, plain)

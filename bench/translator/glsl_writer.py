@@ -6,16 +6,41 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .parser import COMPARISONS
-from .tree import Binary, Choice, Table, size_of
-from .writer import PRIMARY, Writer, words
+from .tree import Binary, Choice, Expression, Struct, Table, Unary, size_of
+from .writer import INDENT, PRIMARY, Writer, words
 
 NAMES: Mapping[str, str] = MappingProxyType({mark: name for name, mark in COMPARISONS.items()})
+
+
+# Of GLSL 4.60 and of GLSL ES 3.20, but for types.
+RESERVED = words(
+    "active asm atomic_uint attribute buffer case cast centroid class coherent common const continue default demote "
+    "discard do else enum extern external filter fixed flat for fvec2 fvec3 fvec4 goto half highp hvec2 hvec3 hvec4 if "
+    "in inline inout input interface invariant layout long lowp main mediump namespace noinline noperspective out "
+    "output partition patch precise precision public readonly resource restrict return sample shared short sizeof "
+    "smooth static struct subroutine superp switch template this true false typedef uniform union unsigned using "
+    "varying void volatile while writeonly double dvec2 dvec3 dvec4 float int uint bool vec2 vec3 vec4 ivec2 ivec3 "
+    "ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 mat2 mat3 mat4 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 "
+    "mat4x4 sampler sampler1D sampler2D sampler3D samplerCube sampler2DRect sampler3DRect sampler2DMS image1D image2D "
+    "image3D imageCube texture texture2D textureCube texelFetch break"
+)
 
 
 class GlslWriter(Writer):
     """GLSL 4.3 and later."""
 
     functions: Mapping[str, str] = MappingProxyType({"atan2": "atan"})
+    reserved = RESERVED
+
+    def _struct(self, struct: Struct) -> str:
+        fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in struct.kinds.items())
+        return f"struct {struct.name} {{\n{fields}}};"
+
+    def _written(self, value: Expression) -> tuple[str, int]:
+        match value:
+            case Unary(kind, "!", inner) if size_of(kind) > 1:
+                return f"not({self._text(inner)})", PRIMARY
+        return super()._written(value)
 
     def _binary(self, value: Binary) -> tuple[str, int]:
         if value.kind.startswith("bvec") and value.operator in NAMES:
@@ -26,8 +51,6 @@ class GlslWriter(Writer):
         if size_of(value.condition.kind) == 1:
             return super()._choice(value)
         return f"mix({', '.join(map(self._text, (value.other, value.chosen, value.condition)))})", PRIMARY
-
-    reserved = words("half input output sample filter common partition active superp")
 
 
 class EsslWriter(GlslWriter):

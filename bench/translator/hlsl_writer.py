@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from .tree import Binary, Call, Choice, Construct, Declare, Elements, Literal, Name, Table, size_of
-from .writer import PRIMARY, Writer, words
+from .tree import Binary, Call, Choice, Construct, Declare, Elements, Literal, Name, Program, Table, size_of
+from .writer import FIELDS, INDENT, PRIMARY, Writer, words
 
 KINDS: Mapping[str, str] = MappingProxyType(
     {
@@ -42,8 +42,18 @@ class HlslWriter(Writer):
         "min16float mutable namespace new operator out packoffset pass point precise private protected public "
         "register row_major sample sampler shared short signed sizeof snorm string switch technique template "
         "texture this throw triangle try typedef typename uint2 uint3 uint4 union unorm unsigned using vector "
-        "virtual"
+        "virtual mul lerp frac saturate clip rsqrt mad asint asuint asfloat float1 int1 uint1 bool1 uint64_t int64_t "
+        "float16_t func let var extension import module struct static const volatile uniform globallycallable "
+        "groupshared if else for while do switch case break continue return void float int uint bool true false "
+        "associatedtype property where each expand internal This get set init is as none"
     )
+    # A choice by components that is longer than this is a function of its own: it would be written for each of them.
+    most_letters = 120
+
+    def _program(self, program: Program) -> str:
+        self._choices: dict[str, tuple[str, str]] = {}
+        text = super()._program(program)
+        return "".join(f"{made}\n\n" for _, made in self._choices.values()) + text
 
     def _table(self, table: Table) -> str:
         return f"Texture2D<float4> {table.name};"
@@ -68,12 +78,23 @@ class HlslWriter(Writer):
         size = size_of(value.condition.kind)
         if size == 1:
             return super()._choice(value)
-        parts = (value.condition, value.chosen, value.other)
-        each = (
-            "{} ? {} : {}".format(*(f"{self._text(part, PRIMARY)}.{field}" for part in parts))
-            for field in "xyzw"[:size]
-        )
-        return f"{self._kind(value.kind)}({', '.join(each)})", PRIMARY
+        parts = [self._text(part, PRIMARY) for part in (value.condition, value.chosen, value.other)]
+        if sum(map(len, parts)) <= self.most_letters:
+            return f"{self._kind(value.kind)}({self._each(parts, size)})", PRIMARY
+        name = self._choice_of(value.kind, value.condition.kind, size)
+        return f"{name}({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
+
+    def _each(self, parts: Sequence[str], size: int) -> str:
+        return ", ".join("{} ? {} : {}".format(*(f"{part}.{field}" for part in parts)) for field in FIELDS[:size])
+
+    def _choice_of(self, kind: str, condition: str, size: int) -> str:
+        """The function that chooses between two values of a kind."""
+        if kind not in self._choices:
+            name, made = self._global_name(f"chosen_{self._kind(kind)}"), self._kind(kind)
+            head = f"{made} {name}({self._kind(condition)} condition, {made} chosen, {made} other)"
+            body = f"return {made}({self._each(('condition', 'chosen', 'other'), size)});"
+            self._choices[kind] = name, f"{head} {{\n{INDENT}{body}\n}}"
+        return self._choices[kind][0]
 
     def _construct(self, value: Construct) -> str:
         size, given = size_of(value.kind), value.arguments

@@ -6,7 +6,22 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .hlsl_writer import KINDS
-from .tree import Call, Choice, Construct, Declare, Elements, Function, Name, Program, inside, size_of
+from .tree import (
+    Binary,
+    Call,
+    Choice,
+    Construct,
+    Declare,
+    Elements,
+    Expression,
+    Function,
+    Literal,
+    Name,
+    Program,
+    inside,
+    scalar_of,
+    size_of,
+)
 from .writer import PRIMARY, Writer, words
 
 TABLE = "texture2d<float>"
@@ -31,14 +46,21 @@ class MslWriter(Writer):
         "int2 int3 int4 uint2 uint3 uint4 float2 float3 float4 half2 half3 half4 "
         "short2 ushort2 char uchar short ushort long ulong "
         "typename template operator namespace using unsigned signed asm auto catch class default delete enum explicit "
-        "friend goto mutable new private protected public sizeof switch throw try typedef union virtual this matrix"
+        "friend goto mutable new private protected public sizeof switch throw try typedef union virtual this matrix "
+        "alignas alignof and and_eq bitand bitor bool break case char16_t char32_t compl const const_cast constexpr "
+        "continue decltype do double dynamic_cast else export extern false final float for if inline int int8_t "
+        "int16_t int32_t int64_t long metal noexcept not not_eq nullptr or or_eq override ptrdiff_t register "
+        "reinterpret_cast return short signed size_t static static_assert static_cast struct thread_local threadgroup "
+        "true typeid typename uint uint8_t uint16_t uint32_t uint64_t void volatile wchar_t while xor xor_eq as_type "
+        "select texture2d bfloat packed_float2 packed_float3 packed_float4 atomic_int atomic_uint object mesh patch "
+        "stage_in visible M_PI_F INFINITY NAN MAXFLOAT rint rsqrt fabs fmin fmax fmod"
     )
     float_suffix = "f"
     head = "#include <metal_stdlib>\nusing namespace metal;"
     has_tables = False
     splats = True
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
         super().__init__(prefix, sizes)
         self._reads: dict[str, list[str]] = {}
 
@@ -70,10 +92,25 @@ class MslWriter(Writer):
         return f"{table}.read(uint2({place}))"
 
     def _construct(self, value: Construct) -> str:
-        kind = self._kind(value.kind)
-        if size_of(value.kind) == 1 and len(value.arguments) == 1:
-            return f"{kind}({self._text(value.arguments[0])})"
+        size = size_of(value.kind)
+        if len(value.arguments) == 1 and size == size_of(value.arguments[0].kind):
+            return self._conversion(value, value.arguments[0], size)
         return super()._construct(value)
+
+    def _conversion(self, value: Construct, given: Expression, size: int) -> str:
+        """Of truth values, what a comparison or a choice makes of them: compilers differ in what a true one is."""
+        from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
+        if size > 1 and from_kind == "bool":
+            one, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
+            return self._choice(Choice(value.kind, given, one, zero))[0]
+        if size > 1 and to_kind == "bool":
+            zero = Construct(given.kind, [Literal(from_kind, _ends(from_kind)[1])])
+            return f"({self._binary(Binary(value.kind, '!=', given, zero))[0]})"
+        return f"{self._kind(value.kind)}({self._text(given)})"
+
+
+def _ends(scalar: str) -> tuple[str, str]:
+    return ("1.0", "0.0") if scalar == "float" else ("1", "0")
 
 
 def tables_read(program: Program) -> dict[str, list[str]]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import count
 from types import MappingProxyType
 
-from .builtins import result_of
+from .builtins import FETCH, OF_FLOATS, result_of
 from .tokens import END, Token, with_a_point
 from .tree import (
     Assign,
@@ -19,12 +21,16 @@ from .tree import (
     Index,
     Literal,
     Name,
+    Parameter,
     Perform,
     Place,
+    Program,
+    Return,
     Statement,
     Swizzle,
     TranslationError,
     Unary,
+    one_error_type,
     scalar_of,
     size_of,
     vector,
@@ -59,8 +65,14 @@ COMPARISONS: Mapping[str, str] = MappingProxyType(
         "notEqual": "!=",
     }
 )
+# What angles are multiplied by, which not every language has a function for.
+ANGLES: Mapping[str, str] = MappingProxyType({"radians": "0.017453292519943295", "degrees": "57.29577951308232"})
 # How deep expressions and statements may be nested: far from what Python recurses.
 MOST_DEPTH = 60
+# Of a sum, a product and so on.
+MOST_TERMS = 1000
+# The largest power of two that a float of 32 bits has, less one.
+MOST_FOLDED = 126
 FIELDS = ("xyzw", "rgba", "stpq")
 
 
@@ -75,6 +87,20 @@ class Parser:
         self._tokens, self._at, self._depth = given, 0, 0
         self._scopes: list[dict[str, Expression]] = [{}]
         self._functions: dict[str, list[Function]] = {}
+        # Those that the program does not have itself.
+        self._made_functions: dict[str, Function] = {}
+        # No name that is made is one of these.
+        self._words = {token.text for token in given if token.kind == "word"}
+
+    def program(self) -> Program:
+        """All of it. Raises TranslationError."""
+        with one_error_type(self._error):
+            found = self._program()
+        found.functions[:0] = self._made_functions.values()
+        return found
+
+    def _program(self) -> Program:
+        raise NotImplementedError
 
     # Tokens.
 
@@ -125,12 +151,29 @@ class Parser:
     def _named(self, token: Token) -> Expression:
         for scope in reversed(self._scopes):
             if token.text in scope:
-                return scope[token.text]
+                return replace(scope[token.text])
         self._at -= 1
         raise self._error(f"{token.text} is not known here")
 
-    def _declared(self, name: str, kind: str, stands_for: Expression | None = None) -> None:
-        self._scopes[-1][name] = stands_for or Name(kind, name)
+    def _declared(self, name: str, kind: str, stands_for: Expression | None = None) -> str:
+        """Make a name known in the innermost scope, and give what the tree calls it.
+
+        What hides another name of the program gets a name of its own: in the tree nothing is hidden, so whoever
+        writes or renames it needs no scopes.
+        """
+        called = self._unused(name) if stands_for is None and self._would_hide(name) else name
+        self._scopes[-1][name] = stands_for or Name(kind, called)
+        return called
+
+    def _would_hide(self, name: str) -> bool:
+        return name in self._functions or any(name in scope for scope in self._scopes[:-1])
+
+    def _unused(self, name: str) -> str:
+        """A name like this one that the program does not have."""
+        plain = name.rstrip("_")
+        found = next(one for number in count(2) if (one := f"{plain}_{number}") not in self._words)
+        self._words.add(found)
+        return found
 
     def _add(self, function: Function) -> None:
         """Make a function known; its name becomes its own among those of that name."""
@@ -157,20 +200,30 @@ class Parser:
         return Choice(chosen.kind, condition, chosen, other)
 
     def _binary(self, least: int) -> Expression:
-        left = self._unary()
+        left, terms = self._unary(), 1
         while (mark := self._next.text) in BINDING and BINDING[mark] >= least and self._next.kind == "mark":
             self._take()
-            left = self._combined(mark, left, self._binary(BINDING[mark] + 1))
+            left, terms = self._operation(mark, left, self._binary(BINDING[mark] + 1)), terms + 1
+            if terms > MOST_TERMS:
+                raise self._error(f"more than {MOST_TERMS} terms")
         return left
 
+    def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
+        """What a mark between two values means in this language."""
+        return self._combined(mark, left, right)
+
     def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
+        """Two values combined component by component."""
         if mark in LOGICAL:
-            return Binary("bool", mark, left, right)
+            # Of two truth values ^^ and != are one, and only GLSL has the former.
+            return Binary("bool", "!=" if mark == "^^" else mark, left, right)
         if mark in SHIFTS:
             return Binary(left.kind, mark, left, right)
         left, right = self._alike(left, right, sizes_too=False)
         if isinstance(left, Literal) and isinstance(right, Literal) and left.kind == "int" and mark in FOLDED:
-            return Literal("int", str(FOLDED[mark](int(left.text, 0), int(right.text, 0))))
+            whole = FOLDED[mark](int(left.text, 0), int(right.text, 0))
+            if 0 <= whole < 2**31:
+                return Literal("int", str(whole))
         if mark in COMPARES:
             return Binary(vector("bool", max(size_of(left.kind), size_of(right.kind))), mark, left, right)
         return Binary(self._product(left.kind, right.kind), mark, left, right)
@@ -202,10 +255,20 @@ class Parser:
             return value
         if "bool" in (found, scalar):
             raise self._error(f"a {found} where a {scalar} is expected")
-        if isinstance(value, Literal):
+        return self._cast(value, scalar)
+
+    def _cast(self, value: Expression, scalar: str) -> Expression:
+        """A value with components of another type, as a constructor makes it; a literal becomes a literal of it."""
+        found = scalar_of(value.kind)
+        if found == scalar:
+            return value
+        if isinstance(value, Literal) and "bool" not in (found, scalar) and found != "float":
             return Literal(scalar, f"{int(value.text, 0)}.0" if scalar == "float" else value.text)
-        if isinstance(value, Unary) and isinstance(value.value, Literal):
-            return Unary(scalar, value.operator, self._converted(value.value, scalar))
+        if isinstance(value, Unary) and value.operator == "-" and isinstance(value.value, Literal) and found == "int":
+            if scalar == "float":
+                return Unary(scalar, "-", self._cast(value.value, scalar))
+            if scalar == "uint":
+                return Literal(scalar, str(-int(value.value.text, 0) % 2**32))
         return Construct(vector(scalar, size_of(value.kind)), [value])
 
     def _unary(self) -> Expression:
@@ -265,26 +328,50 @@ class Parser:
         if name in self._functions:
             return self._own(name, arguments)
         if name == "mod" and len(arguments) == 2:
-            return self._modulus(*arguments)
+            return self._modulus("floor", *arguments)
         if name == "atan" and len(arguments) == 2:
             name = "atan2"
+        if name in ANGLES and len(arguments) == 1:
+            return self._combined("*", self._converted(arguments[0], "float"), Literal("float", ANGLES[name]))
+        if name == "not" and len(arguments) == 1:
+            return Unary(arguments[0].kind, "!", arguments[0])
         if name in COMPARISONS and len(arguments) == 2:
             return self._combined(COMPARISONS[name], *arguments)
         if name == "mix" and len(arguments) == 3 and scalar_of(arguments[2].kind) == "bool":
             return self._chosen(arguments[2], arguments[1], arguments[0])
-        if len(arguments) > 1 and name not in ("texelFetch",):
-            arguments = self._all_alike(arguments)
-        if name == "exp2" and isinstance(arguments[0], Literal):
+        arguments = self._given(name, arguments)
+        if name == "exp2" and isinstance(arguments[0], Literal) and abs(float(arguments[0].text)) <= MOST_FOLDED:
             return Literal("float", with_a_point(repr(2.0 ** float(arguments[0].text))))
         kind = result_of(name, [a.kind for a in arguments]) if arguments else None
         if kind is None:
             raise self._error(f"{name} is not a function that is known here", place)
         return Call(kind, name, arguments)
 
-    def _modulus(self, x: Expression, y: Expression) -> Expression:
-        """x - y floor(x / y), which other languages' remainders are not where x is negative."""
+    def _given(self, name: str, arguments: list[Expression]) -> list[Expression]:
+        """What a built-in function is given: of one type, and floats where it has no other."""
+        if name in OF_FLOATS:
+            return [self._converted(a, "float") for a in arguments]
+        return self._all_alike(arguments) if len(arguments) > 1 and name != FETCH else arguments
+
+    def _modulus(self, rounding: str, x: Expression, y: Expression) -> Expression:
+        """x - y floor(x / y), or with trunc, which other languages' remainders are not where x is negative.
+
+        What is more than a name is given to a function of the program's: it would be written, and computed, twice.
+        """
+        x, y = self._alike(x, y, sizes_too=False)
+        kind = self._product(x.kind, y.kind)
+        if all(map(_is_short, (x, y))) or len(self._scopes) == 1:
+            return self._remainder(rounding, kind, x, y)
+        name = f"{rounding}_modulus({x.kind},{y.kind})"
+        if name not in self._made_functions:
+            parameters = [Parameter(x.kind, "x"), Parameter(y.kind, "y")]
+            body = self._remainder(rounding, kind, Name(x.kind, "x"), Name(y.kind, "y"))
+            self._made_functions[name] = Function(kind, name, parameters, [Return(body)])
+        return Call(kind, name, [x, y], is_own=True)
+
+    def _remainder(self, rounding: str, kind: str, x: Expression, y: Expression) -> Expression:
         quotient = self._combined("/", x, y)
-        return self._combined("-", x, self._combined("*", y, Call(quotient.kind, "floor", [quotient])))
+        return self._combined("-", x, self._combined("*", y, Call(kind, rounding, [quotient])))
 
     def _all_alike(self, arguments: list[Expression]) -> list[Expression]:
         scalars = {scalar_of(a.kind) for a in arguments}
@@ -305,16 +392,42 @@ class Parser:
         return Call(found.kind, found.name, given, is_own=True)
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
+        """A type's constructor, with components of that type and no more of them than it takes."""
         if len(arguments) == 1 and arguments[0].kind == kind:
             return arguments[0]
-        if len(arguments) == 1 and isinstance(arguments[0], Literal) and kind in ("float", "uint", "int"):
-            literal = arguments[0]
-            if literal.kind == "int":
-                return self._converted(literal, kind)
-        scalar = scalar_of(kind)
-        if size_of(kind) > 1 or kind.startswith("mat"):
-            mixes = len(arguments) > 1 or size_of(arguments[0].kind) == 1
-            arguments = [self._converted(a, scalar) for a in arguments] if mixes else arguments
+        scalar, size = scalar_of(kind), size_of(kind)
+        if kind.startswith("mat"):
+            return self._matrix(kind, [self._cast(a, "float") for a in arguments])
+        if len(arguments) == 1 and size_of(arguments[0].kind) in (1, size):
+            return Construct(kind, [self._cast(arguments[0], scalar)]) if size > 1 else self._cast(arguments[0], scalar)
+        found: list[Expression] = []
+        for argument in arguments:
+            left = size - sum(size_of(one.kind) for one in found)
+            if left <= 0:
+                raise self._error(f"a {kind} of too many components")
+            parts = min(size_of(argument.kind), left)
+            if parts < size_of(argument.kind):
+                argument = Swizzle(vector(scalar_of(argument.kind), parts), argument, FIELDS[0][:parts])
+            found.append(self._cast(argument, scalar))
+        return found[0] if size == 1 else Construct(kind, found)
+
+    def _matrix(self, kind: str, arguments: list[Expression]) -> Expression:
+        """A matrix of its columns or of its numbers; of one number that is its diagonal."""
+        size = int(kind[3])
+        if len(arguments) == 1 and arguments[0].kind == "float":
+            (number,) = arguments
+            zero = Literal("float", "0.0")
+            columns = [[number if row == column else zero for row in range(size)] for column in range(size)]
+            return Construct(kind, [Construct(f"vec{size}", column) for column in columns])
+        if len(arguments) == 1 and arguments[0].kind.startswith("mat") and arguments[0].kind[3] > kind[3]:
+            (matrix,) = arguments
+            columns = [Index(f"vec{matrix.kind[3]}", matrix, Literal("int", str(column))) for column in range(size)]
+            return Construct(kind, [Swizzle(f"vec{size}", column, FIELDS[0][:size]) for column in columns])
+        if [a.kind for a in arguments] not in ([f"vec{size}"] * size, ["float"] * size**2):
+            raise self._error(f"a {kind} is read of {size} columns, of {size**2} numbers, or of one")
+        if len(arguments) > size:
+            columns = [arguments[at : at + size] for at in range(0, size**2, size)]
+            arguments = [Construct(f"vec{size}", column) for column in columns]
         return Construct(kind, arguments)
 
     # Statements.
@@ -358,3 +471,10 @@ class Parser:
     def _counted(self, target: Expression, mark: str) -> Statement:
         one = Literal("float", "1.0") if target.kind == "float" else Literal(target.kind, "1")
         return Assign(target, f"{mark[0]}=", one)
+
+
+def _is_short(value: Expression) -> bool:
+    """Whether a value can be written twice: a number, a name, or a part of one."""
+    while isinstance(value, Swizzle | Unary):
+        value = value.value
+    return isinstance(value, Literal | Name)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
+from itertools import count
 
-from .tree import Call, Declare, Function, Name, Program, Table, inside, plain_name, size_of
+from .tree import Call, Declare, Function, Member, Name, Program, Table, inside, plain_name, size_of
 
 # A parameter that functions have for others' sake.
 VIEW = "view"
@@ -35,7 +36,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     _replace(functions, {table.name: f"{prefix}_{table.name}" for table in tables})
     tables = [Table(f"{prefix}_{table.name}") for table in tables]
     _rename_constants(constants, functions, prefix, own)
-    return Program(constants, tables, functions)
+    return Program(constants, tables, functions, program.structs)
 
 
 def _reached(program: Program, names: list[str]) -> set[str]:
@@ -93,11 +94,17 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
             mine = re.sub(f"^{own}_(?=.)", "", short)
             mine = INNER.get(mine, mine) if f"{prefix}_{mine}" in names.values() else mine
-            names[function.name] = f"{prefix}_{mine}{size or ''}"
+            names[function.name] = _free(f"{prefix}_{mine}{size or ''}", names.values())
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = names[call.name]
         function.name = names[function.name]
+
+
+def _free(name: str, taken: Collection[str]) -> str:
+    """A name that is not taken: this one, or this one with a number."""
+    ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
+    return next(one for one in ways if one not in taken)
 
 
 def _without(own: str, name: str) -> str:
@@ -113,17 +120,67 @@ def _without(own: str, name: str) -> str:
 def _rename_constants(constants: list[Declare], functions: list[Function], prefix: str, own: str) -> None:
     short = {constant.name: _without(own, constant.name) for constant in constants}
     taken = list(short.values())
-    names = {name: f"{prefix.upper()}_{new if taken.count(new) == 1 else name}" for name, new in short.items()}
+    names: dict[str, str] = {}
+    others = {function.name for function in functions}
+    for name, new in short.items():
+        plain = f"{prefix.upper()}_{new if taken.count(new) == 1 else name}"
+        names[name] = _free(plain, others | set(names.values()))
     _replace(functions, names)
     for constant in constants:
-        for node in inside(constant.value):
-            if isinstance(node, Name) and node.name in names:
-                node.name = names[node.name]
+        _replace_in(constant.value, names)
         constant.name = names[constant.name]
 
 
 def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
+    """Give what is outside of functions other names, but in a function that has a variable of such a name."""
     for function in functions:
-        for node in inside(function.body):
-            if isinstance(node, Name) and node.name in names:
-                node.name = names[node.name]
+        own = {*_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
+        _replace_in(function.body, {old: new for old, new in names.items() if old not in own})
+
+
+def _replace_in(nodes: object, names: Mapping[str, str]) -> None:
+    # A node may stand in several places.
+    for node in {id(node): node for node in inside(nodes) if isinstance(node, Name)}.values():
+        node.name = names.get(node.name, node.name)
+
+
+def numbered(program: Program, word: str) -> None:
+    """Call everything that has a name by this word and a number."""
+    numbers = count()
+    _number_structs(program, word, numbers)
+    outside = {one.name: f"{word}_{next(numbers)}" for one in [*program.constants, *program.functions]}
+    for function in program.functions:
+        for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
+            call.name = outside[call.name]
+        function.name = outside[function.name]
+    _replace(program.functions, outside)
+    for constant in program.constants:
+        _replace_in(constant.value, outside)
+        constant.name = outside[constant.name]
+    for function in program.functions:
+        declared = [node for node in inside(function.body) if isinstance(node, Declare)]
+        own = {name: f"{word}_{next(numbers)}" for name in [*_names(function), *(node.name for node in declared)]}
+        _replace_in(function.body, own)
+        for one in (*function.parameters, *declared):
+            one.name = own[one.name]
+
+
+def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None:
+    names = {struct.name: f"{word}_{next(numbers)}" for struct in program.structs}
+    fields = {(struct.name, name): f"{word}_{next(numbers)}" for struct in program.structs for name in struct.kinds}
+
+    def named(kind: str) -> str:
+        plain, mark, length = kind.partition("[")
+        return names.get(plain, plain) + mark + length
+
+    # A node may stand in several places.
+    nodes = {id(node): node for node in inside([program.constants, program.functions])}.values()
+    for node in nodes:
+        if isinstance(node, Member):
+            node.field = fields[node.value.kind, node.field]
+    for node in nodes:
+        if hasattr(node, "kind"):
+            node.kind = named(node.kind)
+    for struct in program.structs:
+        struct.kinds = {fields[struct.name, name]: named(kind) for name, kind in struct.kinds.items()}
+        struct.name = names[struct.name]

@@ -18,6 +18,8 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 BLANK = re.compile(r"[ \t\r]+|\\\n")
+# One that has no end goes to the end of the text.
+COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 # Of a file that people wrote.
 MOST_TOKENS = 200_000
 MOST_DEPTH = 32
@@ -106,14 +108,21 @@ class Preprocessor:
         """The tokens of a text, with its macros in place. Raises TranslationError."""
         kept: list[str] = []
         including: list[tuple[bool, bool]] = []  # whether this branch counts, and whether one has
-        for number, line in enumerate(text.split("\n"), 1):
-            directive = re.match(r"\s*#\s*(\w*)\s*(.*)", line)
+        # Directives are what stands in no comment.
+        lines, bare = text.split("\n"), COMMENT.sub(_blank, text).split("\n")
+        while len(kept) < len(lines):
+            number = len(kept) + 1
+            directive = re.match(r"\s*#\s*(\w*)\s*(.*)", bare[number - 1])
             counts = all(is_on for is_on, _ in including)
             if not directive:
-                kept.append(line if counts else "")
+                kept.append(lines[number - 1] if counts else "")
                 continue
-            kept.append("")
-            self._obey(directive[1], directive[2], number, including, counts)
+            rest = directive[2]
+            while rest.endswith("\\") and len(kept) + 1 < len(lines):
+                kept.append("")
+                rest = f"{rest[:-1]} {bare[len(kept)]}"
+            kept.append(_begun(lines[len(kept)], bare[len(kept)]))
+            self._obey(directive[1], rest, number, including, counts)
         if including:
             raise TranslationError("an #if without its #endif")
         every = (each for token in tokens("\n".join(kept)) for each in self._expanded(token))
@@ -182,6 +191,16 @@ class Preprocessor:
             yield from self._words(each, depth + 1)
 
 
+def _blank(comment: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", comment[0])
+
+
+def _begun(line: str, bare: str) -> str:
+    """Of a directive's line, the comment that began before it or that ends behind it; nothing where there is none."""
+    only = "".join(" " if left == letter else letter for letter, left in zip(line, bare, strict=True))
+    return only if only.count("/*") != only.count("*/") else ""
+
+
 def _is_number(words: Sequence[Token]) -> bool:
     """A number under a sign, or an array of numbers."""
     texts = [word.text for word in words if word.text != "-"]
@@ -190,14 +209,23 @@ def _is_number(words: Sequence[Token]) -> bool:
 
 
 def suffixed(text: str) -> tuple[str, str]:
-    """A number as GLSL and HLSL write it: its type, and its text without suffix."""
+    """A number as GLSL and HLSL write it: its type, and its text without suffix, in decimal if it is whole.
+
+    Raises:
+        ValueError: no such number.
+    """
     lower = text.lower()
     if lower.startswith("0x"):
         return ("uint" if lower.endswith("u") else "int"), text.rstrip("uUi")
     if lower.endswith("u"):
-        return "uint", lower.rstrip("u")
+        return "uint", _whole(lower.rstrip("u"))
     is_float = any(mark in lower for mark in ".efh")
-    return ("float", with_a_point(lower.rstrip("lfh"))) if is_float else ("int", lower.rstrip("i"))
+    return ("float", with_a_point(lower.rstrip("lfh"))) if is_float else ("int", _whole(lower.rstrip("i")))
+
+
+def _whole(text: str) -> str:
+    """A whole number in decimal; with a zero before it, it is octal."""
+    return str(int(text, 8)) if text.startswith("0") else text
 
 
 def with_a_point(text: str) -> str:

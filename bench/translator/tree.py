@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
 SCALARS = {"float": "", "int": "i", "uint": "u", "bool": "b"}
+# Frames of Python for the deepest tree: sums of many terms lean to one side.
+MOST_FRAMES = 12_000
+UNEXPECTED = (ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
 
 
 class TranslationError(Exception):
     """What cannot be read or said in another language; one line, with line and column where they are known."""
+
+
+@contextmanager
+def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Iterator[None]:
+    """Room for deep trees; whatever a reader or a writer stumbles over is raised as a TranslationError.
+
+    Args:
+        placed: makes the error of what is wrong, with the place if that is known.
+    """
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, MOST_FRAMES))
+    try:
+        yield
+    except UNEXPECTED as error:
+        raise placed("this is too deep" if isinstance(error, RecursionError) else "this is not understood") from error
+    finally:
+        sys.setrecursionlimit(before)
 
 
 @dataclass(frozen=True)
@@ -109,6 +131,14 @@ class Index(Expression):
 
 
 @dataclass
+class Member(Expression):
+    """A field of a structure."""
+
+    value: Expression
+    field: str
+
+
+@dataclass
 class Elements(Expression):
     """An array of numbers."""
 
@@ -148,6 +178,13 @@ class Perform(Statement):
 
 
 @dataclass
+class Block(Statement):
+    """Statements in a scope of their own."""
+
+    body: list[Statement]
+
+
+@dataclass
 class If(Statement):
     condition: Expression
     chosen: list[Statement]
@@ -156,9 +193,11 @@ class If(Statement):
 
 @dataclass
 class For(Statement):
-    start: Statement
+    """`start` and `step` are None where nothing stands there."""
+
+    start: Statement | None
     condition: Expression
-    step: Statement
+    step: Statement | None
     body: list[Statement]
 
 
@@ -205,12 +244,21 @@ class Table:
 
 
 @dataclass
+class Struct:
+    """A structure: the types of its fields by their names."""
+
+    name: str
+    kinds: dict[str, str]
+
+
+@dataclass
 class Program:
-    """Constants, tables and functions, in an order in which each uses only those before it."""
+    """Structures, constants, tables and functions, in an order in which each uses only those before it."""
 
     constants: list[Declare]
     tables: list[Table]
     functions: list[Function]
+    structs: list[Struct] = field(default_factory=list)
 
     def function(self, name: str) -> Function:
         """The function of a name that only one has."""
@@ -224,11 +272,12 @@ def plain_name(function: Function) -> str:
 
 
 def inside(node: Any) -> Iterator[Any]:
-    """A node and all below it."""
-    if isinstance(node, list):
-        for each in node:
-            yield from inside(each)
-    elif is_dataclass(node):
-        yield node
-        for each in fields(node):
-            yield from inside(getattr(node, each.name))
+    """A node and all below it, in the order of the text."""
+    left = [node]
+    while left:
+        node = left.pop()
+        if isinstance(node, list):
+            left += reversed(node)
+        elif is_dataclass(node):
+            yield node
+            left += [getattr(node, each.name) for each in reversed(fields(node))]

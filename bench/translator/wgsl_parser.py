@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from functools import cache
+from pathlib import Path
 from types import MappingProxyType
 
-from .parser import Parser
+from .glsl_parser import read_glsl
+from .parser import BINDING, FOLDED, SHIFTS, Parser
 from .tokens import END, Token, tokens, with_a_point
 from .tree import (
     Binary,
+    Block,
     Call,
     Construct,
     Declare,
@@ -17,16 +22,21 @@ from .tree import (
     For,
     Function,
     If,
+    Index,
     Leave,
     Literal,
+    Member,
     Name,
     Parameter,
     Program,
     Return,
     Statement,
+    Struct,
+    Swizzle,
     Unary,
     While,
     inside,
+    one_error_type,
     scalar_of,
     size_of,
     vector,
@@ -57,11 +67,24 @@ BITS: Mapping[tuple[str, str], str] = MappingProxyType(
 SCALAR_NAMES = {"float": "f32", "int": "i32", "uint": "u32", "bool": "bool"}
 ONE, ZERO = Literal("float", "1.0"), Literal("float", "0.0")
 SKIPPED = frozenset(("alias", "enable", "requires", "diagnostic", "const_assert"))
+# What WGSL defines and GLSL does not; no name of WGSL begins with two underscores.
+DEFINED = Path(__file__).with_name("wgsl_defined.glsl")
+OPERATIONS: Mapping[str, str] = MappingProxyType({"/": "__quotient", "%": "__remainder"})
+CONVERSIONS: Mapping[str, str] = MappingProxyType({"int": "__to_int", "uint": "__to_uint"})
+# GLSL's operation of whole numbers for one of truth values, neither of which decides whether the other is computed.
+TRUTHS = frozenset(("&", "|"))
 
 
 def read_wgsl(text: str) -> Program:
     """A program of WGSL's text. Raises TranslationError."""
-    return WgslParser(tokens(text)).program()
+    with one_error_type():
+        parser = WgslParser(tokens(text))
+    return parser.program()
+
+
+@cache
+def _defined() -> list[Function]:
+    return read_glsl(DEFINED.read_text(encoding="utf-8")).functions
 
 
 class WgslParser(Parser):
@@ -72,46 +95,111 @@ class WgslParser(Parser):
         self._made = Program([], [], [])
         self._aliases: dict[str, str] = {}
         self._abstract: set[str] = set()
+        # Constants that stand outside of functions: where their declarations begin, and those that are read.
+        self._constants: dict[str, int] = {}
+        self._types: dict[str, int] = {}
+        self._structs: dict[str, Struct] = {}
+        self._read: set[str] = set()
 
-    def program(self) -> Program:
+    def _program(self) -> Program:
         """All of it; functions that call later ones come after these."""
         self._know_all()
         while self._next is not END:
             if not self._skip(";"):
                 self._global()
-        self._made.functions = _callees_first(self._made.functions)
+        self._made.functions = [*deepcopy(_defined()), *_callees_first(self._made.functions)]
+        self._made.structs = list(self._structs.values())
         return self._made
 
     def _know_all(self) -> None:
-        """Makes every function known by its signature: WGSL calls them before they stand."""
-        self._know_aliases()
+        """Makes everything outside of functions known: WGSL uses it before it stands."""
+        depth = 0
+        for at, token in enumerate(self._tokens):
+            depth += (token.text == "{") - (token.text == "}")
+            if not depth and token.text == "const":
+                self._constants[self._tokens[at + 1].text] = at
+        self._know_types()
         for at, token in enumerate(self._tokens):
             if token.text == "fn" and token.kind == "word":
                 self._at = at
                 self._add(self._signature())
         self._at = 0
 
-    def _know_aliases(self) -> None:
-        for at, token in enumerate(self._tokens):
-            if token.text == "alias":
-                self._at = at + 1
-                name = self._word().text
-                self._take("=")
-                self._aliases[name] = self._kind()
+    def _know_types(self) -> None:
+        """Aliases and structures, each after those that it is made of."""
+        begins = {
+            self._tokens[at + 1].text: at
+            for at, token in enumerate(self._tokens[:-1])
+            if token.text in ("alias", "struct") and token.kind == "word"
+        }
+        self._types = begins
+        for name in [*begins]:
+            self._know_type(name)
+        self._at = 0
+
+    def _know_type(self, name: str) -> None:
+        if name not in self._types:
+            return
+        before, self._at = self._at, self._types.pop(name)
+        word = self._take().text
+        self._take()
+        if word == "alias":
+            self._take("=")
+            self._aliases[name] = self._kind()
+        else:
+            struct = Struct(name, self._fields())
+            self._structs[name] = struct
+            self._aliases[name] = name
+        self._at = before
+
+    def _fields(self) -> dict[str, str]:
+        self._take("{")
+        found: dict[str, str] = {}
+        while not self._skip("}"):
+            name = self._word().text
+            self._take(":")
+            found[name] = self._kind()
+            if self._next.text != "}":
+                self._take(",")
+        return found
 
     def _global(self) -> None:
         first = self._next
         if self._skip("const"):
-            self._made.constants.append(self._declared_constant(first))
+            self._constant(first)
         elif first.text == "@" and self._ahead(1) == "must_use":
             self._at += 2
+        elif self._skip("struct"):
+            self._word()
+            self._fields()
         elif first.text in SKIPPED:
             while self._take().text != ";":
                 pass
         elif first.text == "fn":
             self._function(first)
         else:
-            raise self._error(f"{first.text}: only functions, constants and aliases are read")
+            raise self._error(f"{first.text}: only functions, constants, structures and aliases are read")
+
+    def _constant(self, first: Token) -> None:
+        if (name := self._next.text) not in self._read:
+            self._read.add(name)
+            self._made.constants.append(self._declared_constant(first))
+            return
+        while self._take().text != ";":
+            pass
+
+    def _named(self, token: Token) -> Expression:
+        """A name; a constant outside of functions is read when it is first used."""
+        is_known = any(token.text in scope for scope in self._scopes)
+        if not is_known and token.text in self._constants and token.text not in self._read:
+            before, inner = self._at, self._scopes
+            self._at, self._scopes = self._constants[token.text] + 1, self._scopes[:1]
+            self._constant(token)
+            self._at, self._scopes = before, inner
+        return super()._named(token)
+
+    def _would_hide(self, name: str) -> bool:
+        return len(self._scopes) > 1 and (name in self._constants or super()._would_hide(name))
 
     def _declared_constant(self, first: Token) -> Declare:
         declared = self._declarator(is_constant=True)
@@ -137,7 +225,7 @@ class WgslParser(Parser):
         (function,) = self._functions[read.name]
         self._scopes.append({})
         for parameter in function.parameters:
-            self._declared(parameter.name, parameter.kind)
+            parameter.name = self._declared(parameter.name, parameter.kind)
         function.body = self._block()
         self._scopes.pop()
         function.above = list(first.above)
@@ -145,6 +233,8 @@ class WgslParser(Parser):
 
     def _kind(self) -> str:
         token = self._word()
+        if token.text in self._types:
+            self._know_type(token.text)
         known = {**KINDS, **self._aliases}
         if token.text in known:
             return known[token.text]
@@ -155,11 +245,25 @@ class WgslParser(Parser):
         element = self._kind()
         if token.text == "array":
             self._take(",")
-            count = self._unary()
+            # The mark behind a length is no comparison.
+            count = self._binary(BINDING["+"])
+            self._skip(",")
             self._take(">")
-            return f"{element}[{getattr(count, 'text', '?')}]"
+            return f"{element}[{self._length_of(count)}]"
         self._take(">")
         return f"mat{token.text[3]}" if token.text.startswith("mat") else vector(element, int(token.text[3]))
+
+    def _length_of(self, value: Expression) -> int:
+        match value:
+            case Literal(_, text):
+                return int(text, 0)
+            case Name(_, name):
+                found = next((c.value for c in self._made.constants if c.name == name), None)
+                if found is not None:
+                    return self._length_of(found)
+            case Binary(_, mark, left, right) if mark in FOLDED:
+                return FOLDED[mark](self._length_of(left), self._length_of(right))
+        raise self._error("an array's length is not a number")
 
     # Statements.
 
@@ -168,10 +272,15 @@ class WgslParser(Parser):
         if self._skip(";"):
             return []
         if first.text == "{":
-            return self._block()
+            return [Block(self._block())]
+        if first.text == "_" and self._ahead(1) == "=":
+            self._at += 2
+            self._expression()
+            self._take(";")
+            return []
         made = self._one(first)
         made.above = [*first.above, *made.above]
-        if not isinstance(made, If | For | While):
+        if not isinstance(made, If | For | While | Block):
             made.behind = self._tokens[self._at - 1].behind
         return [made]
 
@@ -183,7 +292,9 @@ class WgslParser(Parser):
         if self._skip("while"):
             return While(self._expression(), self._block())
         if self._skip("loop"):
-            return While(Literal("bool", "true"), self._block())
+            return self._loop()
+        if self._skip("switch"):
+            return self._switch()
         made = self._simple(first)
         self._take(";")
         return made
@@ -204,14 +315,79 @@ class WgslParser(Parser):
             return If(condition, chosen, [])
         return If(condition, chosen, [self._if()] if self._skip("if") else self._block())
 
+    def _loop(self) -> Statement:
+        """loop { BODY continuing { ... break if CONDITION; } }; what continues stands behind the body."""
+        self._take("{")
+        self._scopes.append({})
+        body: list[Statement] = []
+        while not self._skip("}"):
+            if self._next.text != "continuing":
+                body += self._deeper(self._statement)
+                continue
+            if _leaves(body, "continue"):
+                raise self._error("a loop with continue and continuing is not read")
+            self._take()
+            body.append(Block(self._continuing()))
+        self._scopes.pop()
+        return While(Literal("bool", "true"), body)
+
+    def _continuing(self) -> list[Statement]:
+        self._take("{")
+        self._scopes.append({})
+        found: list[Statement] = []
+        while not self._skip("}"):
+            if self._next.text == "break" and self._ahead(1) == "if":
+                self._at += 2
+                found.append(If(self._expression(), [Leave("break")], []))
+                self._take(";")
+            else:
+                found += self._deeper(self._statement)
+        self._scopes.pop()
+        return found
+
+    def _switch(self) -> Statement:
+        """switch, as a choice between blocks."""
+        value = self._expression()
+        name = self._unused("chosen_by")
+        chosen_by = Name(value.kind, name)
+        self._take("{")
+        cases: list[tuple[Expression | None, list[Statement]]] = []
+        while not self._skip("}"):
+            cases.append(self._case(chosen_by))
+        other: list[Statement] = next((body for condition, body in cases if condition is None), [])
+        for condition, body in reversed([one for one in cases if one[0] is not None]):
+            assert condition
+            other = [If(condition, body, other)]
+        return Block([Declare(value.kind, name, value), *other])
+
+    def _case(self, chosen_by: Name) -> tuple[Expression | None, list[Statement]]:
+        condition: Expression | None = None
+        is_default = self._skip("default")
+        if not is_default:
+            self._take("case")
+            while self._next.text not in ("{", ":"):
+                if self._skip("default"):
+                    is_default = True
+                else:
+                    same = self._combined("==", chosen_by, self._expression())
+                    condition = Binary("bool", "||", condition, same) if condition else same
+                self._skip(",")
+        self._skip(":")
+        body = self._block()
+        if body and body[-1] == Leave("break"):
+            body.pop()
+        if _leaves(body, "break"):
+            raise self._error("a switch with break inside of a case is not read")
+        return (None if is_default else condition), body
+
     def _for(self) -> Statement:
         self._take("(")
         self._scopes.append({})
-        start = self._simple(self._next)
+        start = None if self._next.text == ";" else self._simple(self._next)
         self._take(";")
-        condition = self._expression()
+        condition = Literal("bool", "true") if self._next.text == ";" else self._expression()
         self._take(";")
-        step = self._assignment()
+        step = None if self._next.text == ")" else self._assignment()
         self._take(")")
         body = self._block()
         self._scopes.pop()
@@ -227,11 +403,12 @@ class WgslParser(Parser):
             value = self._converted(value, kind)
         if value is not None and kind and scalar_of(kind) != scalar_of(value.kind):
             value = self._converted(value, scalar_of(kind))
-        if is_constant and kind is None:
-            self._abstract.add(name)
+        is_abstract = is_constant and kind is None
         kind = kind or (value.kind if value else "")
-        self._declared(name, kind)
-        return Declare(kind, name, value, is_constant)
+        called = self._declared(name, kind)
+        if is_abstract:
+            self._abstract.add(called)
+        return Declare(kind, called, value, is_constant)
 
     # What expressions are made of.
 
@@ -250,7 +427,8 @@ class WgslParser(Parser):
             raise self._error(f"{token.text} is not expected here")
         if token.text == "bitcast":
             return self._bits()
-        if token.text in KINDS or token.text in GENERIC or token.text in self._aliases:
+        is_variable = any(token.text in scope for scope in self._scopes)
+        if not is_variable and (token.text in KINDS or token.text in GENERIC or token.text in self._aliases):
             return self._made_of(token)
         if self._skip("("):
             return self._named_call(token, self._arguments())
@@ -281,8 +459,70 @@ class WgslParser(Parser):
         self._take("(")
         values = self._arguments()
         if "[" in kind:
-            return Elements(kind, [self._converted(value, kind.partition("[")[0]) for value in values])
+            scalar = scalar_of(kind.partition("[")[0])
+            return Elements(kind, [self._converted(value, scalar) for value in values] or self._nothing(kind))
+        if kind in self._structs:
+            return Construct(kind, self._of_fields(kind, values))
         return self._constructed(kind, values or [Literal("int", "0")])
+
+    def _of_fields(self, kind: str, values: list[Expression]) -> list[Expression]:
+        kinds = self._structs[kind].kinds.values()
+        if not values:
+            return [self._zero(one) for one in kinds]
+        return [v if v.kind == k else self._converted(v, scalar_of(k)) for v, k in zip(values, kinds, strict=True)]
+
+    def _nothing(self, kind: str) -> list[Expression]:
+        element, _, length = kind.partition("[")
+        return [self._zero(element) for _ in range(int(length.rstrip("]")))]
+
+    def _zero(self, kind: str) -> Expression:
+        if kind in self._structs:
+            return Construct(kind, self._of_fields(kind, []))
+        if "[" in kind:
+            return Elements(kind, self._nothing(kind))
+        return self._constructed(kind, [Literal("int", "0")])
+
+    def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
+        """As in GLSL, but for floats out of an integer's range: they become its nearest."""
+        scalar, names = scalar_of(kind), CONVERSIONS
+        if scalar in names and any(scalar_of(one.kind) == "float" for one in arguments):
+            arguments = [
+                one if scalar_of(one.kind) != "float" else self._defined(names[scalar], scalar, [one])
+                for one in arguments
+            ]
+        return super()._constructed(kind, arguments)
+
+    def _defined(self, name: str, scalar: str, given: list[Expression]) -> Expression:
+        """A function of `wgsl_defined.glsl`."""
+        size = max(size_of(one.kind) for one in given)
+        given = [one if size_of(one.kind) == size else Construct(vector(one.kind, size), [one]) for one in given]
+        called = f"{name}({','.join(one.kind for one in given)})"
+        return Call(vector(scalar, size), called, given, is_own=True)
+
+    def _member(self, value: Expression, word: Token) -> Expression:
+        if value.kind in self._structs:
+            kind = self._structs[value.kind].kinds.get(word.text)
+            if kind is None:
+                raise self._error(f"a {value.kind} has no .{word.text}", word.place)
+            return Member(kind, value, word.text)
+        return super()._member(value, word)
+
+    def _behind(self, value: Expression) -> Expression:
+        """Members and elements; an index beyond an array is its last."""
+        found = super()._behind(value)
+        node = found
+        while isinstance(node, Index | Member | Swizzle):
+            if isinstance(node, Index) and not isinstance(node.at, Literal):
+                node.at = self._inside(node.value.kind, node.at)
+            node = node.value
+        return found
+
+    def _inside(self, kind: str, at: Expression) -> Expression:
+        if isinstance(at, Call) and at.name.startswith("min("):
+            return at
+        count = int(kind.partition("[")[2].rstrip("]")) if "[" in kind else int(kind[-1])
+        whole = at if at.kind == "uint" else Construct("uint", [at])
+        return Call("uint", "min", [whole, Literal("uint", str(count - 1))])
 
     def _named_call(self, token: Token, arguments: list[Expression]) -> Expression:
         name = token.text
@@ -305,13 +545,49 @@ class WgslParser(Parser):
         leaves = [node for node in inside(value) if not isinstance(node, Binary | Unary)]
         return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
-    def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
-        if mark == "%" and "float" in (scalar_of(left.kind), scalar_of(right.kind)):
-            # x - y trunc(x / y)
-            quotient = self._combined("/", left, right)
-            whole = Call(quotient.kind, "trunc", [quotient])
-            return self._combined("-", left, self._combined("*", right, whole))
-        return super()._combined(mark, left, right)
+    def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
+        """As in GLSL, but where that defines nothing: quotients and remainders of whole numbers, and shifts."""
+        scalar = scalar_of(left.kind)
+        if mark in SHIFTS:
+            by = right if isinstance(right, Literal) else self._masked(right)
+            return self._combined(mark, left, by)
+        if mark in TRUTHS and scalar == "bool":
+            if size_of(left.kind) == 1:
+                return self._combined(mark * 2, left, right)
+            whole = vector("uint", size_of(left.kind))
+            both = Binary(whole, mark, Construct(whole, [left]), Construct(whole, [right]))
+            return Construct(left.kind, [both])
+        left, right = self._alike(left, right, sizes_too=False)
+        scalar = scalar_of(left.kind)
+        if mark == "%" and scalar == "float":
+            return self._modulus("trunc", left, right)
+        if mark in OPERATIONS and scalar in CONVERSIONS and not _divides(right):
+            return self._defined(OPERATIONS[mark], scalar, [left, right])
+        if mark == "%" and scalar == "int":
+            return self._defined(OPERATIONS[mark], scalar, [left, right])
+        return self._combined(mark, left, right)
+
+    def _masked(self, by: Expression) -> Expression:
+        whole = by if scalar_of(by.kind) == "uint" else Construct(vector("uint", size_of(by.kind)), [by])
+        return self._combined("&", whole, Literal("uint", "31"))
+
+
+def _divides(value: Expression) -> bool:
+    """Whether a divisor is a number above 0."""
+    return isinstance(value, Literal) and int(value.text, 0) > 0
+
+
+def _leaves(body: list[Statement], word: str) -> bool:
+    """Whether statements break or continue the loop around them."""
+    for one in body:
+        match one:
+            case Leave(said) if said == word:
+                return True
+            case If(_, chosen, other) if _leaves(chosen, word) or _leaves(other, word):
+                return True
+            case Block(inner) if _leaves(inner, word):
+                return True
+    return False
 
 
 def _number(text: str) -> Literal:
@@ -334,7 +610,7 @@ def _callees_first(functions: list[Function]) -> list[Function]:
             return
         begun.add(function.name)
         for node in inside(function.body):
-            if isinstance(node, Call) and node.is_own:
+            if isinstance(node, Call) and node.is_own and node.name in by_name:
                 add(by_name[node.name])
         found.append(function)
 

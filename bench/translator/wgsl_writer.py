@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from .parser import SHIFTS
+from .parser import COMPARES, SHIFTS
 from .tree import (
     Binary,
     Call,
     Choice,
+    Construct,
     Declare,
     Elements,
     Expression,
     Function,
     Literal,
     Table,
+    Unary,
+    scalar_of,
+    size_of,
+    vector,
 )
-from .writer import PRIMARY, UNARY, Writer, words
+from .writer import BITWISE, INDENT, PRIMARY, UNARY, Writer, words
 
 RESERVED = words(
     "active alignas as asm auto become bf16 catch class common const demote do enum explicit export extern external "
@@ -25,7 +30,9 @@ RESERVED = words(
     "mod module move mut namespace new of out package partition pass patch pixelfragment precise precision premerge "
     "priv protected pub public readonly ref register resource restrict self set shared sizeof smooth snorm static std "
     "struct super target template this throw trait try type typedef typename union unless unorm unsafe unsized use "
-    "using var varying virtual volatile where with writeonly yield loop fn let override switch sampler texture"
+    "using var varying virtual volatile where with writeonly yield loop fn let override switch sampler texture select "
+    "bitcast textureLoad array atomic ptr f16 vec2 vec3 vec4 vec2h vec3h vec4h alias break case const_assert continue "
+    "continuing default diagnostic discard else enable false for if requires return true while bool float int"
 )
 
 
@@ -57,11 +64,14 @@ class WgslWriter(Writer):
     )
     reserved = RESERVED
     splats = True
+    assigns_to_parts = False
     group = 0
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
         super().__init__(prefix, sizes)
         self._bindings = 0
+        # Parameters that a function assigns to: variables, which begin as what it is given.
+        self._copied: dict[str, str] = {}
 
     def _table(self, table: Table) -> str:
         text = f"@group({self.group}) @binding({self._bindings}) var {table.name}: texture_2d<f32>;"
@@ -79,13 +89,22 @@ class WgslWriter(Writer):
         return super()._kind(kind)
 
     def _signature(self, function: Function) -> str:
-        parameters = ", ".join(f"{self._name(p.name)}: {self._kind(p.kind)}" for p in function.parameters)
+        called = {p.name: self._copied.get(p.name, self._name(p.name)) for p in function.parameters}
+        parameters = ", ".join(f"{called[p.name]}: {self._kind(p.kind)}" for p in function.parameters)
         return f"fn {function.name}({parameters}) -> {self._kind(function.kind)}"
+
+    def _body(self, function: Function) -> str:
+        changed = [p.name for p in function.parameters if p.name in self._assigned]
+        self._copied = {name: self._unused(f"given_{name}") for name in changed}
+        copies = (f"{INDENT}var {self._name(name)} = {given};\n" for name, given in self._copied.items())
+        return "".join(copies) + super()._body(function)
 
     def _declared(self, declared: Declare) -> str:
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
         said = "" if value else f": {self._kind(declared.kind)}"
-        word = "var" if declared.name in self._assigned or not value else "let"
+        # What is not a variable is indexed by constants alone.
+        is_variable = declared.name in self._assigned or not value or declared.kind.endswith("]")
+        word = "var" if is_variable else "let"
         return f"{word} {self._name(declared.name)}{said}{value}"
 
     def _local(self, declared: Declare) -> str:
@@ -94,13 +113,25 @@ class WgslWriter(Writer):
     def _counted(self, target: Expression, mark: str) -> str:
         return f"{self._text(target)}{mark[0] * 2}"
 
+    def _written(self, value: Expression) -> tuple[str, int]:
+        match value:
+            case Unary(kind, "-", inner) if scalar_of(kind) == "uint":
+                return self._binary(Binary(kind, "-", _broad(Literal("uint", "0"), size_of(kind)), inner))
+        return super()._written(value)
+
     def _binary(self, value: Binary) -> tuple[str, int]:
+        left, right = value.left, value.right
+        size = max(size_of(left.kind), size_of(right.kind))
         if value.operator in SHIFTS:
-            by = value.right
-            right = f"{by.text}u" if isinstance(by, Literal) else self._as_uint(by)
-            return f"{self._text(value.left, UNARY)} {value.operator} {right}", UNARY - 1
-        if value.operator in ("==", "!=") and value.left.kind == "bool":
-            return f"{self._text(value.left, PRIMARY)} {value.operator} {self._text(value.right, PRIMARY)}", 7
+            by = f"{right.text}u" if isinstance(right, Literal) else self._as_uint(right)
+            if size_of(right.kind) < size:
+                by = f"vec{size}u({by})"
+            return f"{self._text(left, UNARY)} {value.operator} {by}", UNARY - 1
+        if value.operator in BITWISE | COMPARES:
+            left, right = _broad(left, size), _broad(right, size)
+            value = Binary(value.kind, value.operator, left, right)
+        if value.operator in ("==", "!=") and left.kind == "bool":
+            return f"{self._text(left, PRIMARY)} {value.operator} {self._text(right, PRIMARY)}", 7
         return super()._binary(value)
 
     def _as_uint(self, value: Expression) -> str:
@@ -115,3 +146,10 @@ class WgslWriter(Writer):
 
     def _elements(self, value: Elements) -> str:
         return f"{self._kind(value.kind)}({self._listed(value)})"
+
+
+def _broad(value: Expression, size: int) -> Expression:
+    """A value with so many components; a scalar as many times."""
+    if size_of(value.kind) == size:
+        return value
+    return Construct(vector(value.kind, size), [value])

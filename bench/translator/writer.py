@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from .builtins import FETCH
-from .parser import BINDING, SHIFTS
+from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
+from .parser import BINDING, COMPARISONS, SHIFTS
 from .tokens import with_a_point
 from .tree import (
     Assign,
     Binary,
+    Block,
     Call,
     Choice,
     Construct,
@@ -23,21 +24,26 @@ from .tree import (
     Index,
     Leave,
     Literal,
+    Member,
     Name,
     Perform,
     Program,
     Return,
     Statement,
+    Struct,
     Swizzle,
     Table,
     TranslationError,
     Unary,
     While,
     inside,
+    one_error_type,
+    scalar_of,
     size_of,
 )
 
 INDENT = "    "
+FIELDS = "xyzw"
 # Of an array, in a line.
 ELEMENTS = 6
 # How tightly what is not a binary operation binds.
@@ -46,6 +52,8 @@ BITWISE = SHIFTS | {"&", "|", "^"}
 # Functions that GLSL lets mix vectors and scalars.
 MIXING = frozenset(("min", "max", "clamp", "mix", "step", "smoothstep"))
 MIXED = BITWISE | {"&&", "||", "^^"}
+# What a program calls, or may call once it is written: a variable of such a name would hide it.
+BUILTINS = frozenset((*LIKE_GIVEN, *OF_VECTORS, *BITS, *COMPARISONS, FETCH, "cross", "any", "all", "not", "transpose"))
 
 
 class Writer:
@@ -53,13 +61,14 @@ class Writer:
 
     Args:
         prefix: what the program's names begin with.
-        sizes: of each table its width and its channels.
+        sizes: of each table its height, its width and its channels.
 
     Attributes:
         head: what stands before all else.
         has_tables: whether tables are variables of the program.
         splats: whether a function of vectors takes no scalar in place of one.
-        has_rich_parameters: whether functions take and give arrays, and may assign to what they are given.
+        has_rich_parameters: whether functions take and give arrays, and change what they are given.
+        assigns_to_parts: whether several components of a vector are assigned to at once.
         kinds: types' names where they are not GLSL's.
         functions: built-in functions' names where they are not GLSL's.
         reserved: words that no variable may be called.
@@ -73,15 +82,26 @@ class Writer:
     has_tables = True
     splats = False
     has_rich_parameters = False
+    assigns_to_parts = True
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int]]):
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
         self._prefix, self._sizes = prefix, sizes
         self._renamed: dict[str, str] = {}
         self._assigned: set[str] = set()
+        # Names that no variable of a function may have, and all that it has.
+        self._taken: set[str] = set()
+        self._used: set[str] = set()
 
     def program(self, program: Program) -> str:
-        """All of it."""
-        parts = self._head(program)
+        """All of it. Raises TranslationError."""
+        everything = [*program.constants, *program.tables, *program.functions]
+        self._taken = {one.name for one in everything} | self.reserved | BUILTINS
+        self._taken |= {*self.kinds.values(), *self.functions.values()}
+        with one_error_type():
+            return self._program(program)
+
+    def _program(self, program: Program) -> str:
+        parts = [*self._head(program), *map(self._struct, program.structs)]
         if self.has_tables:
             parts += map(self._table, sorted(program.tables, key=lambda table: table.name))
         if program.constants:
@@ -91,6 +111,9 @@ class Writer:
 
     def _head(self, program: Program) -> list[str]:  # noqa: ARG002 (C's depends on it)
         return [self.head] if self.head else []
+
+    def _struct(self, struct: Struct) -> str:
+        raise TranslationError(f"{struct.name} is a structure, which is not written in other languages")
 
     def _table(self, table: Table) -> str:
         return f"uniform sampler2D {table.name};"
@@ -104,13 +127,35 @@ class Writer:
     # Functions and statements.
 
     def _function(self, function: Function) -> str:
-        self._assigned = {name for node in inside(function.body) if isinstance(node, Assign) for name in _base(node)}
+        self._assigned = {base_of(node) for node in inside(function.body) if isinstance(node, Assign)}
         if not self.has_rich_parameters:
             self._check_parameters(function)
         local = [node.name for node in inside(function.body) if isinstance(node, Declare)]
-        self._renamed = {n: f"{n}_" for n in (*local, *(p.name for p in function.parameters)) if n in self.reserved}
-        body = self._statements(function.body, INDENT)
+        own = [*local, *(p.name for p in function.parameters)]
+        self._used = {*own, *self._taken}
+        self._renamed = {}
+        for name in (name for name in dict.fromkeys(own) if name in self._taken):
+            self._renamed[name] = self._unused(f"{name}_")
+        body = self._body(function)
         return f"{self._comments(function, '')}{self._signature(function)} {{\n{body}}}"
+
+    def _body(self, function: Function) -> str:
+        return self._statements(function.body, INDENT)
+
+    def _global_name(self, name: str) -> str:
+        """A name for something of the writer's own, which nothing else of the program has."""
+        found = f"{self._prefix}_{name}"
+        while found in self._taken:
+            found += "_"
+        self._taken.add(found)
+        return found
+
+    def _unused(self, name: str) -> str:
+        """A name that begins like this one and that the function does not have yet."""
+        ways = (name, *(f"{name.rstrip('_')}_{number}" for number in range(2, len(self._used) + 3)))
+        found = next(one for one in ways if one not in self._used)
+        self._used.add(found)
+        return found
 
     def _check_parameters(self, function: Function) -> None:
         """Raises TranslationError for what not every language has."""
@@ -118,8 +163,6 @@ class Writer:
             raise TranslationError(f"{function.name} takes or gives an array; write its numbers one by one")
         if any(p.is_changed for p in function.parameters):
             raise TranslationError(f"{function.name} changes what it is given; give back what it makes")
-        if self._assigned & {p.name for p in function.parameters}:
-            raise TranslationError(f"{function.name} assigns to a parameter; assign to a variable of its own")
 
     def _signature(self, function: Function) -> str:
         parameters = ", ".join(f"{self._kind(p.kind)} {self._name(p.name)}" for p in function.parameters)
@@ -129,7 +172,39 @@ class Writer:
         return "".join(f"{indent}// {line}\n" for line in statement.above)
 
     def _statements(self, statements: list[Statement], indent: str) -> str:
-        return "".join(self._statement(each, indent) for each in statements)
+        return "".join(self._statement(self._plainer(each), indent) for each in statements)
+
+    def _plainer(self, statement: Statement) -> Statement:
+        """A statement without what the language lacks."""
+        if self.assigns_to_parts:
+            return statement
+        match statement:
+            case Assign(Swizzle(kind, _, names) as target, mark, value) if len(names) > 1:
+                return self._part_by_part(statement, target, value if mark == "=" else _applied(kind, statement))
+            case For(_, _, Assign(Swizzle(_, _, names)), _) if len(names) > 1:
+                return self._loop_without_head(statement)
+        return statement
+
+    def _part_by_part(self, statement: Assign, target: Swizzle, value: Expression) -> Statement:
+        """n.xy = VALUE, by way of a variable: the value may have the components that change."""
+        name, scalar = self._unused("parts"), scalar_of(target.kind)
+        parts: list[Statement] = [Declare(target.kind, name, value)]
+        for to, at in zip(target.fields, FIELDS, strict=False):
+            made = Swizzle(scalar, Name(target.kind, name), at)
+            parts.append(Assign(Swizzle(scalar, target.value, to), "=", made))
+        return Block(parts, above=statement.above, behind=statement.behind)
+
+    def _loop_without_head(self, loop: For) -> Statement:
+        """A loop whose condition or step takes more than an expression; `continue` goes on with the step."""
+        name = self._unused("is_first")
+        first = Name("bool", name)
+        self._assigned.add(name)
+        step = [If(first, [Assign(first, "=", Literal("bool", "false"))], [loop.step])] if loop.step else []
+        ends = If(Unary("bool", "!", loop.condition), [Leave("break")], [])
+        body = While(Literal("bool", "true"), [*step, ends, *loop.body])
+        begin = [loop.start] if loop.start else []
+        flag = [Declare("bool", name, Literal("bool", "true"))] if step else []
+        return Block([*begin, *flag, body], above=loop.above)
 
     def _statement(self, statement: Statement, indent: str) -> str:
         behind = f"  // {statement.behind}" if statement.behind else ""
@@ -137,15 +212,17 @@ class Writer:
         match statement:
             case If():
                 return above + self._if(statement, indent)
-            case For():
-                parts = self._plain(statement.start), self._text(statement.condition), self._plain(statement.step)
-                return above + self._block(f"for ({'; '.join(parts)})", statement.body, indent)
+            case For(start, condition, step, body):
+                ends = [self._plain(one) if one else "" for one in (start, step)]
+                return above + self._block(f"for ({ends[0]}; {self._text(condition)}; {ends[1]})", body, indent)
+            case Block(body):
+                return above + self._block("", body, indent)
             case While():
                 return above + self._block(f"while ({self._text(statement.condition)})", statement.body, indent)
         return f"{above}{indent}{self._plain(statement)};{behind}\n"
 
     def _block(self, head: str, body: list[Statement], indent: str) -> str:
-        return f"{indent}{head} {{\n{self._statements(body, indent + INDENT)}{indent}}}\n"
+        return f"{indent}{head}{' ' * bool(head)}{{\n{self._statements(body, indent + INDENT)}{indent}}}\n"
 
     def _if(self, statement: If, indent: str) -> str:
         text = self._block(f"if ({self._text(statement.condition)})", statement.chosen, indent)
@@ -217,6 +294,8 @@ class Writer:
                 return f"{self._text(inner, PRIMARY)}.{names}", PRIMARY
             case Index(_, inner, at):
                 return f"{self._text(inner, PRIMARY)}[{self._text(at)}]", PRIMARY
+            case Member(_, inner, name):
+                return f"{self._text(inner, PRIMARY)}.{name}", PRIMARY
             case Elements():
                 return self._elements(value), PRIMARY
         raise TranslationError(f"a {type(value).__name__} cannot be written")
@@ -261,11 +340,18 @@ class Writer:
 
     def _listed(self, value: Elements) -> str:
         """An array's elements, in lines of their own where they are many."""
-        texts = list(map(self._text, value.values))
+        return self._rows(list(map(self._text, value.values)))
+
+    def _rows(self, texts: list[str]) -> str:
         if len(texts) <= ELEMENTS:
             return ", ".join(texts)
         rows = (", ".join(texts[at : at + ELEMENTS]) for at in range(0, len(texts), ELEMENTS))
         return "\n" + ",\n".join(INDENT + row for row in rows)
+
+
+def _applied(kind: str, assigned: Assign) -> Expression:
+    """What x OPERATOR= VALUE assigns."""
+    return Binary(kind, assigned.operator[:-1], assigned.target, assigned.value)
 
 
 def _splat(value: Expression, kind: str) -> Expression:
@@ -284,12 +370,12 @@ def words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-def _base(assigned: Assign) -> list[str]:
-    """The variable that an assignment changes."""
+def base_of(assigned: Assign) -> str:
+    """The variable that an assignment changes; empty where it changes none."""
     target = assigned.target
-    while isinstance(target, Swizzle | Index):
+    while isinstance(target, Swizzle | Index | Member):
         target = target.value
-    return [target.name] if isinstance(target, Name) else []
+    return target.name if isinstance(target, Name) else ""
 
 
 def shortest(text: str) -> str:

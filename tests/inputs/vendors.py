@@ -129,7 +129,10 @@ TERASCALE = Vendor(
     packings=EVERY_PACKING[::4],
 )
 VENDORS = (INTEL, NVIDIA, TERASCALE)
+
+
 # Some rows, compiled in the quick tests, or all of them.
-EVERY_OR_SOME = pytest.mark.parametrize(
-    "is_every", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["some", "every"]
-)
+def every_or_some(test: str) -> pytest.MarkDecorator:
+    """A mark for a test of this name: in every run it has some rows, and in the nightly all of them."""
+    every = pytest.param(True, marks=pytest.mark.nightly(test))
+    return pytest.mark.parametrize("is_every", [False, every], ids=["some", "every"])

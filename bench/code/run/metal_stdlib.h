@@ -116,6 +116,16 @@ inline float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z;
 inline float dot(float4 a, float4 b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
 inline float3 cross(float3 a, float3 b) { return a.yzx * b.zxy - a.zxy * b.yzx; }
 template <class V> inline float length(V v) { return __builtin_sqrtf(dot(v, v)); }
+template <class V> inline float distance(V a, V b) { return length(a - b); }
+template <class V> inline V reflect(V incident, V normal) { return incident - 2.0f * dot(normal, incident) * normal; }
+inline float smoothstep(float low, float high, float a) {
+    float share = saturate((a - low) / (high - low));
+    return share * share * (3.0f - 2.0f * share);
+}
+template <class V> inline V smoothstep(V low, V high, V a) {
+    for (int i = 0; i < sized<V>::count; ++i) a[i] = smoothstep((float)low[i], (float)high[i], (float)a[i]);
+    return a;
+}
 template <class V> inline V normalize(V v) { return v * (1.0f / __builtin_sqrtf(dot(v, v))); }
 
 // The second where the condition holds.
@@ -184,13 +194,44 @@ template <class T, access A = access::sample> struct texture2d {
 };
 
 // Of columns, as Metal's are.
-struct float3x3 {
-    float3 columns[3];
-    float3x3(float3 x, float3 y, float3 z) : columns{x, y, z} {}
+template <bool IS_TRUE> struct only_if {};
+template <> struct only_if<true> { using type = void; };
+template <class V, int N> struct square {
+    V columns[N];
+    template <class... C, class = typename only_if<sizeof...(C) == N>::type> square(C... given) : columns{given...} {}
+    V &operator[](int i) { return columns[i]; }
+    V operator[](int i) const { return columns[i]; }
 };
-inline float3 operator*(float3x3 m, float3 v) { return m.columns[0] * v.x + m.columns[1] * v.y + m.columns[2] * v.z; }
-inline float3 operator*(float3 v, float3x3 m) {
-    return float3{dot(v, m.columns[0]), dot(v, m.columns[1]), dot(v, m.columns[2])};
+using float2x2 = square<float2, 2>; using float3x3 = square<float3, 3>; using float4x4 = square<float4, 4>;
+template <class V, int N> inline V operator*(square<V, N> m, V v) {
+    V sum = m[0] * v[0];
+    for (int i = 1; i < N; ++i) sum = sum + m[i] * v[i];
+    return sum;
+}
+template <class V, int N> inline V operator*(V v, square<V, N> m) {
+    V made;
+    for (int i = 0; i < N; ++i) made[i] = dot(v, m[i]);
+    return made;
+}
+template <class V, int N> inline square<V, N> operator*(square<V, N> a, square<V, N> b) {
+    for (int i = 0; i < N; ++i) b[i] = a * b[i];
+    return b;
+}
+template <class V, int N> inline square<V, N> operator*(square<V, N> m, float s) {
+    for (int i = 0; i < N; ++i) m[i] = m[i] * s;
+    return m;
+}
+template <class V, int N> inline square<V, N> operator*(float s, square<V, N> m) { return m * s; }
+template <class V, int N> inline square<V, N> operator+(square<V, N> a, square<V, N> b) {
+    for (int i = 0; i < N; ++i) a[i] = a[i] + b[i];
+    return a;
+}
+template <class V, int N> inline square<V, N> operator-(square<V, N> a, square<V, N> b) { return a + b * -1.0f; }
+template <class V, int N> inline square<V, N> transpose(square<V, N> m) {
+    square<V, N> made = m;
+    for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j) made[i][j] = m[j][i];
+    return made;
 }
 }  // namespace metal
 

@@ -5,7 +5,6 @@ Where Apple's compiler `metal` is on the path as well, it checks the file's synt
 
 from __future__ import annotations
 
-import ctypes
 import re
 import shutil
 from collections.abc import Iterator, Mapping
@@ -15,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ....gbuffer.gl.shader import read_shader
-from .c import EXACT, called, loaded, macros
+from .c import EXACT, LIMITS, MAIN, called, compiled, macros
 from .interface import Interface, Run, Runner
 from .sources import compile_with, first_line, folder, required
 
@@ -35,7 +34,7 @@ def compiler() -> str:
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file as a library. Raises MissingError, ShaderError."""
+    """The file as a program. Raises MissingError, ShaderError."""
     clang, text = compiler(), read_shader(path)
     if metal := shutil.which(METAL):
         compile_with([metal, "-x", "metal", "-fsyntax-only", str(path)])
@@ -43,11 +42,10 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
         (place / "code.metal").write_text(text, encoding="utf-8")
         (place / "metal_stdlib").write_text(f'#include "{LIBRARY}"\n', encoding="utf-8")
         defines = macros(interface.defines | _tables(text, interface))
-        command = [clang, *OPTIONS, "-I", str(place), *defines, str(WRAPPER)]
-        found = loaded(command, place / "code.so", {str(place / "code.metal"): str(path)})
-        kept = list(_bound(found, interface.tables))
-        yield called(found, interface)
-        del kept
+        defines += macros({**LIMITS, "RUN_TABLE_COUNT": len(interface.tables), "_GNU_SOURCE": 1})
+        command = [clang, *OPTIONS, "-I", str(place), *defines, str(WRAPPER), str(MAIN)]
+        _write(interface.tables, place)
+        yield called(compiled(command, place / "code", {str(place / "code.metal"): str(path)}), path, interface)
 
 
 def _tables(text: str, interface: Interface) -> dict[str, object]:
@@ -67,15 +65,14 @@ def _taken(text: str, function: str, tables: list[str]) -> str:
     return "".join(f", {name}" for name in tables if name in words)
 
 
-def _bound(library: ctypes.CDLL, tables: Mapping[str, np.ndarray]) -> Iterator[np.ndarray]:
-    """The tables as the library reads them: they must outlive it."""
-    library.run_set_table.argtypes = [ctypes.c_size_t, ctypes.c_void_p, ctypes.c_uint, ctypes.c_uint]
+def _write(tables: Mapping[str, np.ndarray], place: Path) -> None:
+    """The tables as the program reads them, in the order of their names."""
     for at, name in enumerate(sorted(tables)):
         height, width, channels = tables[name].shape
-        texels = np.zeros((height, width, 4), np.float32)
+        texels = np.zeros((height, width, 4), "<f4")
         texels[..., :channels] = tables[name]
-        library.run_set_table(at, texels.ctypes.data, width, height)
-        yield texels
+        texels.tofile(place / f"table{at}.bin")
+        np.array([width, height], "<u4").tofile(place / f"table{at}.size")
 
 
 def how() -> str:

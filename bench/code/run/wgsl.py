@@ -12,14 +12,13 @@ import numpy as np
 
 from ....encodings.codecs.files import file_text
 from ....gbuffer.gl.shader import ShaderError
-from ...machine.vulkan import adapters
+from ...machine.vulkan import NO_DRIVER, adapters
 from ...output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 
 WRAPPER = Path(__file__).with_suffix(".j2")
 MAIN, GROUP = "run_main", 64
 INSTALL = "pip install wgpu"
-DRIVER = "Debian: apt-get install mesa-vulkan-drivers"
 ROW = 16  # bytes: four numbers
 
 
@@ -31,7 +30,7 @@ def device() -> Any:
     except ImportError as error:
         raise MissingError(f"WGSL needs wgpu ({error}); {INSTALL}") from error
     if not found:
-        raise MissingError(f"WGSL needs a Vulkan driver; install one ({DRIVER})")
+        raise MissingError(NO_DRIVER)
     # Tables may be larger than what every device has.
     limits = found[0].limits
     asked = ("max-buffer-size", "max-storage-buffer-binding-size", "max-texture-dimension-2d")

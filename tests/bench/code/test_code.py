@@ -339,3 +339,21 @@ def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
     assert seen == ["octahedral/rg8", "xy/rg8"]
     texts = [path.read_text() for path in (tmp_path / "codec").iterdir()]
     assert len(texts) == 6 and all("Error on " in text for text in texts)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(("languages", "wrong_in"), [("msl", "c"), ("glsl,msl", "glsl")])
+def test_what_is_wrong_in_one_language_is_written_in_none(run, tmp_path, monkeypatch, languages, wrong_in):
+    """All are written from one tree; Metal alone has C as its witness."""
+    seen, own = [], code_command.verified
+
+    def verified(code):
+        seen.append(code.language)
+        return own(code) | (
+            {"verdict": code_command.DIFFERS, "says": "texels differ"} if code.language == wrong_in else {}
+        )
+
+    monkeypatch.setattr(code_command, "verified", verified)
+    status, out, err = run("code", "octahedral", "--storage", "rg8", "--to", languages, "-o", str(tmp_path / "made"))
+    assert (status, out) == (1, "") and "msl: its translation is seen to be wrong in" in err, err
+    assert not list((tmp_path / "made").glob("*")) and wrong_in in seen

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from vendors import EVERY_OR_SOME, INTEL
+from vendors import INTEL, every_or_some
 
 from normalbench.bench.isa import intel_disassembly, null_device
 from normalbench.bench.isa.isa import Compiled, Kernel
@@ -243,7 +243,7 @@ def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
 OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
 
 
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_intel.py::test_known_counts_of_intels_compilers")
 @pytest.mark.slow
 def test_known_counts_of_intels_compilers(vendor_rows, is_every):
     rows = vendor_rows(INTEL, is_every)

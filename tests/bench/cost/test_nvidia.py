@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vendors import EVERY_OR_SOME, NVIDIA
+from vendors import NVIDIA, every_or_some
 
 from normalbench.bench.isa import isa
 from normalbench.bench.isa.compiler import DriverError
@@ -362,7 +362,7 @@ def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
 OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, "sm_120": 14}
 
 
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_nvidia.py::test_known_counts_of_nvidias_compiler")
 def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
     """The order of cheap encodings is a Radeon's."""
     rows = vendor_rows(NVIDIA, is_every)
@@ -377,7 +377,7 @@ def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
         assert order == [0, 8, 10], name
 
 
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_nvidia.py::test_an_instruction_of_nvidias_is_16_bytes_and_none_spills")
 def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every):
     for row in vendor_rows(NVIDIA, is_every):
         assert (row["code_bytes"], row["spills"]) == (16 * row["instructions"], 0), row

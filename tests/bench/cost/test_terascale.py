@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from null_devices import NO_DEVICE, tried
-from vendors import EVERY_OR_SOME, TERASCALE
+from vendors import TERASCALE, every_or_some
 
 from normalbench.bench.isa import isa, null_device
 from normalbench.bench.isa.terascale import disassembly, driver
@@ -77,7 +77,7 @@ def test_the_chips_are_the_articles():
 BUNDLES = {"rv670": (5, 14, 11), "cypress": (6, 16, 12)}
 
 
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_terascale.py::test_known_counts")
 @pytest.mark.slow
 def test_known_counts(vendor_rows, is_every):
     """Per-pixel view is cheaper than spherical, as in the article: bundles compute vectors at once, as ps_3_0 does; the
@@ -94,7 +94,7 @@ def test_known_counts(vendor_rows, is_every):
         assert (*counts, found["spherical", "decode", chip]) == BUNDLES[chip], chip
 
 
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_terascale.py::test_a_bundle_has_at_most_five_operations")
 def test_a_bundle_has_at_most_five_operations(vendor_rows, is_every):
     for row in vendor_rows(TERASCALE, is_every):
         assert row["t_slots"] <= row["vliw_slots"] <= 5 * row["issue_slots"] + 5, row

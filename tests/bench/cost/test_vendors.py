@@ -4,7 +4,7 @@ own. Figures of one vendor stand in the vendor's file."""
 import json
 
 import pytest
-from vendors import EVERY_OR_SOME, INTEL, NVIDIA, TERASCALE, VENDORS
+from vendors import INTEL, NVIDIA, TERASCALE, VENDORS, every_or_some
 
 from normalbench.bench.isa import isa
 from normalbench.bench.isa import process as isa_process
@@ -14,7 +14,7 @@ named = pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.nam
 
 
 @named
-@EVERY_OR_SOME
+@every_or_some("bench/cost/test_vendors.py::test_doing_nothing_costs_nothing")
 def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every):
     rows = [row for row in vendor_rows(vendor, is_every) if row["encoding"] == "xyz"]
     assert len(rows) == 2 * len(vendor.stages) * len(vendor.families(is_every))
@@ -23,7 +23,9 @@ def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every):
 
 
 @named
-@EVERY_OR_SOME
+@every_or_some(
+    "bench/cost/test_vendors.py::test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count"
+)
 def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every):
     rows = vendor_rows(vendor, is_every)
     shaders = sum(map(len, vendor.shaders(is_every)))

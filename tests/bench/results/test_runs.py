@@ -267,7 +267,7 @@ def lines_of(folder: Path) -> list[str]:
     return path.read_text().split("\n")[:-1] if path.exists() else []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/results/test_runs.py::test_a_line_that_was_cut_off_is_measured_again_and_no_other")
 @pytest.mark.usefixtures("gl")
 def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
     """SIGKILL at random moments, four of them: what was finished stays byte for byte, and the table is the same."""

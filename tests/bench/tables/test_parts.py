@@ -171,7 +171,7 @@ def test_no_normal_of_2_to_the_40_comes_twice():
     assert not np.array_equal(first, later) and np.array_equal(first, np.asarray(sphere(2**33).chunk(CHUNK).n.z))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly("bench/tables/test_parts.py::test_a_worker_measures_parts_by_their_names")
 def test_workers_share_a_row(run):
     """2^30 normals and some are two parts: two processes give the rows of one."""
     arguments = ["quality", "--encoding", "xyz", "--storage", "rgba8", "--count", str(2**30 + 5 * CHUNK)]

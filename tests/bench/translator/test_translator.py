@@ -132,6 +132,12 @@ def test_what_cannot_be_read_is_said_with_line_and_column(source, said):
     assert "\n" not in str(error.value)
 
 
+def test_a_power_that_no_float_holds_stays_a_call():
+    """Of numbers that are written out, 2^x is a number where a float has it."""
+    text = written(GlslWriter, SOURCE.replace("n.xy * (", "vec2(exp2(2000.0), exp2(3.0)) * ("))
+    assert "vec2(exp2(2000.0), 8.0)" in text
+
+
 def test_macros_that_stand_for_millions_of_words_are_refused():
     """A bomb of macros costs no memory: 2^30 words would."""
     bomb = "#define A0 1.0 +\n" + "".join(f"#define A{n} A{n - 1} A{n - 1}\n" for n in range(1, 31))
@@ -170,9 +176,16 @@ def test_wgsl_is_read_and_said_in_glsl():
     ("source", "said"),
     [
         ("fn f(x: f32) -> f32 { return y; }", "1:30: y is not known here"),
-        ("@group(0) @binding(0) var t: texture_2d<f32>;", "only functions, constants and aliases are read"),
+        ("@group(0) @binding(0) var t: texture_2d<f32>;", "only functions, constants, structures and aliases are read"),
         ("fn f(x: vec5f) -> f32 { return 1.0; }", "1:9: vec5f is not a type"),
-        ("fn f(x: f32) -> f32 { switch x { default {} } }", "switch"),
+        (
+            "fn f(x: i32) -> i32 { switch x { case 1 { if x > 0 { break; } } default {} } return x; }",
+            "a switch with break",
+        ),
+        (
+            "fn f(x: i32) -> i32 { loop { if x > 0 { continue; } continuing {} } }",
+            "a loop with continue and continuing",
+        ),
         ("fn f(x: f32) -> f32 { return x", "; expected"),
     ],
 )
