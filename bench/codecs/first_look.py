@@ -5,7 +5,8 @@
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
 what comes back, `wrong`, a list of what is likely wrong, and `biased`, where codes of another language than GLSL fill
-[0, 1]. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
+[0, 1]. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
+`error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from ..machine import children
 from ..output.errors import MissingError, UsageError
 from .diagnoses import Trip, diagnoses, guessed, is_biased
 from .names import check_twin
+from .second_look import second_look
 from .signatures import of_hlsl
 from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
 
@@ -63,14 +65,19 @@ def first_look(path: Path) -> dict[str, Any]:
     given = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
     try:
         encoding, gl = read_encoding(path, NOT_ASKED), device()
+        broken = _ended(gl, encoding, given, view)
+        other = {} if broken or not is_translated(path) else _second_look(path, gl, encoding)
+        if "error" in other:
+            return other
+        by = other.get("by", "")
+        encoding = read_encoding(path, NOT_ASKED, by=by) if by else encoding
         codes, _ = exact_values(gl, encoding, given, view, given)
         biased = {"biased": True} if is_translated(path) and is_biased(codes[:, : encoding.components]) else {}
         if biased:
-            encoding = read_encoding(path, NOT_ASKED, is_biased=True)
+            encoding = read_encoding(path, NOT_ASKED, is_biased=True, by=by)
             codes, _ = exact_values(gl, encoding, given, view, given)
         # As a storage clips them.
         _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
-        broken = _ended(gl, encoding, given, view)
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
     except UsageError as error:
@@ -78,7 +85,11 @@ def first_look(path: Path) -> dict[str, Any]:
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
     judged = broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
-    return judged | biased
+    return judged | biased | other
+
+
+def _second_look(path: Path, gl: Device, encoding: Encoding) -> dict[str, Any]:
+    return second_look(path, gl, encoding, directions(), lambda by: read_encoding(path, NOT_ASKED, by=by))
 
 
 def _of_compiler(path: Path, said: str) -> str:

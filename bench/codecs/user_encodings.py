@@ -166,19 +166,20 @@ def _what_names(encoding: Encoding) -> str:
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
-def read_encoding(path: Path, fault: str = "", is_biased: bool = False) -> Encoding:
+def read_encoding(path: Path, fault: str = "", is_biased: bool = False, by: str = "") -> Encoding:
     """An encoding from its file, and from the Python file of the same name where there is one.
 
     Args:
         path: of the file, with the names of its functions behind it where they are needed: see `languages/words.py`.
         fault: why the Python file is not to be used; what it would measure says so.
         is_biased: whether its codes lie in [0, 1]; of another language than GLSL alone.
+        by: the language whose compiler reads it, if not its own.
 
     Raises:
         UsageError: it cannot be read, or does not define its two functions.
         MissingError: the compiler of its language is not there.
     """
-    text = _text(path, is_biased)
+    text = _text(path, is_biased, by)
     encode, decode = _lacking(fault) if fault else _twin(twin_of(path))
     return Encoding(
         name=text.name,
@@ -205,10 +206,12 @@ class _Text(NamedTuple):
     functions: str = ""
 
 
-def _text(path: Path, is_biased: bool) -> _Text:
+def _text(path: Path, is_biased: bool, by: str) -> _Text:
     if is_translated(path):
-        made = translated(path)
-        return _Text(made.name, made.components, made.glsl(is_biased), made.prefix)
+        made = translated(path, by)
+        # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
+        name = called(file_of(path).name) if made.name in ENCODINGS else made.name
+        return _Text(name, made.components, made.glsl(is_biased), made.prefix)
     try:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
@@ -290,7 +293,8 @@ class Looks:
 
     def encoding(self, path: Path) -> Encoding:
         """The encoding that was looked at."""
-        return replace(read_encoding(path, self.fault, self.is_biased), domain=self.domain)
+        read = read_encoding(path, self.fault, self.is_biased, self.glsl.get("by", ""))
+        return replace(read, domain=self.domain)
 
     @property
     def is_biased(self) -> bool:
@@ -312,7 +316,7 @@ class Looks:
         """What was guessed of it."""
         held = MADE_FOR.get(self.domain)
         made_for = [f"taken to be made for {held} alone: no others come back"] if held else []
-        return [*self.said, *([BIASED] if self.is_biased else []), *made_for]
+        return [*self.said, *self.glsl.get("notes", []), *([BIASED] if self.is_biased else []), *made_for]
 
 
 def _look(path: Path) -> Looks:

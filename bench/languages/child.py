@@ -1,9 +1,9 @@
 """A user's file translated, in a process that may hang or die.
 
-    python -m normalbench.bench.languages.child FOLDER FILE [ENCODE DECODE]
+    python -m normalbench.bench.languages.child FOLDER FILE LANGUAGE [ENCODE DECODE]
 
-FOLDER is an empty one to work in. Prints a line of JSON: `error`, what is wrong with the file; `missing`, what to
-install; else what `Translated` has.
+FOLDER is an empty one to work in. LANGUAGE is the one whose compiler reads the file; empty for its own. Prints a line
+of JSON: `error`, what is wrong with the file; `missing`, what to install; else what `Translated` has.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from .tools import ToolError
 IN_32_BITS = "half and min16float are computed in 32 bits; --arithmetic half computes in 16"
 
 
-def answer(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict[str, Any]:
+def answer(path: Path, asked: tuple[str, str] | None, folder: Path, by: str = "") -> dict[str, Any]:
     """What there is to say of a file; see above."""
     try:
-        return _translated(path, asked, folder)
+        return _translated(path, asked, folder, by)
     except (UsageError, TranslationError) as error:
         return {"error": str(error)}
     except (NoPairError, NotPlainError, ToolError) as error:
@@ -39,8 +39,8 @@ def answer(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict[str,
         return {"missing": f"{path}: {error}"}
 
 
-def _translated(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict[str, Any]:
-    source, language = Source(path), language_of(path)
+def _translated(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
+    source, language = Source(path), language_of(path, by)
     pair = pair_of(language.functions(language.preprocessed(source, folder)), asked, path.name)
     name = _name(path, pair, asked)
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
@@ -50,6 +50,7 @@ def _translated(path: Path, asked: tuple[str, str] | None, folder: Path) -> dict
         "components": pair.components,
         "notes": [IN_32_BITS] if has_halves(source) else [],
         "texts": [_text(source, language, pair, prefix, biased, folder) for biased in (0, 1)],
+        "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
     }
 
 
@@ -72,5 +73,5 @@ def _text(source: Source, language: Language, pair: Pair, prefix: str, biased: i
 
 if __name__ == "__main__":
     children.limit_this_process()
-    work, file, *functions = sys.argv[1:]
-    print(json.dumps(answer(Path(file), (functions[0], functions[1]) if functions else None, Path(work))))
+    work, file, language, *functions = sys.argv[1:]
+    print(json.dumps(answer(Path(file), (functions[0], functions[1]) if functions else None, Path(work), language)))

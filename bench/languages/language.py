@@ -40,9 +40,18 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
 )
 
 
-def language_of(path: Path) -> Language:
-    """The language of a file, by its ending."""
-    return BY_NAME[TRANSLATED[path.suffix.lower()]]
+# Languages that the compiler of another one reads as well.
+ALSO_READ_BY: Mapping[str, str] = MappingProxyType({"HLSL": "Slang"})
+
+
+def language_of(path: Path, by: str = "") -> Language:
+    """The language of a file by its ending, or by the name of the one whose compiler is to read it."""
+    return BY_NAME[by or TRANSLATED[path.suffix.lower()]]
+
+
+def also_read_by(path: Path) -> str:
+    """Another language whose compiler reads a file; empty where there is none."""
+    return ALSO_READ_BY.get(TRANSLATED[path.suffix.lower()], "")
 
 
 def require_language(name: str) -> None:

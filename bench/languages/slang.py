@@ -47,9 +47,14 @@ def _compiled(source: Source, text: str, options: list[str], folder: Path) -> st
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     words = ["-enable-machine-readable-diagnostics", *defined, *options, GIVEN]
     status, out, err = tools.run_apart(tools.SLANG, words, folder)
-    if status:
-        raise TranslationError(_explained(source, err, status))
+    check(source, err, status)
     return out
+
+
+def check(source: Source, said: str, status: int) -> None:
+    """Raises TranslationError where Slang's compiler ended with a status and said this."""
+    if status:
+        raise TranslationError(_explained(source, said, status))
 
 
 def _explained(source: Source, said: str, status: int) -> str:

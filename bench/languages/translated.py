@@ -13,6 +13,7 @@ from typing import Any
 from ..machine import children
 from ..output import cache as kept
 from ..output.errors import MissingError, UsageError
+from ..translator import tree
 from . import tools
 from .language import language_of
 from .source import Source
@@ -33,6 +34,7 @@ class Translated:
         components: how many numbers its code has.
         notes: what is to be said of it, lines.
         texts: its GLSL; and its GLSL where codes in [0, 1] become [-1, 1] on their way out, and come back.
+        functions: encoder and decoder: the name of each in the user's file, and whether it takes the view.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Translated:
     components: int
     notes: list[str]
     texts: list[str]
+    functions: list[tuple[str, bool]]
 
     def glsl(self, is_biased: bool) -> Path:
         """A file with one of the texts, that other processes find as well."""
@@ -47,8 +50,11 @@ class Translated:
         return _file(f"{self.prefix[:40]}-{kept.key_of(text)[:16]}{TEXTS[is_biased]}.glsl", text)
 
 
-def translated(word: str | Path) -> Translated:
+def translated(word: str | Path, by: str = "") -> Translated:
     """The encoder that a word names: FILE, or FILE:ENCODE:DECODE.
+
+    Args:
+        by: another language whose compiler reads the file; empty for its own.
 
     Raises:
         UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
@@ -56,27 +62,28 @@ def translated(word: str | Path) -> Translated:
     """
     path, asked = file_of(word), functions_of(word)
     source = Source(path)
-    key = kept.key_of("translated", source.text, str(path), *(asked or ()), *_stamps(path), _own())
+    key = kept.key_of("translated", source.text, str(path), *(asked or ()), by, *_stamps(path, by), own())
     found = _whole(kept.read(key))
     if found is None:
-        found = _whole(made := _by_child(path, asked))
+        found = _whole(made := _by_child(path, asked, by))
         if found is None:
             raise UsageError(f"{path}: its translation ended without a result")
         kept.write(key, made)
     return found
 
 
-def _stamps(path: Path) -> list[str]:
+def _stamps(path: Path, by: str) -> list[str]:
     try:
-        return [tools.stamp(tool) for tool in language_of(path).tools]
+        return [tools.stamp(tool) for tool in language_of(path, by).tools]
     except MissingError as error:
         raise MissingError(f"{path}: {error}") from error
 
 
 @cache
-def _own() -> str:
-    """A hash of this folder, which makes the translation."""
-    files = sorted(file for file in Path(__file__).parent.iterdir() if file.is_file())
+def own() -> str:
+    """A hash of what makes the translation: this folder, and the reader and the writer of WGSL."""
+    folders = Path(__file__).parent, Path(tree.__file__).parent
+    files = sorted(file for folder in folders for file in folder.iterdir() if file.is_file())
     return kept.key_of(*(file.read_bytes() for file in files))
 
 
@@ -88,9 +95,9 @@ def _whole(value: dict[str, Any] | None) -> Translated | None:
         return None
 
 
-def _by_child(path: Path, asked: tuple[str, str] | None) -> dict[str, Any]:
+def _by_child(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
-        command = children.python("normalbench.bench.languages.child", folder, str(path), *(asked or ()))
+        command = children.python("normalbench.bench.languages.child", folder, str(path), by, *(asked or ()))
         try:
             done = children.finished(command, TIME_LIMIT)
         except subprocess.TimeoutExpired as error:

@@ -88,7 +88,10 @@ WRONG = {
         MINE.replace("let t =", "let k: i32 = 2; let t = k *"),
         r"\.wgsl:13:\d+: (int|float) where (int|float) is expected",
     ),
-    "binding": ("@group(0) @binding(0) var t: texture_2d<f32>;" + MINE, "only functions, constants and aliases"),
+    "binding": (
+        "@group(0) @binding(0) var t: texture_2d<f32>;" + MINE,
+        "only functions, constants, structures and aliases",
+    ),
     "endless": (MINE.replace("let p =", "loop { } let p ="), "do not end|did not end|killed|must|declaration"),
     "nan": (MINE.replace("return p;", "return p * sqrt(-1.0 - n.z * n.z);"), "no number"),
     "deep": (MINE.replace("return p;", f"return {'(' * 3000}p{')' * 3000};"), "nested more than"),
