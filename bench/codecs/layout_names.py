@@ -14,7 +14,7 @@ from ...encodings.codecs.variants import MARK, TABLE
 from ...gbuffer.layouts.layout import Layout, read_layout
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.layouts.words import LayoutError
-from ..languages.words import files_in, lacks_a_function, names_an_encoder
+from ..languages.words import file_of, files_in, lacks_a_function, names_an_encoder
 from ..output.errors import MissingError, UsageError, pick
 from .names import check_twin
 from .user_encodings import encodings_named
@@ -79,19 +79,20 @@ def _from_here(path: Path, word: str) -> str:
         LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
     """
     if names_an_encoder(word) or lacks_a_function(word):
-        _check_inside(word)
+        _check_inside(path.parent, str(file_of(word)))
         return str(path.parent / word)
     table = _TABLE_FILE.search(word)
     if not table:
         return word
-    _check_inside(table[0])
+    _check_inside(path.parent, table[0])
     return f"{word[: table.start()]}{path.parent / table[0]}{word[table.end() :]}"
 
 
-def _check_inside(file: str) -> None:
-    # As it is written: a link in the folder may lead out of it.
+def _check_inside(folder: Path, file: str) -> None:
+    """As for what an encoder includes: neither its name nor a link leads out of the folder."""
     place = Path(os.path.normpath(file))
-    if place.is_absolute() or place.parts[:1] == (os.pardir,):
+    is_named_outside = place.is_absolute() or place.parts[:1] == (os.pardir,)
+    if is_named_outside or not (folder / place).absolute().resolve().is_relative_to(folder.absolute().resolve()):
         raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
 
 

@@ -17,6 +17,8 @@ ENGINE_TYPES: Mapping[str, str] = MappingProxyType({"real": "float", "MaterialFl
 # Types of 16 bits, which are computed in 32.
 HALVES = ("half", "min16float", "min10float", "float16_t")
 _HALF = re.compile(rf"\b(?:{'|'.join(HALVES)})[1-4]?\b")
+# Of HLSL: as slangc has it, and as glslang reads it, whose `?:` is of vectors.
+VERSION, YEAR = "__HLSL_VERSION", "2018"
 SIZES = ("", "2", "3", "4")
 
 
@@ -46,6 +48,7 @@ def macros(source: Source, types: Mapping[str, str] = ENGINE_TYPES) -> list[str]
     """NAME=TEXT of each type that a source uses and does not define."""
     words = set(re.findall(r"\w+", source.text))
     used = [(old + size, new + size) for old, new in types.items() for size in SIZES if old + size in words]
+    used += [(VERSION, YEAR)] if VERSION in words else []
     return [f"{old}={new}" for old, new in used if not _defines(source.text, old)]
 
 

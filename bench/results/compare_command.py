@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ..output.errors import tell
 from ..output.writing import check_writable, without, write
 from .comparison import GONE, compared, in_short, total
 from .runs import read_run
 
+# What begins the names of such facts: see `machine.settings`.
+SETTING = "setting "
 FOR_PROGRAMS = ("severity", "keys")
 # What makes `--fail-on` fail.
 FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GONE, "")}
@@ -28,6 +32,8 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         tell("the machines differ; times are not compared")
+    if apart := _settings_apart(ours.facts.get("machine") or {}, theirs.facts.get("machine") or {}):
+        tell(f"figures may differ because settings do: {'; '.join(apart)}")
     if not changes:
         tell(f"no change in {len(ours.steps)} steps")
     if format in ("table", "markdown"):
@@ -38,3 +44,10 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
         write(without(changes, FOR_PROGRAMS), format, output)
     failing = [change for change in changes if change["verdict"] in FAILS[fail_on]]
     return int(bool(failing))
+
+
+def _settings_apart(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
+    """The settings from outside that two runs had otherwise, in words."""
+    names = sorted(name for name in {*one, *other} if name.startswith(SETTING))
+    values = ((name.removeprefix(SETTING), one.get(name, "not set"), other.get(name, "not set")) for name in names)
+    return [f"{name} was {before} and is {after}" for name, before, after in values if before != after]

@@ -22,6 +22,9 @@ ROUNDS = {
     "truncate": "truncate (nearest is rounded in the shader)",
     "other": "neither nearest nor truncate (both are rounded in the shader)",
 }
+# Variables that change what JAX and Mesa compute, but for where they keep what they have compiled.
+SETTINGS = ("XLA_FLAGS", "JAX_", "MESA_", "GALLIUM_", "GALLIVM_", "LP_", "LIBGL_", "NIR_")
+KEEPS = "CACHE"
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan", "openimageio")
 
 
@@ -44,7 +47,13 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | _gl() | compilers()
+    return facts | settings() | _gl() | compilers()
+
+
+def settings() -> dict[str, str]:
+    """What is set from outside that figures may depend on, by name."""
+    names = sorted(name for name in os.environ if name.startswith(SETTINGS) and KEEPS not in name)
+    return {f"setting {name}": os.environ[name] for name in names}
 
 
 def _gl() -> dict[str, str]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from types import MappingProxyType
 
-from .tree import Binary, Call, Choice, Construct, Declare, Elements, Literal, Name, Program, Table, size_of
+from .parser import COMPARES
+from .tree import Binary, Call, Choice, Construct, Declare, Elements, Expression, Literal, Name, Program, Table, size_of
 from .writer import FIELDS, INDENT, PRIMARY, Writer, words
 
 KINDS: Mapping[str, str] = MappingProxyType(
@@ -78,21 +79,33 @@ class HlslWriter(Writer):
         size = size_of(value.condition.kind)
         if size == 1:
             return super()._choice(value)
-        parts = [self._text(part, PRIMARY) for part in (value.condition, value.chosen, value.other)]
-        if sum(map(len, parts)) <= self.most_letters:
-            return f"{self._kind(value.kind)}({self._each(parts, size)})", PRIMARY
+        whole = value.condition, value.chosen, value.other
+        parts = [tuple(self._component(one, field) for one in whole) for field in FIELDS[:size]]
+        text = ", ".join(map("{0[0]} ? {0[1]} : {0[2]}".format, parts))
+        if len(text) <= self.most_letters:
+            return f"{self._kind(value.kind)}({text})", PRIMARY
         name = self._choice_of(value.kind, value.condition.kind, size)
-        return f"{name}({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
+        return f"{name}({', '.join(map(self._text, whole))})", PRIMARY
 
-    def _each(self, parts: Sequence[str], size: int) -> str:
-        return ", ".join("{} ? {} : {}".format(*(f"{part}.{field}" for part in parts)) for field in FIELDS[:size])
+    def _component(self, value: Expression, field: str) -> str:
+        """A component of a vector; of a comparison, and of numbers, without the whole."""
+        at = FIELDS.index(field)
+        match value:
+            case Binary(_, mark, left, right) if mark in COMPARES and size_of(left.kind) == size_of(right.kind):
+                return f"({self._component(left, field)} {mark} {self._component(right, field)})"
+            case Construct(_, [one]) if size_of(one.kind) == 1:
+                return self._text(one, PRIMARY)
+            case Construct(_, given) if all(size_of(one.kind) == 1 for one in given):
+                return self._text(given[at], PRIMARY)
+        return f"{self._text(value, PRIMARY)}.{field}"
 
     def _choice_of(self, kind: str, condition: str, size: int) -> str:
         """The function that chooses between two values of a kind."""
         if kind not in self._choices:
             name, made = self._global_name(f"chosen_{self._kind(kind)}"), self._kind(kind)
             head = f"{made} {name}({self._kind(condition)} condition, {made} chosen, {made} other)"
-            body = f"return {made}({self._each(('condition', 'chosen', 'other'), size)});"
+            parts = (f"condition.{field} ? chosen.{field} : other.{field}" for field in FIELDS[:size])
+            body = f"return {made}({', '.join(parts)});"
             self._choices[kind] = name, f"{head} {{\n{INDENT}{body}\n}}"
         return self._choices[kind][0]
 

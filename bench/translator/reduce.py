@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from itertools import count
 
-from .tree import Call, Declare, Function, Member, Name, Program, Table, inside, plain_name, size_of
+from .tree import Assign, Call, Declare, Function, Member, Name, Program, Table, inside, plain_name, size_of
 
 # A parameter that functions have for others' sake.
 VIEW = "view"
@@ -28,6 +29,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     keys = {plain_name(f): f.name for f in program.functions}
     kept = _reached(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
+    _keep_changes_inside(functions)
     _leave_out_views(functions, {keys[name] for name, called in roots.items() if called in PAIR})
     used = {node.name for f in functions for node in inside(f.body) if isinstance(node, Name)}
     constants = _used_constants(program.constants, used)
@@ -48,6 +50,35 @@ def _reached(program: Program, names: list[str]) -> set[str]:
                 found.add(node.name)
                 left.append(node.name)
     return found
+
+
+def _keep_changes_inside(functions: list[Function]) -> None:
+    """Makes plain parameters of those whose changes nobody sees.
+
+    Translators from SPIR-V write every parameter that is assigned to as an inout one, and give it a variable of its
+    own, which is assigned to before each call and not read behind it.
+    """
+    by_name = {f.name: f for f in functions}
+    seen: set[tuple[str, int]] = set()
+    for caller in functions:
+        nodes = list(inside(caller.body))
+        begun = Counter(n.name for n in nodes if isinstance(n, Declare) and n.value is not None)
+        written = Counter(
+            n.target.name for n in nodes if isinstance(n, Assign) and isinstance(n.target, Name) and n.operator == "="
+        )
+        begun += written
+        named = Counter(n.name for n in nodes if isinstance(n, Name))
+        calls = [n for n in nodes if isinstance(n, Call) and n.name in by_name]
+        given = Counter(a.name for call in calls for a in call.arguments if isinstance(a, Name))
+        for call in calls:
+            for at, argument in enumerate(call.arguments):
+                name = getattr(argument, "name", "")
+                is_own = named[name] == given[name] + written[name] and begun[name] >= given[name] > 0
+                if not is_own:
+                    seen.add((call.name, at))
+    for function in functions:
+        for at, parameter in enumerate(function.parameters):
+            parameter.is_changed = parameter.is_changed and (function.name, at) in seen
 
 
 def _leave_out_views(functions: list[Function], pair: set[str]) -> None:

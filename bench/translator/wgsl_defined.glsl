@@ -1,10 +1,13 @@
 // What WGSL defines and GLSL does not, for every type: quotients and remainders by 0, and of the least number by -1;
 // remainders of negative numbers; floats that no integer is near.
-int __quotient(int x, int y) { return y == 0 || (y == -1 && x == 1 << 31) ? x : x / y; }
+int __quotient(int x, int y) { return y == 0 || (y == -1 && x == -(1 << 30) - (1 << 30)) ? x : x / y; }
 int __remainder(int x, int y) { return y == 0 || y == -1 ? 0 : x - x / y * y; }
 uint __quotient(uint x, uint y) { return y == 0u ? x : x / y; }
 uint __remainder(uint x, uint y) { return y == 0u ? 0u : x % y; }
-int __to_int(float x) { return x >= exp2(15.0) * exp2(16.0) ? ~(1 << 31) : x >= -exp2(15.0) * exp2(16.0) ? int(x) : 1 << 31; }
+int __to_int(float x) {
+    if (x >= exp2(15.0) * exp2(16.0)) return (1 << 30) - 1 + (1 << 30);
+    return x >= -exp2(15.0) * exp2(16.0) ? int(x) : -(1 << 30) - (1 << 30);
+}
 uint __to_uint(float x) { return x >= exp2(16.0) * exp2(16.0) ? ~0u : x >= 0.0 ? uint(x) : 0u; }
 ivec2 __quotient(ivec2 x, ivec2 y) { return ivec2(__quotient(x.x, y.x), __quotient(x.y, y.y)); }
 ivec2 __remainder(ivec2 x, ivec2 y) { return ivec2(__remainder(x.x, y.x), __remainder(x.y, y.y)); }

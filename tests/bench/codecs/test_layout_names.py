@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.codecs.layout_names import layouts_named
+from normalbench.bench.codecs.layout_names import files_of_layout, layouts_named
 from normalbench.bench.results.measuring import companions, files_of
 from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.encodings.catalogue import ENCODINGS
@@ -95,3 +95,17 @@ def test_an_encoding_that_a_layout_cannot_have_is_one_line(run, tmp_path, encodi
     (tmp_path / "code" / "bad.glsl").write_text("float f() { return 1.0; }\n")
     status, out, err = run("render", "--layout", path, "--size", "96x64")
     assert (status, out) == (2, "") and err.count("\n") == 1 and said.format(tmp_path) in err, err
+
+
+def test_an_encoding_that_is_a_link_out_of_the_layouts_folder_is_refused(run, tmp_path):
+    """As an include is; a link within the folder is a file like any other."""
+    path, mine = Path(written(tmp_path / "inside", "code/link.glsl")), tmp_path / "inside/code/mine.glsl"
+    link = mine.with_name("link.glsl")
+    link.symlink_to("mine.glsl")
+    assert files_of_layout(path) == [link]
+    mine.rename(tmp_path / "mine.glsl")
+    link.unlink()
+    link.symlink_to(tmp_path / "mine.glsl")
+    status, out, err = run("render", "--layout", str(path), "--size", "96x64")
+    assert (status, out) == (2, "") and err.count("\n") == 1, err
+    assert "code/link.glsl is not in the folder of the layout" in err

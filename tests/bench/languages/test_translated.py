@@ -293,3 +293,13 @@ def test_nothing_heavy_is_imported_to_translate():
     code = "import sys, normalbench.bench.languages.child\n"
     code += "print([name for name in ('jax', 'numpy', 'moderngl', 'torch') if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize("version", ["", "#define __HLSL_VERSION 2016\n"])
+def test_the_version_of_hlsl_is_known(run, ending, version):
+    """Engines ask for it before they use what it brought; a file may still say another one."""
+    Path(f"mine.{ending}").write_text(
+        f"{version}#ifdef __HLSL_VERSION\n#if __HLSL_VERSION < 2021\n{MINE}\n#endif\n#endif\n"
+    )
+    status, out, err = run("quality", "--encoding", f"mine.{ending}", *QUICK)
+    assert status == 0 and json.loads(out), err

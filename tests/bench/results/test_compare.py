@@ -12,6 +12,7 @@ from test_readme import a_copy_of_the_rooms
 
 from normalbench.bench.results import compare_command
 from normalbench.bench.results.comparison import compared, in_short, mann_whitney, total
+from normalbench.bench.results.machine import settings
 from normalbench.bench.results.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -104,6 +105,20 @@ def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, 
         assert "figures" in above[0] and "verdict" in above[0] and "rows" not in above[0]
     status, out, _ = run("compare", "before", "after", "--format", "csv")
     assert status == 0 and out.splitlines()[0] == "table,row,column,before,after,change,verdict"
+
+
+def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(run, monkeypatch):
+    """XLA's flags and Mesa's variables change figures; where something is kept does not."""
+    flags = "--xla_cpu_enable_fast_math=true"
+    monkeypatch.setenv("XLA_FLAGS", flags)
+    monkeypatch.setenv("MESA_SHADER_CACHE_DIR", "/somewhere")
+    set_here = settings()
+    assert set_here["setting XLA_FLAGS"] == flags and not any("CACHE" in name for name in set_here)
+    runs = {"one": Done({"machine": {"python": "3"}}, []), "two": Done({"machine": {"python": "3"} | set_here}, [])}
+    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    status, _, err = run("compare", "one", "two")
+    assert status == 0
+    assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err
 
 
 def step_of(*rows: dict) -> Done:

@@ -1,0 +1,65 @@
+"""Programs from seeds, read in four languages and written in seven: what they mean must stay."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from normalbench.bench.code.emit import LANGUAGES
+from normalbench.bench.code.files import code_of
+from normalbench.bench.code.verify import agreement
+from normalbench.bench.codecs.first_look import first_look
+from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.bench.languages import translated
+from normalbench.bench.languages.child import answer
+from normalbench.bench.output.errors import UsageError
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+from .kind import MEASURED, REFUSED, Attack, Kind
+from .programs import Program
+
+GIVEN = ("glsl", "hlsl", "slang", "wgsl")
+# How many normals may lie next to a seam.
+SEAMS = 1e-3
+WRITTEN = tuple(name for name, language in LANGUAGES.items() if language.writer)
+
+
+def _here(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, object]:
+    """A translation in this process: the attack limits itself."""
+    found = answer(path, asked, path.parent, by)
+    if "error" in found:
+        raise UsageError(str(found["error"]))
+    return found
+
+
+def translations(folder: Path) -> Attack:
+    """A program that is measured as it is meant, and written in another language, or refused in one line."""
+    translated._by_child = _here
+
+    def case(seed: int) -> str:
+        language = GIVEN[seed % len(GIVEN)]
+        path = folder / f"mine.{language}"
+        path.write_text(Program(language, seed).text())
+        found = first_look(path)
+        said = found.get("error", found.get("broken", ""))
+        assert "disagree" not in said, f"{said}\n{path.read_text()}"
+        if said:
+            assert said.isprintable() and len(said) < 2000, said
+            return REFUSED
+        encoding = read_encoding(path, "no twin", found.get("biased", False), found.get("by", ""))
+        codec, to = Codec(encoding, STORAGES["rg16"], "nearest"), WRITTEN[seed // len(GIVEN) % len(WRITTEN)]
+        try:
+            code = code_of(codec, to, "p")
+        except UsageError:
+            return REFUSED
+        (folder / code.name).write_text(code.body)
+        same = agreement(codec, to, folder / code.name, code.interface)
+        # The two sides of a seam, as quotients are rounded.
+        is_same = same.holds or (same.differing <= SEAMS * same.count and not same.unpacked)
+        assert is_same, f"in {to}: {same.says}\n{path.read_text()}\n{code.body}"
+        return MEASURED
+
+    return case
+
+
+KINDS = (Kind("translation", translations, 1000, 12, seconds=30.0, chunk=25),)
