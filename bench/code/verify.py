@@ -8,6 +8,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
+from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.rounding import store_texel
 from ..metrics.angles import angles_deg
@@ -91,7 +92,8 @@ def interface_of(codec: Codec, prefix: str, takes_view: bool) -> Interface:
     encoding = codec.encoding
     size = encoding.components + encoding.sign_bits
     tables = {f"{prefix}_{name}": table for name, table in encoding.tables().items()}
-    return Interface(prefix, size, encoding.sign_bits, Channels(codec).words, takes_view, tables)
+    is_ours = encoding.name.partition(":")[0] in ENCODINGS
+    return Interface(prefix, size, encoding.sign_bits, Channels(codec).words, takes_view, tables, is_ours)
 
 
 def agreement(codec: Codec, language: str, path: Path, interface: Interface) -> Agreement:

@@ -28,6 +28,7 @@ class Interface:
         words: how many 32-bit integers a texel has: 1, 2 or 4.
         takes_view: whether `P_encode` and `P_decode` take the view-space position.
         tables: the look-up tables by name, float32 of shape (height, width, channels).
+        is_ours: whether nobody else's code is in the file.
     """
 
     prefix: str
@@ -36,6 +37,7 @@ class Interface:
     words: int
     takes_view: bool
     tables: Mapping[str, np.ndarray] = field(default_factory=dict)
+    is_ours: bool = True
 
     @property
     def defines(self) -> dict[str, object]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
@@ -12,9 +14,11 @@ import numpy as np
 
 from ....encodings.codecs.files import file_text
 from ....gbuffer.gl.shader import ShaderError
+from ...machine import children, forks
 from ...machine.vulkan import NO_DRIVER, adapters
 from ...output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
+from .sources import SECONDS, folder
 
 WRAPPER = Path(__file__).with_suffix(".j2")
 MAIN, GROUP = "run_main", 64
@@ -93,12 +97,28 @@ def _program(gpu: Any, path: Path, interface: Interface, tables: Any) -> Any:
         for at, kind in enumerate(kinds)
     ]
     buffers = gpu.create_bind_group_layout(entries=entries)
+    text = _text(path, interface)
+    if not interface.is_ours:
+        _try_apart(path, text)
     try:
-        module = gpu.create_shader_module(code=_text(path, interface))
+        module = gpu.create_shader_module(code=text)
         layout = gpu.create_pipeline_layout(bind_group_layouts=[tables, buffers])
         return gpu.create_compute_pipeline(layout=layout, compute={"module": module, "entry_point": MAIN})
     except wgpu.GPUError as error:
         raise ShaderError(f"{path}: {_complaint(str(error))}") from error
+
+
+def _try_apart(path: Path, text: str) -> None:
+    """Compile somebody's text in a process of its own: naga ends the process at some. Raises ShaderError."""
+    with folder() as place:
+        (place / "code.wgsl").write_text(text, encoding="utf-8")
+        try:
+            done = forks.finished(f"{__package__}.naga", [str(place / "code.wgsl")], SECONDS)
+        except subprocess.TimeoutExpired as error:
+            raise ShaderError(f"{path}: naga did not end within {SECONDS} s") from error
+    if done.returncode:
+        how = signal.Signals(-done.returncode).name if done.returncode < 0 else children.how_it_ended(done)
+        raise ShaderError(f"{path.name}: naga does not survive it ({how}); other back ends may")
 
 
 def _text(path: Path, interface: Interface) -> str:

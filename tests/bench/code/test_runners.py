@@ -1,12 +1,14 @@
 """Every language runs the same hand-written files, and gives what NumPy gives."""
 
 import os
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from normalbench.bench.code.run import LANGUAGES, interface, runner
+from normalbench.bench.code.run import LANGUAGES, c, interface, runner
 from normalbench.bench.code.run.interface import Interface, Ran
 from normalbench.bench.output.errors import MissingError
 from normalbench.gbuffer.gl.device import NoDeviceError
@@ -89,6 +91,49 @@ def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
     with pytest.raises(ShaderError) as error:
         runner(language).run(broken, SPHEREMAP, *given(8))
     assert "\n" not in str(error.value) and "broken.txt" in str(error.value), str(error.value)
+
+
+# What a file may do, and how the process that it is in ends.
+ENDS = {
+    "reads what is not there": ("return *(volatile float *)8;", "SIGSEGV"),
+    "never ends": ("for (volatile int i = 0;; ++i) ; return 0.0f;", "SIGXCPU|SIGKILL|did not end"),
+    "wants all memory": ("for (;;) memset(calloc(1u << 28, 1), 1, 1u << 28);", "SIGSEGV|SIGKILL"),
+}
+
+
+# C++ may leave out a loop that only takes memory.
+@pytest.mark.parametrize(
+    ("language", "what"), [("c", "wants all memory"), *((one, what) for one in ("c", "msl") for what in [*ENDS][:2])]
+)
+def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypatch):
+    """One line says how it ended; this process lives."""
+    ran(language, SPHEREMAP, given(8))
+    monkeypatch.setitem(c.LIMITS, "RUN_SECONDS", 1)
+    body, how = ENDS[what]
+    head = "#include <stdlib.h>\n#include <string.h>\n" if "calloc" in body else ""
+    text = file_of(SPHEREMAP, language).read_text()
+    name = re.search(r"\bspheremap_rg8_encode\(\w+ (\w+)\) \{", text)
+    assert name, text
+    trap = f"static float trap(void) {{ {body} }}\n"
+    hurt = text.replace(name[0], f"{name[0]} if ({name[1]}.x > -2.0f) {name[1]}.x = trap();")
+    before, mark, rest = hurt.partition("\ninline " if language == "msl" else "\nstatic inline ")
+    (tmp_path / "hurt.txt").write_text(f"{head}{before}\n{trap}{mark}{rest}")
+    with pytest.raises(ShaderError, match=how) as error:
+        runner(language).run(tmp_path / "hurt.txt", SPHEREMAP, *given(8))
+    assert "\n" not in str(error.value) and "hurt.txt" in str(error.value)
+
+
+def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):
+    """A choice between vectors by a constant: naga ends its process, and no other."""
+    ran("wgsl", SPHEREMAP, given(8))
+    foreign = replace(SPHEREMAP, is_ours=False)
+    assert len(runner("wgsl").run(file_of(SPHEREMAP, "wgsl"), foreign, *given(8)).words) == 8
+    panics = (
+        "fn p() -> vec3f { return select(vec3f(vec2f(2.0, 1.0), 1.0), vec3f(1.0), FLIP); }\nconst FLIP: bool = true;\n"
+    )
+    (tmp_path / "panics.wgsl").write_text(file_of(SPHEREMAP, "wgsl").read_text() + panics)
+    with pytest.raises(ShaderError, match=r"panics\.wgsl: naga does not survive it \(SIGABRT\)"):
+        runner("wgsl").run(tmp_path / "panics.wgsl", foreign, *given(8))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
