@@ -7,6 +7,8 @@ uint half_bits(float x, bool truncates) {
     uint magnitude = floatBitsToUint(abs(rounded)), sign = floatBitsToUint(x) >> 16 & 0x8000u;
     // from 2^-14 on the exponent is biased by 15 in place of 127; below, the number counts steps of 2^-24
     uint bits = magnitude < 0x38800000u ? uint(abs(rounded) * exp2(24.0)) : (magnitude - 0x38000000u) >> 13;
+    // beyond 65504 it is infinite, or no number
+    if (magnitude >= 0x47800000u) bits = magnitude > 0x7F800000u ? 0x7E00u : 0x7C00u;
     return sign | bits;
 }
 
@@ -21,6 +23,8 @@ uint small_bits(float x, int size, bool truncates) {
     int mantissa = size - 5;
     float rounded = round_small_float(x, size, truncates);
     uint magnitude = floatBitsToUint(rounded);
+    // infinite, or no number
+    if (magnitude >= 0x47800000u) return (magnitude > 0x7F800000u ? 63u : 62u) << (mantissa - 1);
     uint steps = uint(rounded * exp2(float(14 + mantissa)));
     return magnitude < 0x38800000u ? steps : (magnitude - 0x38000000u) >> (23 - mantissa);
 }

@@ -2,7 +2,7 @@
 
 What GLSL leaves undefined has a meaning in the file. As an integer, what is not a number is 0 and what is out of range
 the nearest one, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts go modulo 32, sums of integers wrap, and
-an index that an array does not have is its nearest.
+an index that an array does not have is its nearest. What is not a number has one pattern of bits.
 """
 
 from __future__ import annotations
@@ -80,8 +80,10 @@ HELPERS: Mapping[str, str] = MappingProxyType(
         "umax": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a > b ? a : b; }}",
         "iabs": "int32_t {0}(int32_t a) {{ return a < 0 && a != INT32_MIN ? -a : a; }}",
         "isign": "int32_t {0}(int32_t a) {{ return (a > 0) - (a < 0); }}",
-        "floatBitsToInt": "int32_t {0}(float x) {{ int32_t y; memcpy(&y, &x, sizeof y); return y; }}",
-        "floatBitsToUint": "uint32_t {0}(float x) {{ uint32_t y; memcpy(&y, &x, sizeof y); return y; }}",
+        "floatBitsToInt": "int32_t {0}(float x) {{ int32_t y = "
+        "0x7FC00000; if (x == x) memcpy(&y, &x, sizeof y); return y; }}",
+        "floatBitsToUint": "uint32_t {0}(float x) {{ uint32_t y = "
+        "0x7FC00000u; if (x == x) memcpy(&y, &x, sizeof y); return y; }}",
         "intBitsToFloat": "float {0}(int32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
         "uintBitsToFloat": "float {0}(uint32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
         "to_int": "int32_t {0}(float x) {{ return x >= 2147483648.0f ? INT32_MAX : x >= -2147483648.0f ? (int32_t)x"
