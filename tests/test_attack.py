@@ -6,7 +6,12 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from attack import translations
+from attack.kind import MEASURED
 from attack.trying import KINDS, ODD, one
+from languages import require_runner
+
+from normalbench.bench.languages import translated
 
 FEW = [kind for kind in KINDS if kind.few]
 
@@ -41,6 +46,18 @@ def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path,
             assert not outside, (seed, outside)
     assert time.process_time() - began < count * kind.seconds
     assert len(counts) == 2, f"changes must be both harmless and harmful: {counts}"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("seed", range(12))
+def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
+    """Of each language that is read three, each written in another one."""
+    for language in ("hlsl", "slang", "wgsl", "c", "msl"):
+        require_runner(language)
+    monkeypatch.setattr(translated, "_by_child", translated._by_child)
+    ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
+    assert ended == MEASURED, why
 
 
 def _is_known(path: Path, folder: Path) -> bool:

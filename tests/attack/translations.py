@@ -24,7 +24,7 @@ SEAMS = 1e-3
 WRITTEN = tuple(name for name, language in LANGUAGES.items() if language.writer)
 
 
-def _here(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, object]:
+def translated_here(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, object]:
     """A translation in this process: the attack limits itself."""
     found = answer(path, asked, path.parent, by)
     if "error" in found:
@@ -34,7 +34,7 @@ def _here(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, objec
 
 def translations(folder: Path) -> Attack:
     """A program that is measured as it is meant, and written in another language, or refused in one line."""
-    translated._by_child = _here
+    translated._by_child = translated_here
 
     def case(seed: int) -> str:
         language = GIVEN[seed % len(GIVEN)]
@@ -62,4 +62,4 @@ def translations(folder: Path) -> Attack:
     return case
 
 
-KINDS = (Kind("translation", translations, 1000, 12, seconds=30.0, chunk=25),)
+KINDS = (Kind("translation", translations, 600, 0, seconds=30.0, chunk=20),)

@@ -21,10 +21,17 @@ if __name__ == "__main__":
     sys.path[:1] = [str(HERE.parent), str(HERE.parent / "inputs")]
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(HERE.parents[1] / ".pytest_cache" / "jax"))
 
-from attack import code, files, interruptions, texts, words  # noqa: E402 # the folders above hold it
+from attack import code, files, interruptions, texts, translations, words  # noqa: E402 # the folders above hold it
 from attack.kind import Attack, Kind  # noqa: E402
 
-KINDS = (*files.KINDS, *texts.KINDS, *words.KINDS, *code.KINDS, *interruptions.KINDS)
+KINDS = (
+    *files.KINDS,
+    *texts.KINDS,
+    *words.KINDS,
+    *code.KINDS,
+    *translations.KINDS,
+    *interruptions.KINDS,
+)
 BY_NAME = {kind.name: kind for kind in KINDS}
 ODD = "else"
 # More than any case may take for itself, in bytes.

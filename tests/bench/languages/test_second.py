@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from attack.translations import translated_here
 from everyday import WGSL
 from languages import require_runner
 
@@ -71,12 +72,6 @@ def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("normalbench.bench.languages.translated._by_child", translated_here)
     said = first_look(path)["error"]
     assert "two compilers disagree: mine_encode of [" in said and " by this program and [" in said and "by naga" in said
-
-
-def translated_here(path, asked, by):
-    from normalbench.bench.languages.child import answer
-
-    return answer(path, asked, path.parent, by)
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
