@@ -49,6 +49,7 @@ class Program:
         self.depth = 0
         self.loops = 0
         self.has_normal = False
+        self.has_struct = self.chance(0.3)
         self.tables: list[tuple[str, int]] = []
 
     # Choices.
@@ -106,6 +107,8 @@ class Program:
         ]
         if self.tables:
             found.append(self.element)
+        if self.known("S"):
+            found.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('a', 'b.x', 'b.y')}")
         if self.functions:
             found.append(lambda d: self.called("F", d))
         return found
@@ -163,6 +166,8 @@ class Program:
             lambda _: f"n.{self.one('xy', 'yz', 'zx', 'xx')}" if self.has_normal else self._leaf("V"),
             self.chosen_by_parts,
         ]
+        if self.known("S"):
+            found.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('b', 'b.yx')}")
         if self.functions:
             found.append(lambda d: self.called("V", d))
         return found
@@ -237,8 +242,30 @@ class Program:
             self.assign_part,
         ]
         if not deep:
-            ways += [self.choice, self.loop, lambda: self.block(2), self.array]
+            ways += [self.choice, self.loop, self.halving, lambda: self.block(2), self.array]
+        if self.has_struct:
+            ways += [self.structure, self.assign_field]
         return ways[self.rng.integers(len(ways))]()
+
+    def structure(self) -> str:
+        """A variable of the structure, whose name may be that of one around it."""
+        self.loops += 1
+        name = self.one(f"q{self.loops}", "q0")
+        if name in self.scopes[-1].names:
+            return ""
+        given = f"{self.bounded('F')}, {self.bounded('V')}"
+        self.scopes[-1].names[name] = ("S", True)
+        if self.language == "wgsl":
+            return f"var {name} = Pair({given});"
+        return f"Pair {name} = {f'Pair({given})' if self.language == 'glsl' else f'{{ {given} }}'};"
+
+    def assign_field(self) -> str:
+        names = self.known("S", is_changed=True)
+        if not names:
+            return self.structure()
+        name = self.one(*names)
+        field, kind = self.rng.choice([("a", "F"), ("b", "V"), ("b.x", "F")])
+        return f"{name}.{field} = {self.bounded(str(kind))};"
 
     def assign(self) -> str:
         kind = self.one("F", "I", "V")
@@ -271,6 +298,16 @@ class Program:
             return f"for (var {i} = 0; {i} < {turns}; {i}++) {inner}"
         return f"for (int {i} = 0; {i} < {turns}; {i}++) {inner}"
 
+    def halving(self) -> str:
+        """A loop that asks a vector which changes in it, and turns four times at most."""
+        self.loops += 1
+        v, count, inner = f"h{self.loops}", f"c{self.loops}", self.block(1)
+        kinds = ("var", "var") if self.language == "wgsl" else (self.types["V"], "int")
+        begin = f"{kinds[0]} {v} = {self.bounded('V')}; {kinds[1]} {count} = 0;"
+        condition = f"{count} < 4 && dot({v} * 0.5, {v}) > 0.2"
+        loop = f"while ({condition}) {{ {count}++; {v} = {v} * 0.5; {inner[1:]}"
+        return f"{begin} {loop} {self.declare('F', f'{v}.x + {v}.y')}"
+
     def array(self) -> str:
         """A local array that is written and read."""
         self.loops += 1
@@ -288,7 +325,11 @@ class Program:
 
     def text(self) -> str:
         """The program."""
-        parts = [self.table(at) for at in range(self.rng.integers(0, 3))]
+        kinds = self.types["F"], self.types["V"]
+        struct = f"a: {kinds[0]}, b: {kinds[1]}" if self.language == "wgsl" else f"{kinds[0]} a; {kinds[1]} b;"
+        end = "" if self.language == "wgsl" else ";"
+        parts = [f"struct Pair {{ {struct} }}{end}"] if self.has_struct else []
+        parts += [self.table(at) for at in range(self.rng.integers(0, 3))]
         parts += [self.constant(at) for at in range(CONSTANTS)]
         parts += [self.function(at) for at in range(self.rng.integers(0, 3))]
         return "\n".join([*parts, self.encode(), self.decode(), ""])

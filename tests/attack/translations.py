@@ -15,7 +15,7 @@ from normalbench.bench.output.errors import UsageError
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 
-from .kind import MEASURED, REFUSED, Attack, Kind
+from .kind import MEASURED, REFUSED, Attack, Kind, one_line
 from .programs import Program
 
 GIVEN = ("glsl", "hlsl", "slang", "wgsl")
@@ -50,8 +50,10 @@ def translations(folder: Path) -> Attack:
         codec, to = Codec(encoding, STORAGES["rg16"], "nearest"), WRITTEN[seed // len(GIVEN) % len(WRITTEN)]
         try:
             code = code_of(codec, to, "p")
-        except UsageError:
-            return REFUSED
+        except UsageError as error:
+            # It is measured, but has what is not written, such as a structure.
+            one_line(error)
+            return MEASURED
         (folder / code.name).write_text(code.body)
         same = agreement(codec, to, folder / code.name, code.interface)
         # The two sides of a seam, as quotients are rounded.
