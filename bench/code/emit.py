@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +20,7 @@ from ..translator.glsl_writer import EsslWriter, GlslWriter
 from ..translator.hlsl_writer import HlslWriter
 from ..translator.msl_writer import MslWriter
 from ..translator.reduce import reduced
-from ..translator.tree import Program
+from ..translator.tree import Program, TranslationError
 from ..translator.wgsl_writer import WgslWriter
 from ..translator.writer import Writer
 from .channels import TEMPLATE, Channels
@@ -77,7 +78,11 @@ def program_of(codec: Codec, prefix: str) -> Program:
     defines = encoding_defines(encoding)
     source = Source(ROOT, defines, {"ENCODING": encoding.glsl})
     storage = _template().render(Channels(codec).context(), encode=defines["ENCODE"], decode=defines["DECODE"])
-    program = read_glsl(f"{source.text}\n{storage}")
+    try:
+        program = read_glsl(f"{source.text}\n{storage}")
+    except TranslationError as error:
+        # At the place in the file that it was included from.
+        raise TranslationError(source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))) from error
     encode = "nearest_encode" if encoding.is_precise else str(defines["ENCODE"])
     roots = {encode: "encode", str(defines["DECODE"]): "decode"}
     roots |= {name: name for name in ("pack", "unpack", "to_target", "from_target")}

@@ -7,9 +7,7 @@ import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.encoding import Encoding
 from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
@@ -17,7 +15,7 @@ from .emit import LANGUAGES, program_of
 from .numpy_source import numpy_source
 from .run.interface import Interface
 from .tables import table_files
-from .verify import interface_of
+from .verify import interface_of, is_catalogues
 
 WIDTH = 118
 GUARDED = ("hlsl", "slang", "glsl", "essl", "msl", "c")
@@ -97,11 +95,6 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
     return Code(codec, language, prefix, body, interface)
 
 
-def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one."""
-    return encoding.name.partition(":")[0] in ENCODINGS
-
-
 def _python(codec: Codec, prefix: str) -> str:
     if not is_catalogues(codec.encoding):
         raise UsageError(
@@ -114,8 +107,8 @@ def _untranslatable(codec: Codec, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
     if encoding.source in (None, encoding.glsl):
-        return f"{encoding.glsl}: {said}"
-    what = re.sub(r"^\d+:\d+: ", "", said).replace("is not a type that is known here", "parameters or types")
+        return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
+    what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
     return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"
 
 

@@ -91,9 +91,15 @@ def _from_here(path: Path, word: str) -> str:
 def _check_inside(folder: Path, file: str) -> None:
     """As for what an encoder includes: neither its name nor a link leads out of the folder."""
     place = Path(os.path.normpath(file))
-    is_named_outside = place.is_absolute() or place.parts[:1] == (os.pardir,)
-    if is_named_outside or not (folder / place).absolute().resolve().is_relative_to(folder.absolute().resolve()):
+    if place.is_absolute() or place.parts[:1] == (os.pardir,) or not _leads_inside(folder, place):
         raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
+
+
+def _leads_inside(folder: Path, place: Path) -> bool:
+    try:
+        return (folder / place).absolute().resolve().is_relative_to(folder.absolute().resolve())
+    except ValueError:  # no file can have this name, which its reader says
+        return True
 
 
 def files_of_layout(path: Path) -> list[Path]:

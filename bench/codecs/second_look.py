@@ -17,7 +17,7 @@ from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.gl.device import Device
 from ..languages import tools
 from ..languages.language import also_read_by, language_of
-from ..languages.second import NoSecondWayError, Way, second_way
+from ..languages.second import NoSecondWayError, UndefinedError, Way, second_way
 from ..languages.source import Source
 from ..languages.translated import own, translated
 from ..languages.words import TRANSLATED, file_of
@@ -34,6 +34,8 @@ POLYNOMIALS = re.compile(r"\b(?:a?(?:sin|cos|tan)h?|atan2|sincos|pow|exp2?|log(?
 BESIDE, MOST = 2.0**-22, 1e-3
 # As many differ only where a function is another one; and so many are looked at closely.
 MANY, LOOKED_AT = 0.05, 2048
+# In HLSL: of negative numbers.
+MISREAD = re.compile(r"\bfmod\s*\(|%")
 # What the two ways of each language are called.
 WAYS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {"HLSL": ("glslang", "slangc"), "Slang": ("slangc's GLSL", "its C++"), "WGSL": ("this program", "naga")}
@@ -63,12 +65,23 @@ def second_look(
     if (found := kept.read(key)) is None:
         try:
             found = _looked(path, source.text, gl, encoding, hard, read)
+        except UndefinedError as error:
+            found = {"error": f"{path}: {error}; its language does not define that"}
         except NoSecondWayError as error:
-            found = {"notes": [f"no second compiler has checked its translation: {error}"]}
+            found = _unchecked(path, source, str(error))
             if not error.is_of_the_file:
                 return found
         kept.write(key, found)
     return found
+
+
+def _unchecked(path: Path, source: Source, why: str) -> dict[str, Any]:
+    """What is said of a file that one compiler alone has read; it is refused where that one is known to be wrong."""
+    used = MISREAD.search(source.text) if TRANSLATED[file_of(path).suffix.lower()] == "HLSL" else None
+    if used:
+        what = f"it uses {used[0].strip('( ')}, which glslang reads otherwise than HLSL defines it"
+        return {"error": f"{path}: {what}, and no second compiler reads the file: {why}"}
+    return {"notes": [f"no second compiler has checked its translation: {why}"]}
 
 
 def _stamp(tool: str) -> str:
@@ -95,7 +108,8 @@ def _looked(
                 return {"by": by, "notes": [f"{said}; the latter is measured, as the language defines it"]}
         except (MissingError, UsageError):
             pass
-    return {"error": f"{path}: two compilers disagree: {said}. Write out what its language does not define"}
+    advice = "write it without what is read in two ways, such as % of negative whole numbers"
+    return {"error": f"{path}: two compilers disagree: {said}; {advice}"}
 
 
 def _difference(path: Path, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float) -> str:

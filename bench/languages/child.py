@@ -17,26 +17,42 @@ from typing import Any
 from ...encodings.codecs.files import called
 from ..machine import children
 from ..output.errors import MissingError, UsageError
-from .language import Language, language_of
+from .language import Language, also_read_by, language_of
 from .pairs import NoPairError, Pair, pair_of
 from .plain import NotPlainError, plain
 from .programs import TranslationError, has_halves, template
 from .source import Source
 from .tools import ToolError
 
+READ_BY = "it is read by {}'s compiler, as its own does not read it"
 IN_32_BITS = "half and min16float are computed in 32 bits; --arithmetic half computes in 16"
 
 
 def answer(path: Path, asked: tuple[str, str] | None, folder: Path, by: str = "") -> dict[str, Any]:
     """What there is to say of a file; see above."""
     try:
-        return _translated(path, asked, folder, by)
+        return _by_whoever_reads_it(path, asked, folder, by)
     except (UsageError, TranslationError) as error:
         return {"error": str(error)}
     except (NoPairError, NotPlainError, ToolError) as error:
         return {"error": f"{path}: {error}"}
     except MissingError as error:
         return {"missing": f"{path}: {error}"}
+
+
+def _by_whoever_reads_it(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
+    """By the compiler of its own language, or by another one that reads that language where the first does not."""
+    try:
+        return _translated(path, asked, folder, by)
+    except (TranslationError, NoPairError) as error:
+        other = "" if by else also_read_by(path)
+        if not other:
+            raise
+        try:
+            found = _translated(path, asked, folder, other)
+        except (TranslationError, NoPairError, NotPlainError, ToolError, MissingError):
+            raise error from None
+        return found | {"notes": [*found["notes"], READ_BY.format(other)]}
 
 
 def _translated(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:

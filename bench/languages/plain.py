@@ -13,6 +13,9 @@ class NotPlainError(Exception):
 
 
 _LEFT_OUT = re.compile(r"^[ \t]*#(?:version|extension|line)\b.*$|^layout\(\w+_major\) (?:uniform|buffer);$", re.M)
+# What SPIRV-Cross writes for [unroll], [branch] and [flatten].
+_HINTS = re.compile(r"^#if defined\(GL_EXT_control_flow_attributes\)$.*?^#endif$", re.M | re.S)
+_HINT = re.compile(r"\bSPIRV_CROSS_\w+")
 # layout(location = 0) in vec3 _102;
 _VARIABLE = re.compile(
     r"^layout\(location = (\d+)\)\s+(?:(?:flat|highp|mediump)\s+)*(in|out)\s+(?:(?:highp|mediump)\s+)?(\w+ )(\w+);",
@@ -37,6 +40,7 @@ def plain(shader: str, prefix: str, given: int) -> str:
         NotPlainError: it reads something else.
     """
     text = _HALF_NUMBER.sub("", _HALF.sub(lambda match: f"{match[1]}{match[2]}" if match[1] else "float", shader))
+    text = _HINT.sub("", _HINTS.sub("", text))
     text = _ATTRIBUTE.sub("", _LEFT_OUT.sub("", text))
     names = {name: _named(place, way) for place, way, _, name in _VARIABLE.findall(text)}
     result = next(kind for _, way, kind, _ in _VARIABLE.findall(text) if way == "out")

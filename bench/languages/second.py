@@ -7,6 +7,7 @@ measured, by OpenGL: a translation that compiles can still be wrong.
 from __future__ import annotations
 
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -30,6 +31,10 @@ GIVEN, MADE, PROGRAM = "given.bin", "made.bin", "program"
 ENTRY, MAIN = "normalbench_second", Path(__file__).with_suffix(".cpp")
 # Normals and codes of shape (count, 3) and a view of three numbers to codes and normals, (count, 3).
 Way = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class UndefinedError(Exception):
+    """What a program does that its language leaves undefined; one line."""
 
 
 class NoSecondWayError(Exception):
@@ -113,7 +118,7 @@ def _by_naga(source: Source, encoder: Translated, folder: Path) -> Callable[[int
 
 
 def _run(command: list[str], folder: Path, is_of_the_file: bool = False) -> None:
-    """A command that ends well. Raises NoSecondWayError."""
+    """A command that ends well. Raises NoSecondWayError, UndefinedError."""
     with tempfile.TemporaryFile() as said:
         try:
             files = {"stdin": subprocess.DEVNULL, "stdout": said, "stderr": said}
@@ -124,7 +129,10 @@ def _run(command: list[str], folder: Path, is_of_the_file: bool = False) -> None
             raise NoSecondWayError(f"{Path(command[0]).name} did not end within {SECONDS:g} s") from error
         except OSError as error:
             raise NoSecondWayError(f"{Path(command[0]).name} cannot be run: {error.strerror}") from error
+        if done.returncode == -signal.SIGFPE:
+            raise UndefinedError("it divides a whole number by 0, of some normal")
         if done.returncode:
             lines = [line.strip() for line in children.text_of(said).splitlines() if line.strip()]
-            why = lines[-1][:200] if lines else f"status {done.returncode}"
+            ended = signal.Signals(-done.returncode).name if done.returncode < 0 else f"status {done.returncode}"
+            why = lines[-1][:200] if lines else f"it ended with {ended}"
             raise NoSecondWayError(why, is_of_the_file and MISSING not in why)

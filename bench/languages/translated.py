@@ -15,7 +15,7 @@ from ..output import cache as kept
 from ..output.errors import MissingError, UsageError
 from ..translator import tree
 from . import tools
-from .language import language_of
+from .language import also_read_by, language_of
 from .source import Source
 from .words import file_of, functions_of
 
@@ -73,10 +73,19 @@ def translated(word: str | Path, by: str = "") -> Translated:
 
 
 def _stamps(path: Path, by: str) -> list[str]:
+    other = also_read_by(path)
+    also = [_stamp_if_there(tool) for tool in language_of(path, other).tools] if other else []
     try:
-        return [tools.stamp(tool) for tool in language_of(path, by).tools]
+        return [*also, *(tools.stamp(tool) for tool in language_of(path, by).tools)]
     except MissingError as error:
         raise MissingError(f"{path}: {error}") from error
+
+
+def _stamp_if_there(tool: str) -> str:
+    try:
+        return tools.stamp(tool)
+    except MissingError:
+        return ""
 
 
 @cache

@@ -15,7 +15,8 @@ from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import CONSTANTS
 from ...gbuffer.gl.shader import ShaderError, Source
 from ..code.channels import Channels
-from ..code.files import Code, code_of, is_catalogues
+from ..code.files import Code, code_of
+from ..code.verify import is_catalogues
 from ..output.errors import UsageError
 
 Record = dict[str, Any]

@@ -14,9 +14,9 @@ from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..code.emit import LANGUAGES
-from ..code.files import Code, code_of, file_name, is_catalogues
+from ..code.files import Code, code_of, file_name
 from ..code.run import runner
-from ..code.verify import Agreement, agreement
+from ..code.verify import Agreement, agreement, is_catalogues
 from ..codecs.names import codecs_named, fitting
 from ..options.code import CodeOptions
 from ..options.targets import what_is_left

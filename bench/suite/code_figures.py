@@ -9,7 +9,8 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 from ..code.emit import LANGUAGES
-from ..code.files import Code, is_catalogues
+from ..code.files import Code
+from ..code.verify import is_catalogues
 from ..normals.normal_sets import NORMAL_SETS
 from ..options.counts import DEFAULT_COUNT
 from ..tables.cost import measure as cost

@@ -39,6 +39,7 @@ TYPES = frozenset(
         *(f"{letter}vec{size}" for letter in ("", "i", "u", "b") for size in (2, 3, 4)),
     )
 )
+UNTRANSLATED = {"struct": "structures are not translated", "out": "`out` parameters are not translated"}
 PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
 
 
@@ -107,6 +108,8 @@ class GlslParser(Parser):
         token = self._word()
         if token.text not in TYPES and token.text != "void":
             self._at -= 1
+            if token.text in UNTRANSLATED:
+                raise self._error(UNTRANSLATED[token.text])
             raise self._error(f"{token.text} is not a type that is known here")
         return token.text
 

@@ -412,6 +412,15 @@ class WgslParser(Parser):
 
     # What expressions are made of.
 
+    def _arguments(self) -> list[Expression]:
+        """As in GLSL; a comma may stand behind the last."""
+        found: list[Expression] = []
+        while not self._skip(")"):
+            found.append(self._expression())
+            if self._next.text != ")":
+                self._take(",")
+        return found
+
     def _primary(self) -> Expression:
         token = self._take()
         if token.kind == "number":
@@ -542,7 +551,7 @@ class WgslParser(Parser):
         return super()._converted(value, scalar)
 
     def _is_abstract(self, value: Expression) -> bool:
-        leaves = [node for node in inside(value) if not isinstance(node, Binary | Unary)]
+        leaves = [node for node in inside(value) if not isinstance(node, Binary | Unary | Construct)]
         return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
