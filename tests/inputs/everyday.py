@@ -97,6 +97,9 @@ GLSL: Mapping[str, str] = MappingProxyType(
         "nested choices of components": _encode(f"a = {'mix(a * 0.9, ' * 12}a{', lessThan(a, vec2(0.1)))' * 12};"),
         "computed constant": _encode("a *= S * V.y;", "const float S = sqrt(0.25); const vec2 V = vec2(1.0, S + 0.5);"),
         "vector by a number": _encode("for (int i = 0; i < 2; i++) a[i] = a[1 - i] * 0.5 + (a + n.xy)[i] * 0.1;"),
+        "longitude at the poles": "vec2 mine_encode(vec3 n) { return vec2(atan(n.y, n.x) / 3.1415926536, n.z); }\n"
+        "vec3 mine_decode(vec2 e) { float a = e.x * 3.1415926536, s = sqrt(max(1.0 - e.y * e.y, 0.0));"
+        "return vec3(cos(a) * s, sin(a) * s, e.y); }",
         "usual functions": _encode(
             "a = smoothstep(-1.0, 1.0, a) * 2.0 - 1.0; a += reflect(a, vec2(0.6, 0.8)) * 0.1 * distance(a, n.xy);"
             "a *= degrees(radians(0.5)); a -= 0.1 * sign(vec2(ivec2(sign(n.xy))));"
@@ -143,6 +146,10 @@ WGSL: Mapping[str, str] = MappingProxyType(
             "var p = Parts(a, array(0.5, 0.25), 1); p.w[p.k] = 0.75; p.out.x *= p.w[p.k]; a = turned(p).out;",
             "struct Parts { out: vec2f, w: array<f32, 2>, k: i32 }\n"
             "fn turned(p: Parts) -> Parts { var q = p; q.out = q.out.yx; return q; }",
+        ),
+        "commas behind the last": _wgsl(
+            "a = max(\n a * S[1],\n vec2f(\n -0.75,\n -0.75,\n ),\n);",
+            "const S = array<vec2<f32>, 2>(vec2(1, 1), vec2(1, -1),);",
         ),
         "used before it stands": _wgsl("a *= LATER;") + "const LATER = TWICE * 0.25; const TWICE = 2.0;",
         "switch and loop": _wgsl(

@@ -1,5 +1,7 @@
 """A translation is measured once a second compiler has given the same."""
 
+import re
+
 import numpy as np
 import pytest
 from attack.translations import translated_here
@@ -10,6 +12,7 @@ from normalbench.bench.codecs import second_look
 from normalbench.bench.codecs.first_look import directions, first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.languages import second
+from normalbench.bench.languages.translated import translated
 from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.output import cache as kept
 from normalbench.bench.translator.wgsl_parser import WgslParser
@@ -111,3 +114,29 @@ def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
     assert second_look._first_apart(folded, n, folded(n), folded(moved), 2.0**-16) is None
     at = second_look._first_apart(folded, n, folded(n), folded(n) * 1.001, 2.0**-16)
     assert at is not None and angles_deg(n[at : at + 1], n[at : at + 1])[0] == 0
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path):
+    """slangc refuses the silent truncation of a float3; without fmod a line says that it was not checked."""
+    plain = hlsl_of(tmp_path, "plain", "float2 p = n; return p;")
+    (said,) = first_look(plain)["notes"]
+    assert said.startswith("no second compiler has checked its translation: slangc does not read it"), said
+    said = first_look(hlsl_of(tmp_path, "misread", "float2 p = n; return fmod(p, 0.7);"))["error"]
+    assert "it uses fmod, which glslang reads otherwise than HLSL defines it" in said and "slangc does not" in said
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_hlsl_that_glslang_does_not_read_is_read_by_slangc(tmp_path):
+    """select() of HLSL 2021, as Unreal has it."""
+    path = hlsl_of(tmp_path, "mine", "return select(n.z >= 0.0, n.xy, n.yx);")
+    assert "error" not in first_look(path)
+    assert "it is read by Slang's compiler" in " ".join(translated(path).notes)
+    wrong = hlsl_of(tmp_path, "wrong", "return select(nothing, n.xy, n.yx);")
+    assert re.search(r"wrong\.hlsl:3:\d+: nothing", first_look(wrong)["error"])
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
+    said = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
+    assert said.endswith("it divides a whole number by 0, of some normal; its language does not define that")

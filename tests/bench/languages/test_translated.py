@@ -303,3 +303,13 @@ def test_the_version_of_hlsl_is_known(run, ending, version):
     )
     status, out, err = run("quality", "--encoding", f"mine.{ending}", *QUICK)
     assert status == 0 and json.loads(out), err
+
+
+def test_hints_to_compilers_keep_nothing_from_being_written(run, ending):
+    """[unroll] and [branch], which SPIRV-Cross writes as macros under a condition."""
+    loop = "float s = 0; [unroll] for (int i = 0; i < 2; i++) s += p[i];"
+    Path(f"mine.{ending}").write_text(changed(f"{loop} [branch] if (n.z < 2) return float2(s, p.x - p.y); return p;"))
+    status, out, err = run(
+        "code", "--check", f"mine.{ending}", "--storage", "rg16", "--to", "c,hlsl", "--format", "json"
+    )
+    assert status == 0 and [row["verdict"] for row in json.loads(out)] == ["verified"] * 2, err
