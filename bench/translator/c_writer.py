@@ -12,6 +12,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from .builtins import BITS, FETCH
+from .c_defined import HELPERS, OPERATIONS, Range, counted, range_of
 from .parser import BINDING, SHIFTS
 from .tree import SCALARS as LETTERS
 from .tree import (
@@ -39,10 +40,9 @@ from .tree import (
     scalar_of,
     size_of,
 )
-from .writer import CHOICE, FIELDS, INDENT, PRIMARY, UNARY, Writer, base_of, words
+from .writer import CHOICE, FIELDS, INDENT, PRIMARY, UNARY, Writer, words
 
 Part = tuple[str, int]
-Range = tuple[int, int]
 # Scalars in, a scalar out, component by component.
 FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
@@ -68,44 +68,6 @@ SCALARS: Mapping[str, str] = MappingProxyType({"float": "float", "int": "int32_t
 # A part that may stand in several places without being computed twice.
 PLAIN = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.")
 WHOLE = ("int", "uint")
-INT = (-(2**31), 2**31 - 1)
-# Functions of the file's own: what C leaves undefined, or has for no such type.
-HELPERS: Mapping[str, str] = MappingProxyType(
-    {
-        "min": "float {0}(float a, float b) {{ return a < b ? a : b; }}",
-        "max": "float {0}(float a, float b) {{ return a > b ? a : b; }}",
-        "imin": "int32_t {0}(int32_t a, int32_t b) {{ return a < b ? a : b; }}",
-        "imax": "int32_t {0}(int32_t a, int32_t b) {{ return a > b ? a : b; }}",
-        "umin": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a < b ? a : b; }}",
-        "umax": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a > b ? a : b; }}",
-        "iabs": "int32_t {0}(int32_t a) {{ return a < 0 && a != INT32_MIN ? -a : a; }}",
-        "isign": "int32_t {0}(int32_t a) {{ return (a > 0) - (a < 0); }}",
-        "floatBitsToInt": "int32_t {0}(float x) {{ int32_t y = "
-        "0x7FC00000; if (x == x) memcpy(&y, &x, sizeof y); return y; }}",
-        "floatBitsToUint": "uint32_t {0}(float x) {{ uint32_t y = "
-        "0x7FC00000u; if (x == x) memcpy(&y, &x, sizeof y); return y; }}",
-        "intBitsToFloat": "float {0}(int32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
-        "uintBitsToFloat": "float {0}(uint32_t x) {{ float y; memcpy(&y, &x, sizeof y); return y; }}",
-        "to_int": "int32_t {0}(float x) {{ return x >= 2147483648.0f ? INT32_MAX : x >= -2147483648.0f ? (int32_t)x"
-        " : x < 0.0f ? INT32_MIN : 0; }}",
-        "to_uint": "uint32_t {0}(float x) {{ return x >= 4294967296.0f ? UINT32_MAX : x >= 0.0f ? (uint32_t)x : 0; }}",
-        "at": "int32_t {0}(int32_t i, int32_t count) {{ return i < 0 ? 0 : i < count ? i : count - 1; }}",
-        "add": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a + (uint32_t)b); }}",
-        "subtract": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a - (uint32_t)b); }}",
-        "multiply": "int32_t {0}(int32_t a, int32_t b) {{ return (int32_t)((uint32_t)a * (uint32_t)b); }}",
-        "divide": "int32_t {0}(int32_t a, int32_t b) {{ return !b || (b == -1 && a == INT32_MIN) ? a : a / b; }}",
-        "remainder": "int32_t {0}(int32_t a, int32_t b) {{ return !b || b == -1 ? 0 : a % b; }}",
-        "udivide": "uint32_t {0}(uint32_t a, uint32_t b) {{ return b ? a / b : a; }}",
-        "uremainder": "uint32_t {0}(uint32_t a, uint32_t b) {{ return b ? a % b : 0; }}",
-        "left": "int32_t {0}(int32_t a, uint32_t b) {{ return (int32_t)((uint32_t)a << (b & 31)); }}",
-        "right": "int32_t {0}(int32_t a, uint32_t b) {{ return a >> (b & 31); }}",
-        "uleft": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a << (b & 31); }}",
-        "uright": "uint32_t {0}(uint32_t a, uint32_t b) {{ return a >> (b & 31); }}",
-    }
-)
-OPERATIONS: Mapping[str, str] = MappingProxyType(
-    {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "%": "remainder", "<<": "left", ">>": "right"}
-)
 
 
 class CWriter(Writer):
@@ -239,7 +201,7 @@ class CWriter(Writer):
         return super()._statement(_without_comments(statement), indent)
 
     def _loop(self, loop: For, indent: str) -> str:
-        known = _counted(loop)
+        known = counted(loop)
         self._ranges |= known
         start = self._plain(loop.start) if loop.start else ""
         inner = indent + INDENT
@@ -457,7 +419,7 @@ class CWriter(Writer):
             case Construct("int" | "uint", [Literal("int" | "uint", text)]):
                 return int(text, 0), int(text, 0)
             case Binary(_, mark, left, right):
-                return _range_of(mark, self._range(left), self._range(right))
+                return range_of(mark, self._range(left), self._range(right))
         return None
 
     def _logical(self, value: Binary) -> Part:
@@ -646,45 +608,6 @@ OF_WHOLE = frozenset(words("dot cross normalize length distance reflect transpos
 
 def _without_comments(statement: Statement) -> Statement:
     return replace(statement, above=[])
-
-
-def _counted(loop: For) -> dict[str, Range]:
-    """The counter of a loop from a number up to another, and what it is in the loop."""
-    match loop:
-        case For(
-            Declare("int" | "uint", name, Literal(_, first)),
-            Binary(_, "<" | "<=" as mark, Name(_, same), Literal(_, end)),
-            Assign(Name(_, counted), "+=", Literal(_, by)),
-        ) if name == same == counted and int(by, 0) > 0:
-            changed = [node for node in inside(loop.body) if isinstance(node, Assign) and base_of(node) == name]
-            # The counter goes one step beyond.
-            last = int(end, 0) - (mark == "<")
-            return {} if changed or last + int(by, 0) > INT[1] else {name: (int(first, 0), last)}
-    return {}
-
-
-def _range_of(mark: str, left: Range | None, right: Range | None) -> Range | None:
-    """What an operation of two ranges gives; None where that is not known or does not fit."""
-    if mark == "&":
-        known = [most for one in (left, right) if one and one[0] >= 0 for most in one[1:]]
-        return (0, min(known)) if known else None
-    if not left or not right:
-        return None
-    match mark:
-        case "+":
-            made = left[0] + right[0], left[1] + right[1]
-        case "-":
-            made = left[0] - right[1], left[1] - right[0]
-        case "*":
-            corners = [a * b for a in left for b in right]
-            made = min(corners), max(corners)
-        case "<<" if left[0] >= 0 and right[0] >= 0 and right[1] < 32:
-            made = left[0] << right[0], left[1] << right[1]
-        case ">>" if left[0] >= 0 and right[0] >= 0:
-            made = left[0] >> right[1], left[1] >> right[0]
-        case _:
-            return None
-    return made if INT[0] <= made[0] and made[1] <= INT[1] else None
 
 
 def _in(part: Part, least: int) -> str:
