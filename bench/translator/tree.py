@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, is_dataclass
+from threading import Lock
 from typing import Any
 
 SCALARS = {"float": "", "int": "i", "uint": "u", "bool": "b"}
@@ -25,14 +26,35 @@ def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Ite
     Args:
         placed: makes the error of what is wrong, with the place if that is known.
     """
-    before = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(before, MOST_FRAMES))
-    try:
-        yield
-    except UNEXPECTED as error:
-        raise placed("this is too deep" if isinstance(error, RecursionError) else "this is not understood") from error
-    finally:
-        sys.setrecursionlimit(before)
+    with _room:
+        try:
+            yield
+        except UNEXPECTED as error:
+            why = "this is too deep" if isinstance(error, RecursionError) else "this is not understood"
+            raise placed(why) from error
+
+
+class _Room:
+    """Room for deep trees as long as any thread needs it: the limit is one for all of them."""
+
+    def __init__(self) -> None:
+        self._lock, self._users, self._before = Lock(), 0, 0
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._users:
+                self._before = sys.getrecursionlimit()
+                sys.setrecursionlimit(max(self._before, MOST_FRAMES))
+            self._users += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._users -= 1
+            if not self._users:
+                sys.setrecursionlimit(self._before)
+
+
+_room = _Room()
 
 
 @dataclass(frozen=True)

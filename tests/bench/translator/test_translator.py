@@ -1,6 +1,7 @@
 """Programs read as trees and written again: meaning, comments and places are kept, in every language."""
 
 import re
+import sys
 
 import pytest
 
@@ -11,7 +12,7 @@ from normalbench.bench.translator.glsl_writer import GlslWriter
 from normalbench.bench.translator.hlsl_writer import HlslWriter
 from normalbench.bench.translator.msl_writer import MslWriter
 from normalbench.bench.translator.reduce import reduced
-from normalbench.bench.translator.tree import TranslationError
+from normalbench.bench.translator.tree import TranslationError, one_error_type
 from normalbench.bench.translator.wgsl_parser import read_wgsl
 from normalbench.bench.translator.wgsl_writer import WgslWriter
 
@@ -244,3 +245,14 @@ def test_cuda_assigns_to_several_components_and_hides_no_function():
 def test_an_array_without_a_length_is_said_with_line_and_column(length):
     with pytest.raises(TranslationError, match=r"^2:\d+: an array's length is not a number"):
         read_glsl(f"vec2 f(vec3 n) {{\n    float x[{length}];\n    return n.xy;\n}}")
+
+
+def test_the_room_for_deep_trees_is_given_back_by_the_last_thread():
+    """The limit of recursion is one for all threads: two readers that overlap leave it as it was."""
+    before, first, second = sys.getrecursionlimit(), one_error_type(), one_error_type()
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert sys.getrecursionlimit() > before
+    second.__exit__(None, None, None)
+    assert sys.getrecursionlimit() == before
