@@ -137,19 +137,17 @@ class CWriter(Writer):
         return SCALARS.get(kind) or f"{self._prefix}_{kind}"
 
     def _global(self, constant: Declare) -> str:
-        if not any(isinstance(node, Call | Name) for node in inside(constant.value)):
-            return f"static const {self._declared(constant)};"
+        self._used, self._count = set(self._taken), 0
+        text, hoisted = self._apart(lambda: self._declared(constant), INDENT)
+        if not hoisted and not any(isinstance(node, Call | Name) for node in inside(constant.value)):
+            return f"static const {text};"
         if "[" in constant.kind:
             raise TranslationError(f"{constant.name}: an array of what is computed is not written in C")
-        self._hoisted, self._indent = [], INDENT
-        self._used, self._count = set(self._taken), 0
-        assert constant.value
-        text = self._whole(constant.value)
-        hoisted, self._hoisted = "".join(self._hoisted), []
         self._computed.add(constant.name)
-        return (
-            f"static inline {self._kind(constant.kind)} {constant.name}(void) {{\n{hoisted}{INDENT}return {text};\n}}"
-        )
+        head = f"static inline {self._kind(constant.kind)} {constant.name}(void)"
+        result = text.partition(" = ")[2]
+        result = f"({self._kind(constant.kind)}){result}" if result.startswith("{") else result
+        return f"{head} {{\n{hoisted}{INDENT}return {result};\n}}"
 
     def _name(self, name: str) -> str:
         return f"{name}()" if name in self._computed else super()._name(name)
@@ -242,12 +240,8 @@ class CWriter(Writer):
             return self._text(value)
         if isinstance(value, Name) or (isinstance(value, Call) and value.is_own):
             return self._written(value)[0]
-        texts = [text for text, _ in self._parts(value)]
-        if value.kind in MATRICES:
-            size = int(value.kind[3])
-            texts = [f"{{{', '.join(texts[at : at + size])}}}" for at in range(0, size**2, size)]
-        parts = ", ".join(texts)
-        return f"{{{parts}}}" if is_initial else f"({self._kind(value.kind)}){{{parts}}}"
+        whole = self._assembled(self._parts(value), value.kind)
+        return whole.removeprefix(f"({self._kind(value.kind)})") if is_initial else whole
 
     # Places: what can be assigned to, and read without being computed.
 
@@ -327,8 +321,6 @@ class CWriter(Writer):
         while isinstance(base, Index | Swizzle):
             base = base.value
         is_there = isinstance(base, Name) and base.name not in self._computed
-        if isinstance(inner, Swizzle) and not isinstance(at, Literal):
-            is_there = False
         if is_there and not isinstance(inner, Swizzle):
             return self._members(self._place(value), value.kind)
         if inner.kind.endswith("]"):
@@ -336,7 +328,6 @@ class CWriter(Writer):
         parts, size = self._parts(inner), size_of(value.kind)
         if isinstance(at, Literal):
             return parts[int(at.text, 0) * size :][:size]
-        self._count += 1
         whole = self._temporary(self._kind(inner.kind), self._whole(inner))
         count = len(parts) // size
         return self._members(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
@@ -399,7 +390,7 @@ class CWriter(Writer):
 
     def _is_safe(self, value: Binary) -> bool:
         """Whether C defines what an operation of whole numbers gives."""
-        left, right = self._range(value.left), self._range(value.right)
+        right = self._range(value.right)
         if value.operator in SHIFTS:
             is_left_safe = (
                 value.operator == ">>" or scalar_of(value.left.kind) == "uint" or self._range(value) is not None
@@ -407,7 +398,7 @@ class CWriter(Writer):
             return right is not None and right[0] >= 0 and right[1] < 32 and is_left_safe
         if value.operator in ("/", "%"):
             return right is not None and right[0] > 0
-        return scalar_of(value.kind) == "uint" or self._range(value) is not None or left == right == (0, 0)
+        return scalar_of(value.kind) == "uint" or self._range(value) is not None
 
     def _range(self, value: Expression) -> Range | None:
         """What a signed number is at least and at most; None where that is not known."""

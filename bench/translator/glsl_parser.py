@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .parser import FOLDED, Parser
+from .parser import Parser
 from .tokens import END, Preprocessor, Token, suffixed
 from .tree import (
     Assign,
@@ -17,7 +17,6 @@ from .tree import (
     For,
     Function,
     If,
-    Index,
     Leave,
     Literal,
     Name,
@@ -61,7 +60,6 @@ class GlslParser(Parser):
 
     def __init__(self, given: Sequence[Token], constants: dict[str, list[Token]]):
         super().__init__(given)
-        self._made = Program([], [], [])
         for name, words in constants.items():
             value = GlslParser(words, {})._initial()
             self._constant(name, value)
@@ -154,24 +152,6 @@ class GlslParser(Parser):
         length = self._expression()
         self._take("]")
         return length
-
-    def _array_of(self, kind: str, length: Expression) -> str:
-        count = self._whole_number(length)
-        if count is None:
-            raise self._error("an array's length is not a number")
-        return f"{kind}[{count}]"
-
-    def _whole_number(self, value: Expression | None) -> int | None:
-        """What a constant expression of whole numbers is; None of any other."""
-        match value:
-            case Literal("int" | "uint", text):
-                return int(text, 0)
-            case Name(_, name):
-                return self._whole_number(next((c.value for c in self._made.constants if c.name == name), None))
-            case Binary(_, mark, left, right) if mark in FOLDED:
-                first, second = self._whole_number(left), self._whole_number(right)
-                return None if first is None or second is None else FOLDED[mark](first, second)
-        return None
 
     # Statements.
 
@@ -327,12 +307,9 @@ class GlslParser(Parser):
         values = [self._converted(value, scalar_of(kind)) for value in self._arguments()]
         return Elements(f"{kind}[{len(values)}]", values)
 
-    def _behind(self, value: Expression) -> Expression:
-        """As in every language; an element of an array that has no name is one of its values."""
-        value = super()._behind(value)
-        if isinstance(value, Index) and isinstance(value.value, Elements):
-            return self._element_of(value.value, value.at)
-        return value
+    def _indexed(self, value: Expression, at: Expression) -> Expression:
+        """An element; of an array that has no name, one of its values."""
+        return self._element_of(value, at) if isinstance(value, Elements) else super()._indexed(value, at)
 
     def _element_of(self, array: Elements, at: Expression) -> Expression:
         found = array.values[-1]

@@ -87,6 +87,7 @@ class Parser:
         self._tokens, self._at, self._depth = given, 0, 0
         self._scopes: list[dict[str, Expression]] = [{}]
         self._functions: dict[str, list[Function]] = {}
+        self._made = Program([], [], [])
         # Those that the program does not have itself.
         self._made_functions: dict[str, Function] = {}
         # No name that is made is one of these.
@@ -290,9 +291,12 @@ class Parser:
             elif self._skip("["):
                 at = self._expression()
                 self._take("]")
-                value = Index(self._element(value.kind), value, at)
+                value = self._indexed(value, at)
             else:
                 return value
+
+    def _indexed(self, value: Expression, at: Expression) -> Expression:
+        return Index(self._element(value.kind), value, at)
 
     def _member(self, value: Expression, word: Token) -> Expression:
         size, names = size_of(value.kind), word.text
@@ -311,6 +315,24 @@ class Parser:
         if size_of(kind) == 1:
             raise self._error(f"a {kind} has no elements")
         return scalar_of(kind)
+
+    def _array_of(self, kind: str, length: Expression) -> str:
+        count = self._whole_number(length)
+        if count is None:
+            raise self._error("an array's length is not a number")
+        return f"{kind}[{count}]"
+
+    def _whole_number(self, value: Expression | None) -> int | None:
+        """What a constant expression of whole numbers is; None of any other."""
+        match value:
+            case Literal("int" | "uint", text):
+                return int(text, 0)
+            case Name(_, name):
+                return self._whole_number(next((c.value for c in self._made.constants if c.name == name), None))
+            case Binary(_, mark, left, right) if mark in FOLDED:
+                first, second = self._whole_number(left), self._whole_number(right)
+                return None if first is None or second is None else FOLDED[mark](first, second)
+        return None
 
     def _arguments(self) -> list[Expression]:
         """What stands between parentheses, the first of which is taken."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from .glsl_parser import read_glsl
-from .parser import BINDING, FOLDED, SHIFTS, Parser
+from .parser import BINDING, SHIFTS, Parser
 from .tokens import END, Token, tokens, with_a_point
 from .tree import (
     Binary,
@@ -22,7 +22,6 @@ from .tree import (
     For,
     Function,
     If,
-    Index,
     Leave,
     Literal,
     Member,
@@ -32,7 +31,6 @@ from .tree import (
     Return,
     Statement,
     Struct,
-    Swizzle,
     Unary,
     While,
     inside,
@@ -92,7 +90,6 @@ class WgslParser(Parser):
 
     def __init__(self, given: Sequence[Token]):
         super().__init__(given)
-        self._made = Program([], [], [])
         self._aliases: dict[str, str] = {}
         self._abstract: set[str] = set()
         # Constants that stand outside of functions: where their declarations begin, and those that are read.
@@ -249,21 +246,9 @@ class WgslParser(Parser):
             count = self._binary(BINDING["+"])
             self._skip(",")
             self._take(">")
-            return f"{element}[{self._length_of(count)}]"
+            return self._array_of(element, count)
         self._take(">")
         return f"mat{token.text[3]}" if token.text.startswith("mat") else vector(element, int(token.text[3]))
-
-    def _length_of(self, value: Expression) -> int:
-        match value:
-            case Literal(_, text):
-                return int(text, 0)
-            case Name(_, name):
-                found = next((c.value for c in self._made.constants if c.name == name), None)
-                if found is not None:
-                    return self._length_of(found)
-            case Binary(_, mark, left, right) if mark in FOLDED:
-                return FOLDED[mark](self._length_of(left), self._length_of(right))
-        raise self._error("an array's length is not a number")
 
     # Statements.
 
@@ -516,19 +501,11 @@ class WgslParser(Parser):
             return Member(kind, value, word.text)
         return super()._member(value, word)
 
-    def _behind(self, value: Expression) -> Expression:
-        """Members and elements; an index beyond an array is its last."""
-        found = super()._behind(value)
-        node = found
-        while isinstance(node, Index | Member | Swizzle):
-            if isinstance(node, Index) and not isinstance(node.at, Literal):
-                node.at = self._inside(node.value.kind, node.at)
-            node = node.value
-        return found
+    def _indexed(self, value: Expression, at: Expression) -> Expression:
+        """An element; an index beyond an array is its last."""
+        return super()._indexed(value, at if isinstance(at, Literal) else self._inside(value.kind, at))
 
     def _inside(self, kind: str, at: Expression) -> Expression:
-        if isinstance(at, Call) and at.name.startswith("min("):
-            return at
         count = int(kind.partition("[")[2].rstrip("]")) if "[" in kind else int(kind[-1])
         whole = at if at.kind == "uint" else Construct("uint", [at])
         return Call("uint", "min", [whole, Literal("uint", str(count - 1))])
@@ -570,10 +547,14 @@ class WgslParser(Parser):
         scalar = scalar_of(left.kind)
         if mark == "%" and scalar == "float":
             return self._modulus("trunc", left, right)
-        if mark in OPERATIONS and scalar in CONVERSIONS and not _divides(right):
-            return self._defined(OPERATIONS[mark], scalar, [left, right])
-        if mark == "%" and scalar == "int":
-            return self._defined(OPERATIONS[mark], scalar, [left, right])
+        if mark in OPERATIONS and scalar in CONVERSIONS:
+            # By a number above 0 both languages divide alike, but for remainders of negative numbers.
+            is_plain = _divides(right) and (mark, scalar) != ("%", "int")
+            return (
+                self._combined(mark, left, right)
+                if is_plain
+                else self._defined(OPERATIONS[mark], scalar, [left, right])
+            )
         return self._combined(mark, left, right)
 
     def _masked(self, by: Expression) -> Expression:

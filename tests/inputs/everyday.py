@@ -95,7 +95,10 @@ GLSL: Mapping[str, str] = MappingProxyType(
         ),
         "nested modulus": _encode(f"a += 0.1 * {'mod(' * 40}a.x + 0.0{', 0.9)' * 40};"),
         "nested choices of components": _encode(f"a = {'mix(a * 0.9, ' * 12}a{', lessThan(a, vec2(0.1)))' * 12};"),
-        "computed constant": _encode("a *= S * V.y;", "const float S = sqrt(0.25); const vec2 V = vec2(1.0, S + 0.5);"),
+        "computed constant": _encode(
+            "a *= S * V.y;",
+            "const vec2 W = vec2(0.5 * 2.0); const float S = sqrt(0.25) * W.x; const vec2 V = vec2(1.0, S + 0.5);",
+        ),
         "vector by a number": _encode("for (int i = 0; i < 2; i++) a[i] = a[1 - i] * 0.5 + (a + n.xy)[i] * 0.1;"),
         "longitude at the poles": "vec2 mine_encode(vec3 n) { return vec2(atan(n.y, n.x) / 3.1415926536, n.z); }\n"
         "vec3 mine_decode(vec2 e) { float a = e.x * 3.1415926536, s = sqrt(max(1.0 - e.y * e.y, 0.0));"
