@@ -97,20 +97,19 @@ def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
 ENDS = {
     "reads what is not there": ("return *(volatile float *)8;", "SIGSEGV"),
     "never ends": ("for (volatile int i = 0;; ++i) ; return 0.0f;", "SIGXCPU|SIGKILL|did not end"),
-    "wants all memory": ("for (;;) memset(calloc(1u << 28, 1), 1, 1u << 28);", "SIGSEGV|SIGKILL"),
+    # One page of each block is touched: a busy machine does not reach the limit of seconds first.
+    "wants all memory": ("for (;;) *(volatile char *)calloc(1u << 28, 1) = 1;", "SIGSEGV|SIGKILL"),
 }
 
 
-# C++ may leave out a loop that only takes memory.
-@pytest.mark.parametrize(
-    ("language", "what"), [("c", "wants all memory"), *((one, what) for one in ("c", "msl") for what in [*ENDS][:2])]
-)
+@pytest.mark.parametrize("what", ENDS)
+@pytest.mark.parametrize("language", ["c", "msl"])
 def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypatch):
     """One line says how it ended; this process lives."""
     ran(language, SPHEREMAP, given(8))
     monkeypatch.setitem(c.LIMITS, "RUN_SECONDS", 1)
     body, how = ENDS[what]
-    head = "#include <stdlib.h>\n#include <string.h>\n" if "calloc" in body else ""
+    head = "#include <stdlib.h>\n" if "calloc" in body else ""
     text = file_of(SPHEREMAP, language).read_text()
     name = re.search(r"\bspheremap_rg8_encode\(\w+ (\w+)\) \{", text)
     assert name, text
