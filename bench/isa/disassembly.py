@@ -85,8 +85,19 @@ def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
 def issue_slots(counts: Mapping[str, int], family: str) -> int | None:
     """What a kernel's lane instructions take of the vector ALU's issue, in full-rate instructions; sums of kernels add
     up. None for a family whose rates are not known."""
-    rates = SLOTS.get(family)
-    return sum(rate * counts[name] for name, rate in rates.items()) if rates else None
+    slots = rates(family)
+    return sum(rate * counts[name] for name, rate in slots.items()) if slots else None
+
+
+def rates(family: str) -> Mapping[str, int] | None:
+    """How many issue slots an instruction of each kind takes; none of a kind that runs beside. None for a family whose
+    rates are not known."""
+    return SLOTS.get(family)
+
+
+def kinds_in_order(assembly: str, family: str) -> list[str]:
+    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    return [kind(name, family) for name in names(assembly)]
 
 
 def packed(assembly: str) -> int:
@@ -94,10 +105,10 @@ def packed(assembly: str) -> int:
     return sum(name.startswith("v_pk_") for name in names(assembly))
 
 
-def looped(assembly: str) -> int:
-    """How many instructions lie in loops: from the label that a jump goes back to, to that jump."""
+def loops(assembly: str) -> list[range]:
+    """The instructions of each loop, by their places: from the label that a jump goes back to, to that jump."""
     begins: dict[str, int] = {}
-    inside: set[int] = set()
+    found: list[range] = []
     at = 0
     for line in assembly.splitlines():
         if label := _LABEL.match(line):
@@ -105,10 +116,10 @@ def looped(assembly: str) -> int:
         elif match := _INSTRUCTION.match(line):
             at += 1
             if match[1].startswith(("s_cbranch", "s_branch")) and match[2] in begins:
-                inside.update(range(begins[match[2]], at))
+                found.append(range(begins[match[2]], at))
         elif match := _REPEATED.match(line):
             at += int(match[1])
-    return len(inside)
+    return found
 
 
 def jumps(assembly: str) -> tuple[int, int]:

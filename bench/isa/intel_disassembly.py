@@ -105,10 +105,21 @@ def packed(_: str) -> None:
     return
 
 
-def looped(assembly: str) -> int:
-    """How many instructions lie in loops: from the label that a `while` goes back to, to that `while`."""
+def rates(family: str) -> Mapping[str, int]:
+    """How many issue slots an instruction of each kind takes, by Mesa's model of the units (brw_ir_performance.cpp):
+    from generation 8 on, 8 lanes occupy the unit of `math` for 4 cycles and the others for 2; before, both for 2."""
+    return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 1 if family == "hsw" else 2}
+
+
+def kinds_in_order(assembly: str, _: str) -> list[str]:
+    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    return [kind(one) for one in instructions(assembly)]
+
+
+def loops(assembly: str) -> list[range]:
+    """The instructions of each loop, by their places: from the label that a `while` goes back to, to that `while`."""
     begins: dict[str, int] = {}
-    inside: set[int] = set()
+    found: list[range] = []
     at = 0
     for line in assembly.splitlines():
         if label := _LABEL.match(line):
@@ -117,8 +128,8 @@ def looped(assembly: str) -> int:
             at += 1
             target = _TARGET.search(one.operands)
             if one.name == "while" and target and target[1] in begins:
-                inside.update(range(begins[target[1]], at))
-    return len(inside)
+                found.append(range(begins[target[1]], at))
+    return found
 
 
 def jumps(assembly: str) -> tuple[int, int]:

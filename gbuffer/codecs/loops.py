@@ -1,4 +1,4 @@
-"""Whether a device ends the loops of a user's shader before they are done.
+"""How often the loops of a shader run, and whether a device ends them before they are done.
 
 A software driver ends all loops of a shader together after some number of turns, and says nothing: what is measured
 then is not what a GPU computes. So a short loop runs behind the user's functions: where theirs were ended, it is too.
@@ -6,15 +6,29 @@ then is not what a GPU computes. So a short loop runs behind the user's function
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import numpy as np
 
 from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.storage import STORAGES
 from ..gl.device import Device
+from ..gl.shader import ROOM, ShaderError, Source
 from .codec_passes import encoding_defines
 from .harness import exact
 
 # Turns of the loop behind; of the longest that `loop_limit` asks for.
 FEW, MANY = 4, 2**17
+# More loops than that are not counted.
+MOST_LOOPS = 32
+_COUNTER = "loops_counted.comp"
+# What the renderer and the storages write around an encoding.
+_NOT_COUNTED = (ROOM, ROOM.parent / "encodings" / "storages")
+_LOOP = re.compile(r"\b(for|while)\s*\(")
+_NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n\\]|\\\n|\\)*", re.S | re.M)
 
 
 def loop_limit(device: Device) -> int | None:
@@ -37,3 +51,59 @@ def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndar
     # What stands behind a loop without an end is not even compiled: nothing is written there.
     encoded, decoded = (flags[:, 0] != 1 for flags in found)
     return encoded, decoded
+
+
+def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How often each loop runs its body for each normal: in encode, and in decode of the code that this gives.
+
+    Args:
+        n, view: float32 arrays of shape (count, 4).
+
+    Returns:
+        two float32 arrays of shape (count, loops), the loops in the order of the text.
+
+    Raises:
+        ShaderError: as `encoding_defines`, or there are more than MOST_LOOPS loops.
+    """
+    scale = float(STORAGES["rgba8"].scale(0))
+    defines = encoding_defines(encoding) | {"MOST_LOOPS": MOST_LOOPS, "KERNEL_SCALE": scale}
+    text, loops = _counted(Source(_COUNTER, defines, {"ENCODING": encoding.glsl}))
+    if loops > MOST_LOOPS:
+        raise ShaderError(f"{encoding.glsl}: {loops} loops, of which at most {MOST_LOOPS} are counted")
+    # A normal once for each loop, which its fourth number names.
+    given = np.repeat(n, loops, axis=0)
+    given[:, 3] = np.tile(np.arange(loops), len(n))
+    with TemporaryDirectory() as folder:
+        path = Path(folder, _COUNTER)
+        path.write_text(text, encoding="utf-8")
+        views = np.repeat(view, loops, axis=0)
+        turns, _ = exact(device, str(path), {}, {}, [given, views], 2, encoding.tables) if loops else (given, None)
+    encoded, decoded = turns[:, 0], turns[:, 1]
+    return encoded.reshape(len(n), loops), decoded.reshape(len(n), loops)
+
+
+def _counted(source: Source) -> tuple[str, int]:
+    """A shader's text with each condition of the encoding's loops counted, and how many these are."""
+    text = source.text
+    code = _NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    is_counted = [not any(path.is_relative_to(room) for room in _NOT_COUNTED) for path in source.files]
+    conditions = [found for found in _conditions(code) if is_counted[code.count("\n", 0, found[0])]]
+    for loop, (first, last, function) in reversed(list(enumerate(conditions))):
+        text = f"{text[:first]}{function}({loop}, {text[first:last].strip() or 'true'}){text[last:]}"
+    return text, len(conditions)
+
+
+def _conditions(code: str) -> Iterator[tuple[int, int, str]]:
+    """Where the condition of each loop begins and ends, and the function that counts it."""
+    for match in _LOOP.finditer(code):
+        first, parts = match.end(), [match.end()]
+        depth, at = 1, first
+        while depth and at < len(code):
+            depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[at], 0)
+            at += 1
+            if depth == 1 and code[at - 1] == ";":
+                parts.append(at)
+        if match[1] == "for" and len(parts) == 3:
+            yield parts[1], parts[2] - 1, "next_turn"
+        elif match[1] == "while":
+            yield first, at - 1, "turn_made" if code[at:].lstrip().startswith(";") else "next_turn"

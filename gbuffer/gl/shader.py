@@ -65,6 +65,11 @@ class Source:
         self._lines: list[Line] = [version, *head, *rest]
         self.text = _text([version, *head]) + body
 
+    @property
+    def files(self) -> list[Path]:
+        """The file that each line of the text comes from."""
+        return [path for _, path, _ in self._lines]
+
     def explain(self, log: str) -> str:
         """A compiler's message with file names and their line numbers in place of its own."""
 

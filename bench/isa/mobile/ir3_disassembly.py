@@ -97,6 +97,11 @@ def issue_slots(_: Mapping[str, int], __: str) -> None:
     return
 
 
+def rates(_: str) -> Mapping[str, int]:
+    """How many issue slots an instruction of each kind takes: one, since the rates are not public."""
+    return {**dict.fromkeys(KINDS, 1), "waiting": 0}
+
+
 def jumps(assembly: str) -> tuple[int, int]:
     """(branches, loops): conditional jumps ahead, and jumps back."""
     found = [one for one in instructions(assembly) if kind(one.name) == "control_flow"]

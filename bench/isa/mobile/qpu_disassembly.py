@@ -93,6 +93,11 @@ def slots(assembly: str) -> dict[str, int]:
     return {"vliw_slots": sum(len(one.operations) for one in instructions(assembly))}
 
 
+def rates(_: str) -> Mapping[str, int]:
+    """How many issue slots an instruction of each kind takes: one, whatever it holds."""
+    return dict.fromkeys(KINDS, 1)
+
+
 def jumps(assembly: str) -> tuple[int, int]:
     """(branches, loops): conditional jumps ahead, and jumps back."""
     found = [match for one in instructions(assembly) for part in one.operations if (match := _JUMP.match(part))]

@@ -105,13 +105,21 @@ def packed(_: str) -> None:
     return
 
 
-def looped(assembly: str) -> int:
-    """How many instructions lie in loops: from the place that a jump goes back to, to that jump."""
-    inside: set[int] = set()
-    for one, _, distance in _jumps(assembly):
-        if distance < 0:
-            inside.update(range(one.place + distance, one.place + SIZE, SIZE))
-    return len(inside)
+def rates(family: str) -> Mapping[str, int]:
+    """How many issue slots an instruction of each kind takes. A multiprocessor computes 16 special functions a cycle;
+    64 additions on Turing, and 128 after it (CUDA C++ Programming Guide, Arithmetic Instructions)."""
+    return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 4 if family == "sm_75" else 8}
+
+
+def kinds_in_order(assembly: str, _: str) -> list[str]:
+    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    return [_KIND[name] for name in names(assembly)]
+
+
+def loops(assembly: str) -> list[range]:
+    """The instructions of each loop, by their places: from where a jump goes back to, to that jump."""
+    jumps_back = ((one.place, distance) for one, _, distance in _jumps(assembly) if distance < 0)
+    return [range((place + distance) // SIZE, place // SIZE + 1) for place, distance in jumps_back]
 
 
 def jumps(assembly: str) -> tuple[int, int]:

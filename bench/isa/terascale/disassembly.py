@@ -100,6 +100,11 @@ def issue_slots(counts: Mapping[str, int], _: str) -> int:
     return counts["other_alu"] + counts["transcendental"]
 
 
+def rates(_: str) -> Mapping[str, int]:
+    """How many issue slots a bundle of each kind takes: one, whatever it computes."""
+    return {"other_alu": 1, "transcendental": 1}
+
+
 def jumps(assembly: str) -> tuple[int, int]:
     """(branches, loops): jumps over what not every lane runs, and jumps back."""
     found = list(_others(assembly))

@@ -23,6 +23,7 @@ from ...isa.terascale import disassembly as terascale_disassembly
 from ...machine.cores import on_all_cores
 from ...options.gpu_families import FAMILIES, NVRTC, R600
 from ...output.errors import MissingError
+from . import executed
 from .table import TABLE
 
 Row = dict[str, Any]
@@ -59,7 +60,7 @@ READERS: Mapping[str, Any] = {
     "broadcom": qpu_disassembly,
 }
 KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in reader.KINDS))
-LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
+LISTED = ("issue_slots", "executed_slots", *KINDS, "packed", "branches", "loops", "looped")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
 NOT_ASKED = Failure("CUDA was not asked for")
@@ -212,7 +213,8 @@ def isa_rows(
                 row["spirv_instructions"] = made.spirv_instructions
                 jobs = made.jobs(family)
                 compared = [outcomes[family, job] for job in jobs] if isinstance(jobs, tuple) else [jobs, jobs]
-                yield _figures(row, *compared)
+                figures, assembly = _figures(row, *compared)
+                yield figures | {"executed_slots": _executed(case, figures, assembly)}, assembly
 
 
 def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
@@ -299,26 +301,46 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
         return None
     branches, loops = read.jumps(assembly)
     # What some vendors' listings say alone.
-    some = {name: count(assembly) for name in ("packed", "looped") if (count := getattr(read, name, None))}
+    some: dict[str, int | None] = {"packed": read.packed(assembly)} if hasattr(read, "packed") else {}
+    some |= {"looped": len(set().union(*read.loops(assembly)))} if hasattr(read, "loops") else {}
     some |= read.slots(assembly) if hasattr(read, "slots") else {}
     return {"issue_slots": read.issue_slots(counts, family), **counts, **some, "branches": branches, "loops": loops}
 
 
+def _executed(case: Case, row: Row, assembly: str) -> float | None:
+    """The issue slots that a case's loops make of its static ones; None where that is not known."""
+    read, family = listings_of(row["family"]), row["family"]
+    if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):
+        return None
+    if not row["loops"]:
+        return sum(rate * row[kind] for kind, rate in rates.items())
+    turns = executed.turns_of(case.encoding) if case.encoding and hasattr(read, "loops") else None
+    if turns is None:
+        return None
+    kinds, loops = read.kinds_in_order(assembly, family), read.loops(assembly)
+    slots = executed.executed_slots(kinds, rates, loops, turns[case.operation])
+    static = sum(rates.get(kind, 0) for kind in kinds)
+    return None if slots is None else slots - static + sum(rate * row[kind] for kind, rate in rates.items())
+
+
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots` and GUARDS, and of some
-    `packed`, `looped` and `slots`."""
+    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots`, `rates` and GUARDS, and
+    of some `packed`, `slots`, and `loops` with `kinds_in_order`."""
     known = FAMILIES.get(family)
     return READERS[known.vendor] if known else disassembly
 
 
-def counted(encodings: Iterable[Encoding], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """The rows of one family with instructions, by encoding and operation; none where there are no compilers."""
+def counted(
+    encodings: Iterable[Encoding], family: str, stage: str, packings: Iterable[Packing] = ()
+) -> dict[tuple[str, str], Row]:
+    """The rows of one family with instructions, by encoding or packing, and operation; none where there are no
+    compilers."""
     try:
-        found = isa_rows(cases(encodings, (), OPERATIONS), [stage], [family], [], nobody)
+        found = isa_rows(cases(encodings, packings, OPERATIONS), [stage], [family], [], nobody)
         rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
     except MissingError:
         rows = []
-    return {(row["encoding"], row["operation"]): row for row in rows}
+    return {(row["encoding"] or row["storage"], row["operation"]): row for row in rows}
 
 
 def nobody(_: str) -> None:

@@ -87,6 +87,13 @@ COLUMNS = (
         "transcendental one issues once and runs beside. TeraScale: bundles. Broadcom: instructions. Empty for "
         "Intel, NVIDIA and Qualcomm.",
     ),
+    _count(
+        "executed_slots",
+        "Issue slots that one lane takes: each loop as often as it runs in the mean over the sphere, counted on the GL "
+        "device. A transcendental instruction takes what the vendor's compiler or documents say: 4 on GCN, 2 on Intel "
+        "from Broadwell on, 4 on Turing, 8 on later GPUs of NVIDIA, 1 elsewhere. Empty where the turns of a loop are "
+        "not known.",
+    ),
     _count("full_rate", "Radeon: instructions at the full rate.", 17),
     _count(
         "conversion",

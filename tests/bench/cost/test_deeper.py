@@ -15,11 +15,11 @@ OCTAHEDRAL = ENCODINGS["octahedral"]
 
 
 def test_what_lies_between_a_label_and_the_jump_back_to_it_is_in_a_loop():
-    """Of two loops, one in the other, each instruction counts once; a jump ahead makes no loop."""
+    """Of two loops, one in the other, both are found; a jump ahead makes no loop."""
     lines = ["BB0:", "\tv_a", "\ts_cbranch_vccz BB4", "BB1:", "\tv_b", "BB2:", "\tv_c", "\t(then repeated 2 times)"]
     lines += ["\ts_cbranch_scc1 BB2", "\ts_branch BB1", "BB4:", "\ts_endpgm"]
-    assert disassembly.looped("\n".join(lines)) == 6
-    assert disassembly.looped("\n".join(lines[:-4])) == 0
+    assert disassembly.loops("\n".join(lines)) == [range(3, 7), range(2, 8)]
+    assert disassembly.loops("\n".join(lines[:-4])) == []
 
 
 def test_intels_loops_end_with_while():
@@ -27,8 +27,8 @@ def test_intels_loops_end_with_while():
     jump = "while(16)  JIP:  LABEL2  { align1 1H };"
     broken = "(+f0.0) break(16) JIP:  LABEL1        UIP:  LABEL1    { align1 1H };"
     listing = "\n".join([add, "LABEL2:", add, broken, add, "LABEL1:", jump, add])
-    assert intel_disassembly.looped(listing) == 4
-    assert intel_disassembly.looped(listing.replace("while", "jmpi")) == 0
+    assert intel_disassembly.loops(listing) == [range(1, 5)]
+    assert intel_disassembly.loops(listing.replace("while", "jmpi")) == []
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,82 @@
+"""How often the loops of an encoding run, and what a kernel then executes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+import numpy as np
+
+from ....encodings.catalogue import is_in_catalogue
+from ....encodings.codecs.encoding import Encoding
+from ....gbuffer.codecs.loops import turns_made
+from ....gbuffer.gl.device import Device
+from ....gbuffer.gl.shader import ShaderError
+from ...output import cache as kept
+from ...output.sources import sources
+
+# Normals that the turns of loops are counted for.
+COUNT, SEED = 2048, 0
+# What the eye is from what it sees, for codes that depend on it.
+VIEW = (0.0, 0.0, -5.0, 0.0)
+
+
+@cache
+def turns_of(encoding: Encoding) -> Mapping[str, Sequence[Sequence[float]]] | None:
+    """By operation, for each loop of the text that runs, the mean number of turns and its standard deviation.
+
+    None where no device counts them, or their text cannot be counted.
+    """
+    # It imports JAX, which only loops are worth.
+    from ...machine.devices import found_device
+
+    device, _ = found_device()
+    if not device:
+        return None
+    name = encoding.name if is_in_catalogue(encoding) else None
+    key = kept.key_of("turns", sources(), name, device.renderer) if name else ""
+    return kept.kept(key, lambda: {"turns": _counted(device, encoding)})["turns"]
+
+
+def _counted(device: Device, encoding: Encoding) -> dict[str, list[list[float]]] | None:
+    n = np.zeros((COUNT, 4), np.float32)
+    n[:, :3] = np.random.default_rng(SEED).normal(size=(COUNT, 3))
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    if encoding.domain != "sphere":
+        n[:, 2] = np.abs(n[:, 2])
+    try:
+        made = turns_made(device, encoding, n, np.tile(np.array(VIEW, np.float32), (COUNT, 1)))
+    except ShaderError:
+        return None
+    return {name: _running(turns) for name, turns in zip(("encode", "decode"), made, strict=True)}
+
+
+def _running(turns: np.ndarray) -> list[list[float]]:
+    figures = zip(turns.mean(axis=0).tolist(), turns.std(axis=0).tolist(), strict=True)
+    return [[mean, deviation] for mean, deviation in figures if mean]
+
+
+def executed_slots(
+    kinds: Sequence[str], rates: Mapping[str, int], loops: Sequence[range], turns: Sequence[Sequence[float]]
+) -> float | None:
+    """The issue slots that a lane of a kernel takes when its loops run.
+
+    Args:
+        kinds: the kind of each instruction, in the order of the listing.
+        rates: slots by kind; a kind without one takes none.
+        loops: the places of each loop's instructions.
+        turns: mean and standard deviation of the turns of each loop of the text, in its order.
+
+    None where the listing has more loops than the text.
+    """
+    if len(loops) > len(turns):
+        return None
+    # A compiler unrolls what runs a known and small number of times; the others stay, in their order.
+    rank = sorted(range(len(turns)), key=lambda at: (turns[at][1] > 0, turns[at][0]), reverse=True)
+    left = [turns[at][0] for at in sorted(rank[: len(loops)])]
+    by_place = zip(sorted(loops, key=lambda loop: loop.start), left, strict=True)
+    times = [1.0] * len(kinds)
+    # An inner loop's count is of all its turns: it comes after the loop around it.
+    for places, count in sorted(by_place, key=lambda pair: -len(pair[0])):
+        times[places.start : places.stop] = [count] * len(places)
+    return sum(rates.get(kind, 0) * count for kind, count in zip(kinds, times, strict=True))
