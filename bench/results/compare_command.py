@@ -13,7 +13,7 @@ from .runs import read_run
 
 # What begins the names of such facts: see `machine.settings`.
 SETTING = "setting "
-FOR_PROGRAMS = ("severity", "keys")
+FOR_PROGRAMS = ("severity", "keys", "unit")
 # What makes `--fail-on` fail.
 FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GONE, "")}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ..tables.registry import TABLES
@@ -19,6 +19,10 @@ CHANCE = 0.01
 EACH, FRAME = "ms_frame_each", "ms_frame"
 # How many lines people read of a comparison.
 LINES = 20
+# The units of errors that people know, which come before counts and times; a row is named by its first figure in them.
+ERRORS = ("dB", "degrees")
+# A figure counts as at least this share of the other one, so that a change from 0 is 60 dB and not infinite.
+FLOOR = 1e-3
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
@@ -37,7 +41,12 @@ def compared(before: Done, after: Done) -> list[Row]:
         table = TABLES.get(name)
         before_rows, after_rows = (named_rows(table, rows.get(name, [])) for rows in (ours, theirs))
         found += _between(name, table, before_rows, after_rows, same_machine)
-    return sorted(found, key=lambda row: -row["severity"])
+    return sorted(found, key=lambda row: (not _is_error(row), -row["severity"]))
+
+
+def _is_error(change: Row) -> bool:
+    """Whether it says that an error grew, or that it can no longer be measured."""
+    return change["severity"] > 0 and (change["unit"] in ERRORS or math.isinf(change["severity"]))
 
 
 def named_rows(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
@@ -70,8 +79,10 @@ def _change(
     """A line; `severity` is above 0 where it is worse, and the larger the worse."""
     verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
     keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)} if table else {}
+    known = table.column(column) if table and column else None
     made: Row = {"table": name, "row": called, "column": column, "before": before, "after": after}
-    return made | {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
+    made |= {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
+    return made | {"unit": known.unit if known else ""}
 
 
 def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
@@ -86,7 +97,8 @@ def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, 
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
         if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
-            change = _change(name, table, one, called, FRAME, one[FRAME], other[FRAME], math.log1p(effect))
+            severity = 20 * math.log10(1 + effect)
+            change = _change(name, table, one, called, FRAME, one[FRAME], other[FRAME], severity)
             yield change | {"change": f"{100 * effect:+.1f} %"}
 
 
@@ -96,7 +108,7 @@ def _is_compared(table: Table | None, known: Column | None) -> bool:
 
 
 def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bool) -> float:
-    """How much worse a figure has become, as the logarithm of a ratio; below 0 where it is better, 0 for neither.
+    """How much worse a figure has become, in decibels; below 0 where it is better, 0 for neither.
 
     A figure that could not be measured any more is infinitely worse, one that now can be is infinitely better. Without
     a reason it was not looked for, as the supremum of a code that is no longer the best.
@@ -113,10 +125,11 @@ def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bo
 
 def _growth(column: Column, before: float, after: float) -> float:
     if column.unit == "dB":
-        return (after - before) * math.log(10) / 20
-    if before > 0 and after > 0:
-        return math.log(after / before)
-    return math.copysign(math.inf, after - before)
+        return after - before
+    # A count that was 0 was less than 1; any other figure was less than what can be told from the larger one.
+    is_count = isinstance(before, int) and isinstance(after, int)
+    least = 1.0 if is_count else FLOOR * max(abs(before), abs(after))
+    return 20 * math.log10(max(after, least) / max(before, least)) if least else 0.0
 
 
 def same(one: Any, other: Any) -> bool:
@@ -141,10 +154,10 @@ def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:
 
 
 def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
-    """Changes for people, the worst first: a line for each row with its worst figure; where these are more than `most`,
-    a line for several rows that share an encoding, or a table."""
+    """Changes for people, the worst first: a line for each row, or for rows that changed together; where these are more
+    than `most`, a line for several rows that share an encoding, or a table."""
     grouped: list[list[Row]] = []
-    for by in (_by_row, _by_encoding, _by_table):
+    for by in (_together(changes), _by_encoding, _by_table):
         groups: dict[tuple, list[Row]] = {}
         for change in changes:
             groups.setdefault(by(change), []).append(change)
@@ -188,6 +201,15 @@ def _by_row(change: Row) -> tuple:
     return change["table"], change["row"], _presence(change)
 
 
+def _together(changes: Sequence[Row]) -> Callable[[Row], tuple]:
+    """What tells rows apart that did not change together: rows of a table whose figures all went from the same to the
+    same."""
+    rows: dict[tuple, list[tuple]] = {}
+    for change in changes:
+        rows.setdefault(_by_row(change), []).append((change["column"], str(change["before"]), str(change["after"])))
+    return lambda change: (change["table"], _presence(change), *rows[_by_row(change)])
+
+
 def _by_encoding(change: Row) -> tuple:
     keys = change["keys"]
     code = next((keys[name] for name in ("encoding", "depth", "light_buffer") if keys.get(name)), "")
@@ -199,9 +221,25 @@ def _by_table(change: Row) -> tuple:
 
 
 def _line(group: Sequence[Row]) -> Row:
-    """Of several changes the worst, named by what they have in common."""
-    worst, rows = group[0], list(dict.fromkeys(change["row"] for change in group))
+    """Of several changes the worst, named by what they have in common, with the figure of it that people know."""
+    rows = list(dict.fromkeys(change["row"] for change in group))
+    worst = _headline([change for change in group if change["row"] == group[0]["row"]])
     shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
     name = worst["row"] if len(rows) == 1 else " ".join(map(str, shared)) or "several"
     kept = {column: worst[column] for column in ("column", "before", "after", "change", "verdict")}
     return {"table": worst["table"], "row": name, "rows": len(rows), "figures": _figures(group)} | kept
+
+
+def _headline(row: Sequence[Row]) -> Row:
+    """Of the changes of one row the first in decibels, else in degrees, that has the verdict of the worst; else the
+    worst."""
+    alike = [change for change in row if change["verdict"] == row[0]["verdict"]]
+    known = (change for unit in ERRORS for change in _in_order(alike) if change["unit"] == unit)
+    return next(known, row[0])
+
+
+def _in_order(row: Sequence[Row]) -> list[Row]:
+    """The changes of one row in the order of its table's columns."""
+    table = TABLES.get(row[0]["table"])
+    names = [column.name for column in table.columns] if table else []
+    return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))

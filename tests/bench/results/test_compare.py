@@ -121,6 +121,27 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err
 
 
+def test_the_encoder_that_broke_comes_before_counts_that_changed_from_0_to_2():
+    """The line has the decibels that people know, and rows that changed together are one."""
+    costs = [
+        {"encoding": "mine", "operation": name, "stage": "fragment", "family": f, "conversion": 0, "instructions": 20}
+        for name in ("encode", "decode")
+        for f in ("navi21", "navi31", "skl", "tgl", "dg2")
+    ]
+    quality = [
+        {"encoding": "mine", "storage": "rgba8", "normals": name, "mse": 6e-7, "psnr_db": 62.1, "angle_mean_deg": 0.04}
+        for name in ("sphere", "axes")
+    ]
+    broken = [quality[0], quality[1] | {"mse": 0.003, "psnr_db": 25.3, "angle_mean_deg": 1.2}]
+    before, after = (
+        Done(MACHINE, [{"table": "cost", "key": {}, "rows": counts}, {"table": "quality", "key": {}, "rows": errors}])
+        for counts, errors in ((costs, quality), ([row | {"conversion": 2} for row in costs], broken))
+    )
+    first, *others = in_short(compared(before, after))
+    assert (first["table"], first["column"], first["before"], first["after"]) == ("quality", "psnr_db", 62.1, 25.3)
+    assert [(line["table"], line["rows"], line["column"]) for line in others] == [("cost", 10, "conversion")]
+
+
 def step_of(*rows: dict) -> Done:
     return Done(MACHINE, [{"table": "cost", "key": {"family": "navi31"}, "rows": list(rows)}])
 
