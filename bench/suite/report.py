@@ -248,7 +248,6 @@ def gathered(folder: Path, done: Done) -> Found:
         fronts=list(_fronts(tables, remarks)),
         listings=_listings(folder / LISTINGS, family),
         order=_order(folder / LISTINGS, family, tables.get("cost", [])),
-        family=family,
         live=_live(folder / LIVE),
         remarks=remarks,
     )

@@ -61,7 +61,6 @@ class Found:
         fronts: cost against error.
         listings: disassemblies by name.
         order: where costs are in another order than the article's, and why, in lines.
-        family: the GPU family whose instructions the page names where it names one.
         live: what its laboratory runs; None where the run keeps none.
         remarks: what does not fit, in sentences.
     """
@@ -78,7 +77,6 @@ class Found:
     fronts: Sequence[Front] = ()
     listings: Mapping[str, Listing] = field(default_factory=dict)
     order: Sequence[str] = ()
-    family: str = ""
     live: Live | None = None
     remarks: Sequence[str] = ()
 

@@ -9,8 +9,9 @@ from typing import Any
 
 from .. import tables
 from .found import Found, Row
-from .page import judged, remarks
+from .page import remarks
 from .sections import whole
+from .verdict import agreement
 
 # What GitHub takes of a comment, less room for a word of one's own.
 LONGEST = 60_000
@@ -40,11 +41,8 @@ def _blocks(found: Found) -> Iterator[str]:
     for sheet in (sheet for section in found.sections if section.leads for sheet in section.summary if sheet.said):
         first, *rest = map(tables.markdown_sentence, sheet.said)
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
-    for at, contest in enumerate(judged(found)):
-        said = [*contest.remarks, *([contest.agreement] if at == 0 or not contest.agrees else [])]
-        yield f"**{contest.headline}** {' '.join(said)}".rstrip() + "\n"
-        if at == 0:
-            yield tables.to_markdown(contest.rows)
+    if said := agreement(found.tables.get("quality", ())):
+        yield f"{said}\n"
     for sheet in (sheet for section in found.sections for sheet in section.summary if sheet.rows):
         heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])

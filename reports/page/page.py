@@ -18,27 +18,16 @@ from . import embedded, library, live
 from .codec_key import CodecKey
 from .found import Found, Row
 from .sections import Section, Sheet, whole
-from .verdict import Contest, contests, is_number
+from .verdict import agreement, is_number
 
 WEB = Path(__file__).parent / "web"
 SCRIPTS = ("tables.js", "pictures.js", "charts.js", "opener.js")
-# What a contest's cheapest codec is counted by.
-STAGE = "fragment"
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
 
 # What the navigation calls a section's extras that have a heading of their own.
 EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
-# The columns of a contest.
-CONTEST = {
-    "by": "The measure.",
-    "first": "Who leads by it; several are a tie, within 0.05 dB or half a percent of an angle.",
-    "figure": "The leader's figure.",
-    "next": "Who comes next.",
-    "ahead": "By how much the leader is ahead.",
-    "unit": "Of figure and distance.",
-}
 
 
 @dataclass(frozen=True)
@@ -143,22 +132,6 @@ def _codec(row: Row, encodings: Container[str]) -> str:
     return CodecKey(encoding, str(storage), rounding).label if storage else encoding
 
 
-def instructions(rows: Sequence[Row], family: str) -> dict[str, float]:
-    """Instructions to encode and decode, together, by encoding: of one GPU family in fragment shaders."""
-    chosen = [r for r in rows if (r.get("stage"), r.get("family")) == (STAGE, family) and r.get("encoding")]
-    both: dict[str, list[float]] = {}
-    for row in chosen:
-        if is_number(row.get("instructions")):
-            both.setdefault(row["encoding"], []).append(row["instructions"])
-    return {name: sum(counts) for name, counts in both.items() if len(counts) == 2}
-
-
-def judged(found: Found) -> list[Contest]:
-    """The questions that the run answers."""
-    costs = instructions(found.tables.get("cost", ()), found.family)
-    return contests(found.tables.get("quality", ()), found.tables.get("render", ()), costs, found.domains)
-
-
 def remarks(found: Found) -> list[str]:
     """What a reader must know of the run before its figures."""
     said = list(found.remarks)
@@ -250,13 +223,11 @@ def html(
     """
     laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
-    titled = [(c, f"Who leads by what, in {c.bits} bits on {c.normals}") for c in judged(found)]
     return template("page.html.j2").render(
         found=found,
         remarks=remarks(found),
         nav=navigation(found, bool(gallery.subjects)),
-        contests=[(contest, table(title, contest.rows, lambda name: CONTEST[name])) for contest, title in titled],
-        family=found.family,
+        agreement=agreement(found.tables.get("quality", ())),
         parts=parts,
         leading=[part for part in parts if part.section.leads and part.is_there],
         spheres=spheres.globes(found.maps),
