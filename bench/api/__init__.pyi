@@ -18,14 +18,19 @@ Names = Named | Sequence[Named | float] | Mapping[str, Any]
 def pick(
     *,
     storage: Names = ...,
+    bytes: Names | None = ...,
     encoding: Names = ...,
     against: Names | None = ...,
-    normals: Names = ...,
+    normals: Names | None = ...,
     scene: Names = ...,
     power: Names = ...,
     effects: Names | None = ...,
     family: Names = ...,
     aim: Names = ...,
+    readers: int = ...,
+    worth: float = ...,
+    accept_holes: bool = ...,
+    accept_lengths: bool = ...,
     most_instructions: int | None = ...,
     domain: Names | None = ...,
     needs: Names | None = ...,
@@ -45,20 +50,25 @@ def pick(
 ) -> Rows:
     """Which code to take for each storage, at what price, and what to take instead.
 
-    Codes that do not meet the constraints are left out, with the reason. Of the others the aim decides. The exit status is 1 where no code meets them.
+    Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much if it is --worth decibels better. The exit status is 1 where no code meets the constraints.
 
     Args:
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        bytes: Every storage of so many bytes a texel, comma-separated, in place of --storage.
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
-        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
+        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. Default: those of --domain.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
-        power: Specular powers that the scene is rendered with, comma-separated.
+        power: Specular powers that the scenes are rendered with, comma-separated.
         effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
-        family: The GPU family that instructions are counted for.
-        aim: What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost.
-        most_instructions: The most instructions, encode and decode together.
-        domain: What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
+        family: GPU families that issue slots are counted for, comma-separated; the dearest counts.
+        aim: What a code must be good at: angle (the mean), worst (the largest angle), image (the lowest dB), or cost (cheap before exact).
+        readers: Passes that decode: light, reflections, occlusion, denoiser. Encoding counts once.
+        worth: The decibels that a code must gain for twice the price.
+        accept_holes: Take codes whose largest angle is over 4 times the least.
+        accept_lengths: Take codes whose decodes are not of length 1.
+        most_instructions: The most issue slots that encoding and decoding once may execute.
+        domain: What the code must hold and is measured on: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
         needs: What stored codes must survive: filter, blend, resolve; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.

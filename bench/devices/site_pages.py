@@ -25,7 +25,7 @@ from ..tables.devices.reading import Device, codec_rows, fact_rows
 from ..tables.devices.table import TABLE as DEVICES
 from ..tables.table import Row, Sheet
 from ..tables.table import Table as BenchTable
-from .answers import Instructions, answers
+from .answers import Known, answers
 
 INDEX, FOLDER = "index.html", "devices"
 LONGEST = 60
@@ -65,10 +65,9 @@ class Entry:
 def pages(devices: Sequence[Device]) -> dict[str, str]:
     """The pages by their paths in the site's folder."""
     rows, paths = [codec_rows(one) for one in devices], _paths(one.called for one in devices)
-    instructions = Instructions(rows)
+    known = Known(rows)
     entries = [
-        Entry(one, path, own, list(answers(own, instructions)))
-        for one, path, own in zip(devices, paths, rows, strict=True)
+        Entry(one, path, own, list(answers(own, known))) for one, path, own in zip(devices, paths, rows, strict=True)
     ]
     made = {entry.path: device_html(_device_page(entry)) for entry in entries}
     return made | {INDEX: _index(entries)}
@@ -157,7 +156,7 @@ def _taken(entries: Sequence[Entry]) -> Searched:
     """The code to take on each device, with a column for each storage."""
     titles = dict.fromkeys(_column(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_taken_on(e)} for e in entries]
-    intro = "The answer of pick for each storage: the code with the smallest mean angle on the device."
+    intro = "The answer of pick for each storage, by the errors of the device."
     words, links = [entry.words for entry in entries], [entry.path for entry in entries]
     shown = words_table("The code to take, by device and storage", rows)
     return Searched("take", "What to take", intro, shown, words, links)

@@ -76,7 +76,7 @@ def say_count_is_unused(options: Any) -> None:
         return
     if getattr(options, "count", None) == known["count"].default or not _is_of_normals(type(options)):
         return
-    words = [word.strip() for word in getattr(options, "normals", "").split(",")]
+    words = [word.strip() for word in (getattr(options, "normals", None) or "sphere").split(",")]
     if all(Path(word).suffix.lower() in ENDINGS for word in words):
         tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
 

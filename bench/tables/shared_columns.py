@@ -11,7 +11,7 @@ BACKEND = Column(
 )
 BITS = Column(
     "bits",
-    "Bits that the code needs: all of its channels, but for a component of few values only what tells those apart.",
+    "Bits that the code occupies: all bits of the channels that it uses, and a bit for each sign kept elsewhere.",
 )
 PIPELINE = Column("pipeline", "The order of passes that rendered it.", Role.KEY)
 LIGHT_TARGETS = Column(

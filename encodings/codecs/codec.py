@@ -84,11 +84,11 @@ class Codec:
 
     @property
     def bits(self) -> int:
-        """The bits it needs: of the channels used, but of a component of few values only those that tell them apart."""
-        sizes = (self.encoding.levels_of(i) for i in range(self.encoding.components + self.encoding.sign_bits))
-        needed = (math.ceil(math.log2(size)) if size else None for size in sizes)
-        channels = (*self.storage.bits[: self.encoding.components], *[1] * self.encoding.sign_bits)
-        return sum(has if needs is None else min(has, needs) for has, needs in zip(channels, needed, strict=True))
+        """The bits it occupies: of every channel that it uses, all; and its sign bits.
+
+        A component of few values takes its channel, too: another storage has a channel that fits.
+        """
+        return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
     @property
     def codes(self) -> int:

@@ -67,6 +67,11 @@ class Storage:
             return STORAGES[self.name.removesuffix(CENTRED)]
         return STORAGES["rgba8"] if self.is_packed else self
 
+    @property
+    def texel_bytes(self) -> int:
+        """Bytes of a texel of the render target, used or not."""
+        return sum(self.target.bits) // 8
+
     def scale(self, channel: int) -> int:
         """The integer that stands for 1 in a channel; 1 for float formats."""
         if self.kind == "float":

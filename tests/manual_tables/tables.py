@@ -26,8 +26,8 @@ HALVES = {
 }
 # The first words of what is shown of the answer, in part.
 ANSWERED = {
-    "rg8": ("rg8, on sphere: take", "Its mean", "Cheaper: octahedral_precise"),
-    "rgb10a2": ("rgb10a2, on sphere: take", "Its mean", "Runner-up"),
+    "rg8": ("rg8, on sphere: take", "Its mean", "It takes", "More exact: octahedral_precise", "Most exact"),
+    "rgb10a2": ("rgb10a2, on sphere: take", "Its mean", "Fewer bits"),
 }
 ON_SPHERE, AT_A_QUARTER = {"normals": "sphere"}, {"turn_deg": 0.25}
 TWO, THREE, FOUR = "{:.2f}".format, "{:.3f}".format, "{:.4f}".format

@@ -27,7 +27,7 @@ def answer(_: Table, kept: Measured) -> str:
     texts = [
         textwrap.fill(said, WIDTH, initial_indent="- ", subsequent_indent="  ")
         if not said.startswith(storage)
-        else f"\n{said}"
+        else "\n" + textwrap.fill(said, WIDTH)
         for storage, said in kept.lines
     ]
     return "\n".join(texts).strip()

@@ -1,18 +1,26 @@
-"""The answer: which codes qualify, which of them no other beats, and which one the aim takes. From rows alone."""
+"""The answer: which codes qualify, what each is worth, and which one to take. From rows alone.
+
+The order of two codes depends on these two alone. Adding or removing a third one does not change it.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from ....reports.page.verdict import MADE_FOR
+from .table import HOLE
 
 Row = dict[str, Any]
 
 IMAGE = "image_db_"
-BEST, RUNNER_UP, CHEAPER, PICTURE, AGAINST = "best", "runner-up", "cheaper", "picture", "against"
+BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS, AGAINST, ELSEWHERE = (
+    *("best", "more exact", "most exact", "cheaper", "fewer bits"),
+    *("against", "elsewhere"),
+)
 # What codes of a domain hold, by the domain that is needed.
 HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
     {
@@ -23,10 +31,26 @@ HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
 )
 # What normals outside an encoding's domain do.
 BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer"}
-# Images are compared of codes whose angles are this close.
-CLOSE = 0.95
-# Of `cheaper`: its instructions' share of the best's.
-CHEAP = 0.5
+# Issue slots of an encoder, or of a reader, that hide behind the write and the read of the target.
+HIDDEN_SLOTS = 16
+# Of a texel of an environment map of 1024 x 512, in degrees: who moves a reflection by less is not seen.
+TEXEL_DEG = 360 / 1024
+# How many times the price that hides anybody pays for what nobody sees.
+AFFORDABLE = 2.0
+# Images above it are equal.
+INDISTINGUISHABLE_DB = 70.0
+# The share of the angle that the error of a decode's length has, from which on it must be normalised before it is lit.
+# `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
+LENGTH = 0.1
+STEP_DB = 0.5
+# Rungs of a ladder that differ by less are one.
+LEAST_DB = 0.25
+MOST_RUNGS = 2
+# Another packing of the same texel is named where it is better by so much, another texel of the same bytes where it is
+# better by a bit of each component.
+BETTER_DB, MUCH_BETTER_DB = 1.0, 6.0
+# How many figures behind the loss decide where codes are equal.
+TIES = 4
 
 
 def largest(row: Row) -> float | None:
@@ -34,55 +58,99 @@ def largest(row: Row) -> float | None:
     return max((row[name] for name in ("angle_max_deg", "angle_sup_deg") if row[name] is not None), default=None)
 
 
+def images(row: Row) -> dict[tuple[str, str], float]:
+    """The PSNR of a row's images by scene and specular power; empty where none was rendered."""
+    figures = (
+        (name.removeprefix(IMAGE).rpartition("_"), value) for name, value in row.items() if name.startswith(IMAGE)
+    )
+    return {(scene, power): value for (scene, _, power), value in figures if value is not None}
+
+
 def image_db(row: Row) -> float | None:
     """The lowest PSNR of a row's images; None where none was rendered."""
-    found = [value for name, value in row.items() if name.startswith(IMAGE) and value is not None]
-    return min(found, default=None)
+    return min(images(row).values(), default=None)
 
 
-def cost(row: Row) -> float | None:
-    """What a code costs: a device's milliseconds where the row has a place for them, else instructions."""
-    return row["ms"] if "ms" in row else row["instructions"]
+def decibels(angle: float | None) -> float:
+    """An angle in decibels, less is better; infinite where it is not known."""
+    return math.inf if angle is None else 20 * math.log10(max(angle, 1e-12))
 
 
-# By aim: a row's figure, less is better; None where it is not known.
-AIMS: Mapping[str, Any] = MappingProxyType(
+def _of_image(row: Row) -> float:
+    found = image_db(row)
+    return math.inf if found is None else -min(found, INDISTINGUISHABLE_DB)
+
+
+# By aim: what a code loses, in decibels; less is better.
+AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
     {
-        "angle": lambda row: row["angle_mean_deg"],
-        "worst": lambda row: largest(row) if row["aim"] == "worst" else row["angle_max_deg"],
-        "image": lambda row: None if (found := image_db(row)) is None else -found,
-        "cost": cost,
+        "angle": lambda row: decibels(row["angle_mean_deg"]),
+        "worst": lambda row: decibels(largest(row)),
+        "image": _of_image,
+        "cost": lambda row: decibels(row["angle_mean_deg"]),
     }
 )
-# What decides where the aim does not tell two codes apart.
-THEN = ("cost", "angle", "worst", "image")
 
 
-def figure(row: Row, aim: str) -> float:
-    """What an aim makes as small as it can; infinite where it is not known."""
-    found = AIMS[aim](row)
-    return math.inf if found is None else float(found)
+def loss_db(row: Row) -> float:
+    """What a code loses by the row's aim, in decibels; less is better, infinite where it is not known."""
+    return AIMS[row["aim"]](row)
+
+
+def floor(row: Row) -> float:
+    """The issue slots that hide behind the traffic of the target: every code costs at least these."""
+    return HIDDEN_SLOTS * (1 + row["readers"])
+
+
+def price(row: Row) -> float:
+    """The issue slots to encode once and to decode for each reader, at least those that hide; these where the slots are
+    not known."""
+    return max(row["slots"] or 0.0, floor(row))
+
+
+def doublings(row: Row) -> float:
+    """How often the price that hides is doubled."""
+    return math.log2(price(row) / floor(row))
+
+
+def is_enough(row: Row) -> bool:
+    """Whether nobody sees what a code does to a reflection: twice its largest angle is below a texel."""
+    found = largest(row)
+    return found is not None and 2 * found <= TEXEL_DEG
 
 
 def order(row: Row) -> tuple[float, ...]:
-    """By what rows are sorted: the aim, then the other figures."""
-    return tuple(figure(row, aim) for aim in (row["aim"], *THEN))
+    """By what rows are sorted, less is better.
+
+    Of codes that are enough and cost little the cheapest is first, then the one of fewest bits. The others follow by
+    loss + worth log2(price / floor), to half a decibel, and then by the price.
+    """
+    ties = (_of_image(row), price(row), _bits(row), decibels(largest(row)))
+    if row["aim"] == "cost":
+        return (price(row), not is_enough(row), loss_db(row), *ties)
+    if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
+        return (0, bool(row["table"]), price(row), _bits(row), loss_db(row), *ties)
+    return (1, _to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
+
+
+def _to_a_step(score: float) -> float:
+    """A score to the half decibel: nobody chooses by less, and of equals the cheaper code is first."""
+    return round(score / STEP_DB) * STEP_DB if math.isfinite(score) else score
+
+
+def figures(row: Row) -> tuple[float, float, float]:
+    """What the front is made of: loss, price and bits, less is better."""
+    return loss_db(row), price(row), _bits(row)
 
 
 def beats(one: Row, other: Row) -> bool:
     """Whether a code is nowhere worse than another one and somewhere better."""
-    pairs = [(figure(one, aim), figure(other, aim)) for aim in AIMS]
+    pairs = list(zip(figures(one), figures(other), strict=True))
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
 
 
-def clearly_beats(one: Row, other: Row) -> bool:
-    """Whether a code has so much smaller angles than another, at no higher cost, that no image needs to be drawn."""
-    angles = all(figure(one, aim) < CLOSE * figure(other, aim) for aim in ("angle", "worst"))
-    return angles and figure(one, "cost") <= figure(other, "cost")
-
-
 def why_left_out(row: Row) -> str:
-    """Why a code does not qualify; empty where it does."""
+    """Why a code does not qualify, whatever the others do; empty where it does."""
     if row["skipped"]:
         return row["skipped"]
     if row["invalid"]:
@@ -91,14 +159,16 @@ def why_left_out(row: Row) -> str:
         return f"made for {MADE_FOR[row['domain']]} alone"
     if not row["needs"] and row["lost_percent"]:
         return lost(row)
+    if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
+        return "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
     if row.get("cannot_mix"):
         return row["cannot_mix"]
-    most, count = row["most_instructions"], row["instructions"]
-    if most is not None and count is None:
-        return "instructions not known"
-    if most is not None and count > most:
-        return f"more than {most} instructions"
-    if figure(row, row["aim"]) == math.inf:
+    most, once = row["most_instructions"], row["slots_once"]
+    if most is not None and once is None:
+        return "issue slots not known"
+    if most is not None and once > most:
+        return f"more than {most} issue slots"
+    if loss_db(row) == math.inf:
         return f"no figure for --aim {row['aim']}"
     return ""
 
@@ -115,52 +185,122 @@ def shown_share(percent: float) -> str:
 
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
-    """Rows by the question that they answer: storage, normals and scene."""
+    """Rows by the question that they answer: a storage or a number of bytes, normals, and scenes."""
     found: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
-        found.setdefault((row["storage"], row["normals"], row["scene"]), []).append(row)
+        found.setdefault((row["asked"], row["normals"], row["scene"]), []).append(row)
     return found
 
 
 def answered(rows: Sequence[Row]) -> list[Row]:
-    """The rows with `left_out`, `front` and `place`: those that qualify by the aim, then others, for each question."""
+    """The rows with `left_out`, `front` and `place`: those that qualify by their order, then others, for each question.
+    Of other storages of the same bytes those stay that are much better."""
     return [row for group in groups(rows).values() for row in _answered(group)]
 
 
 def _answered(group: Sequence[Row]) -> list[Row]:
     judged = [row | {"left_out": why_left_out(row) or None} for row in group]
-    fit = sorted((row for row in judged if not row["left_out"]), key=order)
+    judged = _unpriced(_holes(judged))
+    fit = sorted((row for row in judged if not row["left_out"] and not row["beside"]), key=order)
     places = _places(fit)
     made = [
-        row
-        | {
-            "front": not any(beats(other, row) for other in fit),
-            "place": ", ".join(_said(row, places, at)) or None,
-        }
+        row | {"front": not any(beats(other, row) for other in fit), "place": _said(row, places[at])}
         for at, row in enumerate(fit)
     ]
-    others = [row | {"front": False, "place": AGAINST if row["against"] else None} for row in judged if row["left_out"]]
-    return made + others
+    others = [
+        row | {"front": False, "place": _said(row, [])} for row in judged if row["left_out"] and not row["beside"]
+    ]
+    return [*made, *_elsewhere(judged, fit), *others]
 
 
-def _places(fit: Sequence[Row]) -> dict[str, int]:
-    """Which of the codes that qualify, sorted by the aim, is what."""
+def _said(row: Row, places: Sequence[str]) -> str | None:
+    return ", ".join([*places, *([AGAINST] if row["against"] else [])]) or None
+
+
+def _holes(rows: Sequence[Row]) -> list[Row]:
+    """The rows, those with a hole left out."""
+    fit = [row for row in rows if not row["left_out"] and largest(row) is not None]
+    least = min((largest(row) or math.inf for row in fit if not row["beside"]), default=math.inf)
+    said = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
+    return [row | {"left_out": said, "hole": hole} if (hole := _hole(row, least)) else row for row in rows]
+
+
+def _hole(row: Row, least: float) -> str:
+    """How large a code's hole is, and where; empty where it has none."""
+    found = largest(row)
+    if row["left_out"] or row["accept_holes"] or found is None or found <= HOLE * least:
+        return ""
+    worst = [f"{float(x):.2f}" for x in re.findall(r"[-+.\de]+", str(row.get("worst_normal") or ""))]
+    return f"{found:.3g}°" + (f" at {' '.join(worst)}" if worst else "")
+
+
+def _unpriced(rows: Sequence[Row]) -> list[Row]:
+    """The rows, those without a price left out where others have one."""
+    is_priced = any(row["slots"] is not None for row in rows if not row["left_out"])
+    said = "how often its loops run is not known"
+    return [row | {"left_out": said} if is_priced and _lacks_price(row) else row for row in rows]
+
+
+def _lacks_price(row: Row) -> bool:
+    return row["slots"] is None and not row["left_out"]
+
+
+def _places(fit: Sequence[Row]) -> list[list[str]]:
+    """What each of the codes that qualify, sorted by their order, is on the ladder."""
+    places: list[list[str]] = [[] for _ in fit]
     if not fit:
-        return {}
-    found = {BEST: 0}
-    if len(fit) > 1:
-        found[RUNNER_UP] = 1
-    limit = CHEAP * figure(fit[0], "cost")
-    cheap = [at for at, row in enumerate(fit) if figure(row, "cost") <= limit < math.inf and at]
-    if cheap:
-        found[CHEAPER] = cheap[0]
-    pictured = [at for at, row in enumerate(fit) if figure(row, "image") < math.inf]
-    if pictured:
-        found[PICTURE] = min(pictured, key=lambda at: (figure(fit[at], "image"), at))
-    return found
+        return places
+    best, rungs = fit[0], [at for at, row in enumerate(fit) if at and not any(beats(other, row) for other in fit)]
+    places[0].append(BEST)
+    exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))
+    if exact and loss_db(best) - loss_db(fit[exact]) >= LEAST_DB:
+        places[exact].append(MOST_EXACT)
+    above = [at for at in rungs if loss_db(best) - loss_db(fit[at]) >= LEAST_DB and at != exact]
+    below = [at for at in rungs if loss_db(fit[at]) >= loss_db(best)]
+    for place, chosen in (
+        (MORE_EXACT, _apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
+        (CHEAPER, [at for at in below if price(fit[at]) < price(best) and fit[at]["bits"] == best["bits"]][:1]),
+        (FEWER_BITS, _first_of_each_size([at for at in below if _bits(fit[at]) < _bits(best)], fit)[:MOST_RUNGS]),
+    ):
+        for at in chosen:
+            places[at].append(place)
+    return places
 
 
-def _said(row: Row, places: Mapping[str, int], at: int) -> Iterator[str]:
-    yield from (name for name, place in places.items() if place == at)
-    if row["against"]:
-        yield AGAINST
+def _bits(row: Row) -> float:
+    return row["bits"] or math.inf
+
+
+def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
+    """Of rungs in their order the first of each number of bits, the most bits first."""
+    first = {_bits(fit[at]): at for at in reversed(chosen)}
+    return [first[size] for size in sorted(first, reverse=True)]
+
+
+def _apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
+    """Of rungs, the least exact first, those that gain enough on the one before."""
+    kept: list[int] = []
+    for at in chosen:
+        if not kept or loss_db(fit[kept[-1]]) - loss_db(fit[at]) >= LEAST_DB:
+            kept.append(at)
+    return kept
+
+
+def _elsewhere(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
+    """The best code of other storages of the same bytes: one packed into the same texel that is better in no more bits,
+    and one in another texel that is much better."""
+    others = [row for row in judged if row["beside"] and not row["left_out"]]
+    if not fit or not others:
+        return []
+    best = fit[0]
+    packed = [row for row in others if row["same_target"] and _bits(row) <= _bits(best)]
+    packed = [row for row in packed if loss_db(best) - loss_db(row) >= BETTER_DB]
+    better = [row for row in others if not row["same_target"] and loss_db(best) - loss_db(row) >= MUCH_BETTER_DB]
+    kept = [min(some, key=_roughly, default=None) for some in (packed, better)]
+    return [row | {"front": False, "place": ELSEWHERE} for row in kept if row]
+
+
+def _roughly(row: Row) -> tuple[float, ...]:
+    """The order of a row with its loss to a tenth of a decibel, so that of equals the first stays first."""
+    *rank, loss = order(row)[:-TIES]
+    return (*rank, round(loss, 1))

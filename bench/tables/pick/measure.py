@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -13,7 +14,6 @@ import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
-from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -30,20 +30,21 @@ from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...output import cache as kept
 from ...output.sources import sources
 from ...worst_case.exact_figures import has_twin
-from ..cost import measure as cost
 from ..mix import judge
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
-from .answer import IMAGE, answered, clearly_beats
+from .answer import AFFORDABLE, IMAGE, answered, floor, price
+from .prices import Costs
 from .table import TABLE
 
 Row = dict[str, Any]
 # Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
 SIZE = (320, 240)
-STAGE = "fragment"
 SUPREMUM = "angle_sup_deg"
-QUALITY = ("angle_mean_deg", "angle_max_deg", "invalid", "count", "device", "skipped")
+# Normals that tell whether decodes have length 1.
+FEW = 2**14
+QUALITY = ("angle_mean_deg", "angle_max_deg", "worst_normal", "invalid", "count", "device", "skipped")
 
 
 @dataclass(frozen=True)
@@ -53,33 +54,38 @@ class Case:
     Attributes:
         codec: the code.
         normal_set: what its angles are over.
-        maker, setting, powers: what is rendered, and with which specular powers.
+        makers, setting, powers: what is rendered, and with which specular powers.
         said: what the row says of the question.
         pipeline: what renders, with the effects that were asked for.
     """
 
     codec: Codec
     normal_set: NormalSet
-    maker: SceneMaker
+    makers: tuple[SceneMaker, ...]
     setting: Setting
     powers: tuple[float, ...]
     said: Mapping[str, Any]
     pipeline: Pipeline = PIPELINES["hybrid"]
 
+    @property
+    def is_beside(self) -> bool:
+        """Whether it is of another storage of the same bytes, and is compared by its angles alone."""
+        return bool(self.said["beside"])
+
 
 def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[[str], None]) -> Iterator[list[Row]]:
-    """The rows of each question: the codes of one storage on one set of normals and in one scene, in their order.
+    """The rows of each question: the codes of one storage on one set of normals and in its scenes, in their order.
 
-    Images and suprema take seconds each. Images are of codes that no other one beats by its angles and instructions;
-    of all that qualify where the image decides. Suprema are of the best; of all where the largest angle decides.
+    Images and suprema take seconds each. Images are of codes that have a place in the answer; of all that qualify
+    where the image decides. Suprema are of codes that have a place; of all where the largest angle decides.
 
     Args:
         device: draws; without one there are no images.
     """
     if not asked:
         return
-    encodings = dict.fromkeys(case.codec.encoding for chosen in asked for case in chosen)
-    costs = Costs(encodings, asked[0][0].said["family"])
+    said = asked[0][0].said
+    costs = Costs((case.codec for chosen in asked for case in chosen), said["family"].split(","), said["readers"])
     pictures = Pictures(device) if device else None
     # JAX compiles in a thread of its own while the device draws in this one.
     pool = ThreadPoolExecutor(1)
@@ -96,54 +102,63 @@ def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[
 
 
 class Question:
-    """The codes of one storage on one set of normals and in one scene."""
+    """The codes of one storage, or of storages of as many bytes, on one set of normals and in its scenes."""
 
     def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs):
-        self._cases = {case.codec.encoding.name: case for case in chosen}
         self._pool, self._costs, self._aim = pool, costs, chosen[0].said["aim"]
+        self._cases = {case.codec.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
+        self._rows = {name: _described(case) | costs.of(case.codec) for name, case in self._cases.items()}
+        # Of another storage only codes are compared that cost no more than what hides.
+        chosen = [case for name, case in self._cases.items() if not case.is_beside or self._is_cheap(name)]
+        self._rows = {case.codec.name: self._rows[case.codec.name] for case in chosen}
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
         # What has no twin is measured by GL, in the thread that draws.
         self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
         self._angles = pool.submit(_angles, self._by_jax)
-        self._rows: dict[str, Row] = {}
+
+    def _is_cheap(self, name: str) -> bool:
+        return price(self._rows[name]) <= AFFORDABLE * floor(self._rows[name])
 
     def measure(self, tick: Callable[[str], None]) -> None:
-        """Angles and instructions; the suprema that they ask for are still computed in the other thread."""
+        """Angles; the suprema that they ask for are still computed in the other thread."""
         measured = zip([*self._by_gl, *self._by_jax], [*_angles(self._by_gl), *self._angles.result()], strict=True)
-        angles = {case.codec.encoding.name: row for case, row in measured}
-        for name, case in self._cases.items():
-            self._rows[name] = _described(case) | angles[name] | self._costs.of(case.codec.encoding)
-            tick(f"{case.codec.name} {case.normal_set.name}")
+        angles = {case.codec.name: row for case, row in measured}
+        for name in self._rows:
+            self._rows[name] |= angles[name]
+            if not self._cases[name].is_beside:
+                tick(f"{name} {self._cases[name].normal_set.name}")
         for row in self._qualified("angle"):
             if row["mixing"]:
-                self._rows[row["encoding"]] |= _mixed(self._cases[row["encoding"]])
-        self._find_suprema(self._qualified("angle") if self._aim == "worst" else self.answered()[:1])
+                self._rows[_name(row)] |= _mixed(self._cases[_name(row)])
+        self._find_suprema(self._qualified("angle") if self._aim == "worst" else self._placed())
 
     def draw(self, pictures: Pictures | None) -> None:
-        """Images, if there is what draws them, and the supremum of the best."""
+        """Images, if there is what draws them, and the suprema of codes that have a place then."""
         if self._aim == "worst":
             self._take_suprema()
         if pictures:
-            fit = self._qualified("angle")
-            better = [] if self._aim == "image" else fit
-            drawn = [row for row in fit if not any(clearly_beats(one, row) for one in better)]
-            for row in drawn + [row for row in self._rows.values() if row["against"]]:
-                self._rows[row["encoding"]] |= pictures.of(self._cases[row["encoding"]])
-        self._find_suprema(self.answered()[:1])
+            for row in self._qualified("angle") if self._aim == "image" else self._placed():
+                self._rows[_name(row)] |= pictures.of(self._cases[_name(row)])
+        self._find_suprema(self._placed())
 
     def answered(self) -> list[Row]:
         """The rows as far as they are known, the best first."""
         return answered(list(self._rows.values()))
 
+    def _placed(self) -> list[Row]:
+        """What has a place in the answer, which is by the angles where there are no images yet."""
+        aim = "angle" if self._aim == "image" else self._aim
+        return [row for row in answered([row | {"aim": aim} for row in self._rows.values()]) if row["place"]]
+
     def _qualified(self, aim: str) -> list[Row]:
-        return [row for row in answered([row | {"aim": aim} for row in self._rows.values()]) if not row["left_out"]]
+        answer = answered([row | {"aim": aim} for row in self._rows.values()])
+        return [row for row in answer if not row["left_out"] and not row["beside"]]
 
     def _find_suprema(self, wanted: Iterable[Row]) -> None:
-        for row in wanted:
-            if row["encoding"] not in self._suprema:
-                case = self._cases[row["encoding"]]
-                self._suprema[row["encoding"]] = self._pool.submit(_supremum, case)
+        for name in map(_name, wanted):
+            if name not in self._suprema:
+                self._suprema[name] = self._pool.submit(_supremum, self._cases[name])
 
     def _take_suprema(self) -> None:
         for name, found in self._suprema.items():
@@ -153,6 +168,11 @@ class Question:
         """The rows, in the order of the cases."""
         self._take_suprema()
         return list(self._rows.values())
+
+
+def _name(row: Row) -> str:
+    """The name of a row's codec."""
+    return f"{row['encoding']}/{row['storage']}"
 
 
 def _mixed(case: Case) -> Row:
@@ -171,16 +191,14 @@ def _mixed(case: Case) -> Row:
 
 
 def _described(case: Case) -> Row:
-    encoding = case.codec.encoding
+    codec, encoding = case.codec, case.codec.encoding
+    images = (f"{maker.name}_{power:g}" for maker in case.makers for power in case.powers)
     return (
-        TABLE.empty(f"{power:g}" for power in case.powers)
+        TABLE.empty(images)
         | dict(case.said)
-        | {"storage": case.codec.storage.name, "encoding": encoding.name, "domain": encoding.domain}
-        | {
-            "bits": case.codec.bits,
-            "seed": case.normal_set.seed,
-            "lost_percent": _lost(case.normal_set, encoding.domain),
-        }
+        | {"storage": codec.storage.name, "encoding": encoding.name, "domain": encoding.domain}
+        | {"bits": codec.bits, "free_bits": 8 * codec.storage.texel_bytes - codec.bits, "table": encoding.has_tables}
+        | {"seed": case.normal_set.seed, "lost_percent": _lost(case.normal_set, encoding.domain)}
     )
 
 
@@ -192,11 +210,31 @@ def _angles(chosen: Sequence[Case]) -> list[Row]:
     measured = quality.rows(missing, lambda _: None)
     for at, key in enumerate(keys):
         if rows[at] is None:
-            row = {name: value for name, value in next(measured).items() if name in QUALITY}
+            found = next(measured)
+            row = {name: found[name] for name in QUALITY} | {"length_share": _length_share(found)}
             rows[at] = row
             if key and not row["skipped"]:
                 kept.write(key, row)
     return [row or {} for row in rows]
+
+
+def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
+    """By codec the share of the error of lengths, over a few normals of the sphere."""
+    said: Row = {"beside": False}
+    normals = NORMAL_SETS["sphere"](FEW, 0)
+    cases = [Case(codec, normals, (), Setting(), (), said) for codec in codecs]
+    return {case.codec.name: row["length_share"] for case, row in zip(cases, _angles(cases), strict=True)}
+
+
+def _length_share(row: Row) -> float | None:
+    """The root mean squared error of the lengths of decodes over that of the directions, in radians.
+
+    |n - n'|^2 = (1 - |n'|)^2 + 2 |n'| (1 - cos theta), and the mean of the last term is close to that of theta^2.
+    """
+    if row["mse"] is None or not row["angle_rms_deg"]:
+        return None
+    angle = math.radians(row["angle_rms_deg"])
+    return math.sqrt(max(0.0, 3 * row["mse"] - angle**2)) / angle
 
 
 def _quality_case(case: Case) -> quality.Case:
@@ -230,56 +268,83 @@ class Pictures:
 
     def __init__(self, device: Device):
         self._device = device
-        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...], Pipeline], list[np.ndarray]] = {}
+        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...], Pipeline], Reference] = {}
 
     def of(self, case: Case) -> Row:
-        """The PSNR of the displayed image at each power; none where the device or a layout has no room for the code."""
-        known = case.maker.name if case.maker is SCENES.get(case.maker.name) else None
-        asked = (case.setting, case.powers, case.said.get("effects") or "")
-        key = _key("image", case.codec, known, *asked, self._device.renderer)
-        try:
-            return kept.kept(key, lambda: self._measured(case))
-        except (LayoutError, *render.UNMEASURABLE):
-            return {}
+        """The PSNR of the displayed images over covered pixels, at each power in each scene; none where the device or a
+        layout has no room for the code."""
+        found: Row = {}
+        for maker in case.makers:
+            known = maker.name if maker is SCENES.get(maker.name) else None
+            asked = (case.setting, case.powers, case.said.get("effects") or "")
+            key = _key("image", case.codec, known, *asked, self._device.renderer)
+            try:
+                found |= kept.kept(key, lambda maker=maker: self._measured(case, maker))
+            except (LayoutError, *render.UNMEASURABLE):
+                continue
+        return found
 
-    def _measured(self, case: Case) -> Row:
-        shown = self.shown(case).items()
-        return {f"{IMAGE}{power:g}": psnr_db(squared_error(image, right)[0]) for power, (image, right) in shown}
+    def covered_percent(self, case: Case, maker: SceneMaker) -> float:
+        """The share of the pixels that a surface covers."""
+        return 100.0 * float(np.mean(self._reference(case, maker).covered))
 
-    def shown(self, case: Case) -> dict[float, tuple[np.ndarray, np.ndarray]]:
+    def _measured(self, case: Case, maker: SceneMaker) -> Row:
+        covered = self._reference(case, maker).covered
+        return {
+            f"{IMAGE}{maker.name}_{power:g}": psnr_db(squared_error(image[covered], right[covered])[0])
+            for power, (image, right) in self.shown(case, maker).items()
+        }
+
+    def shown(self, case: Case, maker: SceneMaker) -> dict[float, tuple[np.ndarray, np.ndarray]]:
         """At each power the displayed image, and that of exact normals: (height, width, 3), 0 to 1.
 
         Raises:
             LayoutError, or one of render.UNMEASURABLE: there is no room for the code.
         """
         layout = LAYOUTS["fp32"].with_codec(case.codec)
-        images = self._relit(case) if has_twin(case.codec.encoding) else self._drawn(case, layout)
-        question = (case.maker, case.setting, case.powers, case.pipeline)
-        if question not in self._references:
-            self._references[question] = self._drawn(case, LAYOUTS["fp32"])
+        by_emulation = has_twin(case.codec.encoding)
+        images = self._relit(case, maker) if by_emulation else self._drawn(case, maker, layout)[0]
         found: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        for power, image, right in zip(case.powers, images, self._references[question], strict=True):
-            display = _display(case.maker, right)
+        for power, image, right in zip(case.powers, images, self._reference(case, maker).images, strict=True):
+            display = _display(maker, right)
             found[power] = display.image(image), display.image(right)
         return found
 
-    def _relit(self, case: Case) -> list[np.ndarray]:
+    def _reference(self, case: Case, maker: SceneMaker) -> Reference:
+        question = (maker, case.setting, case.powers, case.pipeline)
+        if question not in self._references:
+            self._references[question] = Reference(*self._drawn(case, maker, LAYOUTS["fp32"]))
+        return self._references[question]
+
+    def _relit(self, case: Case, maker: SceneMaker) -> list[np.ndarray]:
         """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
 
         def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
-            render.require_surface(case.maker, len(n) > 0)
+            render.require_surface(maker, len(n) > 0)
             return quality.round_trip(case.codec, n, position)
 
-        return self._drawn(case, LAYOUTS["fp32"], keeps)
+        return self._drawn(case, maker, LAYOUTS["fp32"], keeps)[0]
 
-    def _drawn(self, case: Case, layout: Layout, keeps: Keeps | None = None) -> list[np.ndarray]:
+    def _drawn(
+        self, case: Case, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
+    ) -> tuple[list[np.ndarray], np.ndarray]:
+        """The image at each power, and which pixels a surface covers."""
         plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-        scene, shown = case.maker.make(case.setting), []
+        scene, shown = maker.make(case.setting), []
         with rendering(self._device, case.pipeline, scene, plan) as made:
             for power in case.powers:
                 made.draw(scene.with_power(power), keeps)
                 shown.append(made.image())
-        return shown
+            covered = made.gbuffer()[0][..., 2] != 0
+        return shown, covered
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What exact normals show: an image in linear light at each power, and which pixels a surface covers."""
+
+    images: list[np.ndarray]
+    covered: np.ndarray
 
 
 def _display(maker: SceneMaker, right: np.ndarray) -> Display:
@@ -302,22 +367,3 @@ def _lost(normals: NormalSet, domain: str) -> float:
         covered = np.asarray(covered)
         lost, count = lost + int(np.count_nonzero(is_lost & covered)), count + int(np.count_nonzero(covered))
     return 100.0 * lost / max(count, 1)
-
-
-class Costs:
-    """Instructions of encodings on one family; unknown where this machine has no compilers."""
-
-    def __init__(self, encodings: Iterable[Encoding], family: str):
-        self._rows = cost.counted(encodings, family, STAGE)
-
-    def of(self, encoding: Encoding) -> Row:
-        """The columns of instructions; None where they are not known."""
-        encode, decode = (self._rows.get((encoding.name, operation)) for operation in cost.OPERATIONS)
-        if not encode or not decode:
-            return {}
-        return {
-            "encode_instructions": encode["instructions"],
-            "decode_instructions": decode["instructions"],
-            "instructions": encode["instructions"] + decode["instructions"],
-            "loops": (encode["loops"] or 0) + (decode["loops"] or 0),
-        }

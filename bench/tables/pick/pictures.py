@@ -16,22 +16,21 @@ from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...output.writing import files_of, whole_file
 from ..render import measure as render
 from ..table import Row
-from .answer import AGAINST, BEST, CHEAPER, IMAGE, PICTURE, RUNNER_UP
+from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images
 from .measure import Case, Pictures
 
-PLACES = (BEST, RUNNER_UP, AGAINST, CHEAPER, PICTURE)
+PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
     """The image at each power of every code that has a place, and of the exact normals."""
-    placed = {(row["storage"], row["encoding"], row["scene"]) for row in rows if row["place"]}
-    for case in chosen:
-        if (case.codec.storage.name, case.codec.encoding.name, case.maker.name) not in placed:
-            continue
+    placed = {(row["storage"], row["encoding"]) for row in rows if set(_places(row)) & set(PLACES)}
+    drawn = (one for one in chosen if (one.codec.storage.name, one.codec.encoding.name) in placed)
+    for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *render.UNMEASURABLE):
-            for power, (image, exact) in drawing.shown(case).items():
-                scene = _scene(case.maker.name, power)
+            for power, (image, exact) in drawing.shown(case, maker).items():
+                scene = _scene(maker.name, power)
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
 
@@ -49,22 +48,26 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     """What lies in a folder of the answers: at each power, the highest first, the codes by their places."""
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
-    found = [row for row in rows if row.get("place")]
+    found = [row for row in rows if set(_places(row)) & set(PLACES)]
     placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place(row)))
-    powers = {float(name.removeprefix(IMAGE)) for row in placed for name in row if name.startswith(IMAGE)}
-    for scene in dict.fromkeys(str(row.get("scene")) for row in placed):
-        for power in sorted(powers, reverse=True):
-            stem = _scene(scene, power)
-            exact = there.get(f"{stem}-reference.png")
-            codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
-            paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
-            known = [Pictured(key, key.label, key.label, partial(_read, path)) for key, path in paths.items() if path]
-            if exact and known:
-                yield Subject(f"the answer on {scene} at power {power:g}", "image", partial(read_png, exact), known)
+    drawn = dict.fromkeys(key for row in placed for key in images(row))
+    scenes = list(dict.fromkeys(scene for scene, _ in drawn))
+    for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1]))):
+        stem = _scene(scene, float(power))
+        exact = there.get(f"{stem}-reference.png")
+        codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
+        paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
+        known = [Pictured(key, key.label, key.label, partial(_read, path)) for key, path in paths.items() if path]
+        if exact and known:
+            yield Subject(f"the answer on {scene} at power {power}", "image", partial(read_png, exact), known)
+
+
+def _places(row: Row) -> list[str]:
+    return str(row.get("place") or "").split(", ")
 
 
 def _place(row: Row) -> int:
-    return min(PLACES.index(word) for word in str(row["place"]).split(", ") if word in PLACES)
+    return min(PLACES.index(word) for word in _places(row) if word in PLACES)
 
 
 def _read(path: Path) -> ImagePixels | None:

@@ -11,7 +11,6 @@ from ...options.option import (
     Encodings,
     Images,
     Names,
-    Normals,
     Option,
     Reading,
     Scenes,
@@ -19,11 +18,18 @@ from ...options.option import (
     StorageNames,
 )
 from .. import shared_columns as shared
+from ..mix.table import USES
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
 # One chunk of normals. More of them move the mean by less than a thousandth of itself.
 COUNT = 2**18
+# The decibels that a code must gain for twice the price: half a bit of each component.
+WORTH_DB = 3.0
+# Passes that decode: light, reflections, occlusion, and a denoiser or temporal antialiasing.
+READERS = 4
+# A code has a hole where its largest angle is more than so many times the least of those that qualify.
+HOLE = 4.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +37,9 @@ class PickOptions(Reading):
     """What `pick` chooses from, and what it asks of the code. Names are comma-separated."""
 
     storage: StorageNames = "rg8,rgb10a2"
+    bytes: Annotated[
+        str | None, Option("--bytes", "Every storage of so many bytes a texel, comma-separated, in place of --storage.")
+    ] = None
     encoding: Encodings = "all"
     against: Annotated[
         str | None,
@@ -38,30 +47,49 @@ class PickOptions(Reading):
             "--against", f"Encodings or files of GLSL, HLSL or Slang to compare with the answer, {Names}.", files=True
         ),
     ] = None
-    normals: Normals = "sphere"
-    scene: Scenes = "gloss"
+    normals: Annotated[
+        str | None,
+        Option("--normals", f"Normal sets or files, {Names}. Default: those of --domain.", files=True, in_run=True),
+    ] = None
+    scene: Scenes = "gloss,room"
     power: Annotated[
-        str, Option("--power", "Specular powers that the scene is rendered with, comma-separated.", in_run=True)
+        str, Option("--power", "Specular powers that the scenes are rendered with, comma-separated.", in_run=True)
     ] = "47,1024"
     effects: Effects = None
-    family: Annotated[str, Option("--family", "The GPU family that instructions are counted for.")] = "navi21"
+    family: Annotated[
+        str,
+        Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts."),
+    ] = "navi21"
     aim: Annotated[
         str,
-        Option("--aim", "What decides: angle (the mean), worst (the largest angle), image (the lowest dB) or cost."),
+        Option(
+            "--aim",
+            "What a code must be good at: angle (the mean), worst (the largest angle), image (the lowest dB), or cost "
+            "(cheap before exact).",
+        ),
     ] = "angle"
+    readers: Annotated[
+        int, Option("--readers", "Passes that decode: light, reflections, occlusion, denoiser. Encoding counts once.")
+    ] = READERS
+    worth: Annotated[float, Option("--worth", "The decibels that a code must gain for twice the price.")] = WORTH_DB
+    accept_holes: Annotated[
+        bool, Option("--accept-holes", f"Take codes whose largest angle is over {HOLE:g} times the least.")
+    ] = False
+    accept_lengths: Annotated[bool, Option("--accept-lengths", "Take codes whose decodes are not of length 1.")] = False
     most_instructions: Annotated[
-        int | None, Option("--most-instructions", "The most instructions, encode and decode together.")
+        int | None, Option("--most-instructions", "The most issue slots that encoding and decoding once may execute.")
     ] = None
     domain: Annotated[
         str | None,
         Option(
             "--domain",
-            "What the code must hold: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.",
+            "What the code must hold and is measured on: sphere, hemisphere (z >= 0), view (facing the viewer). "
+            "Default: your normals.",
         ),
     ] = None
     needs: Annotated[
         str | None,
-        Option("--needs", "What stored codes must survive: filter, blend, resolve; comma-separated, or all."),
+        Option("--needs", f"What stored codes must survive: {', '.join(USES)}; comma-separated, or all."),
     ] = None
     count: Count = COUNT
     seed: Seed = 0
@@ -75,18 +103,20 @@ class PickOutputs:
 
 
 COLUMNS = (
+    Column("asked", "The storage that was asked for, or the number of bytes.", KEY, shown=False),
     shared.STORAGE,
     shared.ENCODING,
     Column("normals", "The set of normals that was measured on.", KEY),
-    Column("scene", "The scene that was rendered.", KEY),
+    Column("scene", "The scenes that were rendered.", KEY),
     Column(
         "place",
-        "best: by the aim. runner-up: next by the aim. cheaper: the best with at most half the instructions of the "
-        "best. picture: the best image of those rendered. against: named by --against.",
+        "best: the answer. more exact, most exact, cheaper, fewer bits: the rungs above and below it. against: named "
+        "by --against. elsewhere: of another storage of the same bytes, where it is 6 dB better.",
         HOW,
     ),
-    Column("front", "Whether no other code is as good in every figure and better in one.", HOW, shown=False),
+    Column("front", "Whether no other code is as good in error, price and bits and better in one.", HOW, shown=False),
     shared.BITS,
+    Column("free_bits", "Bits of the texel that stay free.", better="more", drops=2),
     Column("angle_mean_deg", "Mean angle between normal and decode.", unit="degrees", better="less"),
     Column(
         "angle_max_deg",
@@ -97,33 +127,62 @@ COLUMNS = (
     ),
     Column(
         "angle_sup_deg",
-        "The supremum: the largest angle of exact arithmetic. Of the best; with --aim worst of all that qualify.",
+        "The supremum: the largest angle of exact arithmetic. Of codes with a place; with --aim worst of all that "
+        "qualify.",
         unit="degrees",
         better="less",
     ),
+    Column("worst_normal", "The normal that came back farthest off: x, y and z.", Role.RAW, shown=False),
     Column(
         "image_db_*",
-        "PSNR of the displayed image at that specular power, against 32-bit normals. Of codes that no other beats in "
-        "both angles by more than 5 % at no higher cost; with --aim image of all that qualify.",
+        "PSNR of the displayed image of that scene at that specular power, against 32-bit normals, over covered "
+        "pixels. Of codes with a place; with --aim image of all that qualify.",
         unit="dB",
         better="more",
+        drops=6,
     ),
-    Column("instructions", "Instructions to encode and to decode, in a fragment shader of `family`.", better="less"),
-    Column("encode_instructions", "Instructions to encode.", better="less", drops=4),
-    Column("decode_instructions", "Instructions to decode.", better="less", drops=4),
-    Column("loops", "Jumps back in those shaders. A loop's body counts once.", better="less", drops=3),
+    Column(
+        "slots",
+        "The price: issue slots to encode once and to decode for each of `readers`, as they are executed.",
+        better="less",
+    ),
+    Column("slots_once", "Issue slots to encode and decode once, as they are executed.", better="less", shown=False),
+    Column("encode_slots", "Issue slots to encode.", better="less", drops=4),
+    Column("decode_slots", "Issue slots to decode.", better="less", drops=4),
+    Column(
+        "instructions", "Instructions to encode and to decode, as they stand in the shader.", better="less", shown=False
+    ),
+    Column("encode_instructions", "Instructions to encode.", better="less", shown=False),
+    Column("decode_instructions", "Instructions to decode.", better="less", shown=False),
+    Column("loops", "Jumps back in those shaders.", better="less", drops=3),
+    Column("table", "Whether it reads a look-up table; a fetch is not in the price.", HOW, drops=3),
     Column("invalid", "Decodes that were NaN or infinite; each counts as the opposite direction.", better="less"),
+    Column(
+        "length_share",
+        "The root mean squared error of the lengths of decodes over that of the directions, in radians.",
+        better="less",
+        shown=False,
+    ),
     Column("domain", "The normals that the encoding is made for: sphere, hemisphere (z >= 0) or view.", HOW, drops=1),
     Column("lost_percent", "The share of the normals that lie outside that domain.", unit="%", better="less", drops=5),
     Column("left_out", "Why the code does not qualify.", HOW),
+    Column("hole", "How large its hole is, in degrees, and at which normal.", HOW, shown=False),
     Column("effects", "Effects in the image.", HOW),
-    Column("family", "The GPU family that instructions were counted for.", HOW),
+    Column("family", "The GPU families that slots were counted for.", HOW),
+    Column("dearest_family", "The one where the code is dearest, which the slots are of.", HOW),
     Column("aim", "What decides.", HOW),
-    Column("most_instructions", "The most instructions that were allowed.", HOW),
+    Column("readers", "The passes that decode.", HOW),
+    Column("worth", "The decibels that a code must gain for twice the price.", HOW, "dB"),
+    Column("accept_holes", "Whether codes with a hole may be the answer.", HOW, shown=False),
+    Column("accept_lengths", "Whether codes whose decodes are not of length 1 may be the answer.", HOW, shown=False),
+    Column("most_instructions", "The most issue slots that were allowed, encode and decode once.", HOW),
     Column("needs", "The domain that was asked for.", HOW),
     Column("mixing", "What stored codes must survive, as --needs says it.", HOW),
     Column("cannot_mix", "Why the code does not survive that: the verdict of `mix`.", HOW),
     Column("against", "Whether the code was named by --against.", HOW, shown=False),
+    Column("beside", "Whether it is of another storage of the same bytes.", HOW, shown=False),
+    Column("same_target", "Whether that is packed into the texel that was asked for.", HOW, shown=False),
+    Column("bytes", "Bytes of the texel that was asked for.", HOW, shown=False),
     Column("count", "How many normals were measured.", HOW),
     shared.DEVICE,
     shared.SEED,
@@ -134,8 +193,8 @@ TABLE = Table(
     name="pick",
     package=__package__ or "",
     help="Which code to take for each storage, at what price, and what to take instead.\n\n"
-    "Codes that do not meet the constraints are left out, with the reason. Of the others the aim decides. The exit "
-    "status is 1 where no code meets them.",
+    "Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much "
+    "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",
     example="normalbench pick --storage rg8 --most-instructions 40 --scene gloss --power 256",
     options=PickOptions,
     outputs=PickOutputs,
@@ -147,12 +206,14 @@ TABLE = Table(
         title="Which code should I take?",
         short="Answer",
         intro="The best code for each storage, what it costs, and what to take instead.",
-        method="Codes that do not meet the constraints are left out. The aim decides among the others; where two are "
-        "equal the one with fewer instructions is taken. `cheaper` is the best of those with at most half the "
-        "instructions. Angles are over the named normals, the largest is a supremum found in float64. Images are one "
-        "frame of 320 x 240 of the hybrid pipeline, all else in 32-bit floats, lit by the normals that the emulated "
-        "code gives back; `render` writes codes in shaders, and agrees to 0.02 dB. Instructions are counted in "
-        "fragment shaders as Mesa compiles them, without the conversion that the render target does.",
+        method="Codes that do not meet the constraints are left out. A code whose error nobody sees is enough: of "
+        "those that cost little the cheapest is taken. Of others a code may cost twice as much if it is 3 dB better, "
+        "half a bit of each component. The price is in issue slots as they are executed, to encode once and to decode "
+        "for four readers; 80 of these hide behind the traffic of the target. Angles are over the named normals, the "
+        "largest is a supremum found in float64. Images are frames of 320 x 240 of the hybrid pipeline, all else in "
+        "32-bit floats, lit by the normals that the emulated code gives back, and compared over covered pixels; "
+        "`render` writes codes in shaders, and agrees to 0.02 dB. Slots are counted in shaders as the vendors' "
+        "compilers make them, without the conversion that the render target does.",
         leads=True,
     ),
 )

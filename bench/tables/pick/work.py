@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import STORAGES, Storage
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
-from ...codecs.names import check_twin, codecs_named
+from ...codecs.names import check_twin, codecs_named, storages_named
 from ...machine.devices import found_device, require_jax
 from ...normals.normal_names import normal_sets_named
+from ...normals.normal_sets import NormalSet
 from ...options.counts import check_seed, checked_count, in_range
 from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...options.gpu_families import FAMILIES
+from ...options.gpu_families import CHOICES
 from ...options.scene_names import powers_named, scenes_named
 from ...output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...output.writing import check_folder
@@ -30,10 +33,11 @@ from .sentences import sentences
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
-# The GPUs that `pick` counts for: those that compile its stage.
-COUNTED = {name: family for name, family in FAMILIES.items() if measure.STAGE in family.stages}
+MOST_READERS, MOST_WORTH = 64, 100.0
+# By the domain that is asked for, the set that is measured.
+SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}
 # What people see of the front.
-SHOWN = ("encoding", "place", "bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "instructions")
+SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "slots")
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,7 @@ class Part:
 
 
 def questions(options: PickOptions) -> list[list[measure.Case]]:
-    """For each storage, set of normals and scene a case for each code that fits.
+    """For each storage, or number of bytes, and set of normals a case for each code that fits.
 
     Raises:
         UsageError: unknown names, counts out of range, or no code that fits.
@@ -53,39 +57,66 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     count = checked_count(options.count)
     check_seed(options.seed)
     said = _question(options)
-    against = codecs_named(options.against, options.storage, "nearest") if options.against else []
+    asked = _asked(options)
+    against = codecs_named(options.against, ",".join(_names(asked)), "nearest") if options.against else []
     named = {codec.encoding.name for codec in against}
-    codecs = dict.fromkeys([*codecs_named(options.encoding, options.storage, "nearest"), *against])
+    codecs = dict.fromkeys([*codecs_named(options.encoding, ",".join(_names(asked)), "nearest"), *against])
     fit, left_out = _fitting(codecs)
     # Those of the catalogue are traced by tests.
+    encodings = list(dict.fromkeys(codec.encoding for codec in codecs))
     for encoding in dict.fromkeys(codec.encoding for codec in fit if not is_in_catalogue(codec.encoding)):
         check_twin(encoding)
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
-    sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
-    powers, makers = tuple(powers_named(options.power)), scenes_named(options.scene)
+    chosen = options.normals or SETS[said["needs"]]
+    sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
+    powers, makers = tuple(powers_named(options.power)), tuple(scenes_named(options.scene))
     effects = effects_named(options.effects) if options.effects else []
-    pipeline = _pipeline(effects, makers, Setting(seed=options.seed))
-    said |= {"effects": name_of(effects)}
+    setting = Setting(seed=options.seed)
+    pipeline = _pipeline(effects, makers, setting)
+    said |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
     for line in left_out if options.encoding.strip() != "all" else ():
         leave_out(line)
+
+    def case(codec: Codec, normals: NormalSet, about: Row) -> measure.Case:
+        more = {"normals": normals.name, "against": codec.encoding.name in named and not about["beside"]}
+        return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline)
+
     return [
-        [
-            measure.Case(
-                codec,
-                normals,
-                maker,
-                Setting(seed=options.seed),
-                powers,
-                said | {"normals": normals.name, "scene": maker.name, "against": codec.encoding.name in named},
-                pipeline,
-            )
-            for codec in fit
-            if codec.storage is storage
-        ]
-        for storage in dict.fromkeys(codec.storage for codec in fit)
+        [case(codec, normals, about) for codec, about in _compared(name, storages, fit, encodings)]
+        for name, storages in asked.items()
+        if any(codec.storage in storages for codec in fit)
         for normals in sets
-        for maker in makers
     ]
+
+
+def _asked(options: PickOptions) -> dict[str, list[Storage]]:
+    """The storages of each question, by what was asked for. Raises UsageError."""
+    if options.bytes is None:
+        return {storage.name: [storage] for storage in storages_named(options.storage)}
+    sizes = sorted({storage.texel_bytes for storage in STORAGES.values()})
+    chosen = pick("number of bytes", options.bytes, {str(size): size for size in sizes})
+    return {f"{size} bytes": [one for one in STORAGES.values() if one.texel_bytes == size] for size in chosen}
+
+
+def _names(asked: Mapping[str, Sequence[Storage]]) -> list[str]:
+    return list(dict.fromkeys(storage.name for storages in asked.values() for storage in storages))
+
+
+def _compared(
+    name: str, storages: Sequence[Storage], fit: Sequence[Codec], encodings: Sequence[Encoding]
+) -> Iterator[tuple[Codec, Row]]:
+    """The codecs of a question and what their rows say: those asked for, then those of other storages of as many bytes
+    where one storage was asked for."""
+    about: Row = {"asked": name, "bytes": storages[0].texel_bytes, "beside": False, "same_target": False}
+    yield from ((codec, about) for codec in fit if codec.storage in storages)
+    if len(storages) > 1:
+        return
+    (storage,) = storages
+    for other in STORAGES.values():
+        if other.texel_bytes == storage.texel_bytes and other != storage:
+            same = other.target == storage.target
+            codecs = (Codec(encoding, other) for encoding in encodings)
+            yield from ((one, about | {"beside": True, "same_target": same}) for one in codecs if one.fits)
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
@@ -102,10 +133,16 @@ def _question(options: PickOptions) -> Row:
     """What every row says of the question. Raises UsageError for what cannot be asked."""
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
+    in_range("--readers", options.readers, 0, MOST_READERS)
+    if not 0 < options.worth <= MOST_WORTH:
+        raise UsageError(f"--worth {options.worth:g}: above 0 to {MOST_WORTH:g} decibels")
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
-    aim, family = pick_one("aim", options.aim, AIMS), pick_one("family", options.family, COUNTED)
+    chosen = [name for names in pick("family", options.family, CHOICES) for name in names]
+    aim, family = pick_one("aim", options.aim, {name: name for name in AIMS}), ",".join(dict.fromkeys(chosen))
     uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
     said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+    said |= {"readers": options.readers, "worth": options.worth}
+    said |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
     return said | {"mixing": ",".join(uses) if uses else None}
 
 
@@ -132,11 +169,14 @@ def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
         tell(f"no images: {why}")
     if outputs.images:
         check_folder(outputs.images)
-    return [Step(_key(chosen), Part(chosen, device), _name(chosen), len(chosen)) for chosen in asked]
+    return [
+        Step(_key(chosen), Part(chosen, device), _name(chosen), sum(not case.is_beside for case in chosen))
+        for chosen in asked
+    ]
 
 
 def _name(chosen: Sequence[measure.Case]) -> str:
-    return f"{chosen[0].codec.storage.name} {chosen[0].normal_set.name}"
+    return f"{chosen[0].said['asked']} {chosen[0].normal_set.name}"
 
 
 def _key(chosen: Sequence[measure.Case]) -> Row:
@@ -154,10 +194,10 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """For each question the answer in sentences, and the codes that no other beats."""
-    for (storage, normals, scene), group in groups(rows).items():
+    for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
-        title = f"{storage}, on {normals}: the codes that no other one beats in every figure"
-        said, keys = tuple(sentences(group)), {"storage": storage, "scene": scene}
+        title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
+        said, keys = tuple(sentences(group)), {"storage": asked, "scene": scene.split(",")[0]}
         yield Sheet(title if front else "", front, TABLE.drops(front), said=said, keys=keys)
 
 
@@ -167,9 +207,9 @@ def _short(row: Row) -> Row:
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
     """The questions without an answer; the sentences of the sheet say why."""
-    for (storage, normals, _), group in groups(rows).items():
+    for (asked, normals, _), group in groups(rows).items():
         if all(row["left_out"] for row in group):
-            yield f"no answer for {storage} on {normals}"
+            yield f"no answer for {asked} on {normals}"
 
 
 def _write(done: Measured, _: Tick) -> None:

@@ -1,0 +1,64 @@
+"""What codecs cost: issue slots as they are executed, on the dearest of several GPU families."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.defines.packings import packing_of
+from ...options.gpu_families import usual_stage
+from ..cost import measure as cost
+from .answer import Row
+from .table import READERS
+
+
+class Costs:
+    """Instructions and issue slots of codecs; unknown where this machine has no compilers.
+
+    A packing into channels counts; the conversion that a render target does by itself does not.
+    """
+
+    def __init__(self, codecs: Iterable[Codec], families: Sequence[str], readers: int = READERS):
+        self._readers = readers
+        chosen = list(codecs)
+        encodings = list(dict.fromkeys(codec.encoding for codec in chosen))
+        packings = {packing_of(codec).name: packing_of(codec) for codec in chosen if codec.storage.is_packed}
+        self._rows = {
+            family: cost.counted(encodings, family, usual_stage(family), list(packings.values())) for family in families
+        }
+
+    def of(self, codec: Codec) -> Row:
+        """The columns of costs on the family where the code is dearest; none where nothing is known."""
+        found = [row for family in self._rows if (row := self._on(family, codec))]
+        return max(found, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
+
+    def _on(self, family: str, codec: Codec) -> Row:
+        rows, name = self._rows[family], codec.encoding.name
+        parts = [[rows.get((name, operation))] for operation in cost.OPERATIONS]
+        if codec.storage.is_packed:
+            for part, operation in zip(parts, cost.PACKING_OPERATIONS.values(), strict=True):
+                part.append(rows.get((packing_of(codec).name, operation)))
+        if any(row is None for part in parts for row in part):
+            return {}
+        instructions, slots = (
+            [_total(part, column) for part in parts] for column in ("instructions", "executed_slots")
+        )
+        is_known = None not in slots
+        return {
+            "dearest_family": family,
+            **dict(zip(("encode_instructions", "decode_instructions"), instructions, strict=True)),
+            "instructions": _sum(instructions),
+            **dict(zip(("encode_slots", "decode_slots"), slots, strict=True)),
+            "slots_once": _sum(slots),
+            "slots": slots[0] + self._readers * slots[1] if is_known else None,  # type: ignore[operator]
+            "loops": sum(row["loops"] or 0 for part in parts for row in part if row),
+        }
+
+
+def _total(rows: Sequence[Row | None], column: str) -> float | None:
+    return _sum([row[column] if row else None for row in rows])
+
+
+def _sum(figures: Sequence[float | None]) -> float | None:
+    known = [figure for figure in figures if figure is not None]
+    return round(sum(known), 1) if len(known) == len(figures) else None
