@@ -69,7 +69,7 @@ def pick(
         accept_lengths: Take codes whose decodes are not of length 1.
         most_instructions: The most issue slots that encoding and decoding once may execute.
         domain: What the code must hold and is measured on: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
-        needs: What stored codes must survive: filter, blend, resolve; comma-separated, or all.
+        needs: What stored codes must survive: filter, blend, resolve, upsample; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
@@ -200,6 +200,7 @@ def mix(
     operation: Names = ...,
     normals: Names = ...,
     angle: Names = ...,
+    edge: Names = ...,
     backend: Names = ...,
     samples: int = ...,
     power: float = ...,
@@ -227,6 +228,7 @@ def mix(
         operation: filter, mip_2x2, mip_4x4, resolve, resolve_decoded, blend, blend_decoded, detail, upsample; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         angle: Degrees between neighbours, comma-separated. Images have their own neighbours.
+        edge: Degrees across an edge through a patch, comma-separated, or none. Images have their own edges.
         backend: jax, glsl; comma-separated, or all.
         samples: Samples per pixel that are resolved; the device may give more.
         power: The specular power that Toksvig's formula starts from.

@@ -11,17 +11,21 @@ from ...worst_case.exact_figures import has_twin
 from .measure import Case, measure
 from .patches import Mixes, mixes_of, patches_of
 from .table import USES
-from .verdict import summed_up, worst_fault
+from .verdict import Row, decides, decides_across, summed_up, worst_fault
 
 # All around, and about the six axes, where seams lie.
 SETS, ANGLES, COUNT = ("sphere", "axes"), (1.0, 5.0), 2048
 SAMPLES, POWER = 4, 1.0
 
 
+EDGE = 60.0
+
+
 @cache
 def _usual(seed: int) -> tuple[Mixes, ...]:
     chosen = (NORMAL_SETS[name](COUNT, seed) for name in SETS)
-    return tuple(mixes_of(patches, SAMPLES) for one in chosen for patches in patches_of(one, ANGLES, COUNT, seed))
+    made = (patches for one in chosen for patches in patches_of(one, ANGLES, COUNT, seed, (EDGE,)))
+    return tuple(mixes_of(patches, SAMPLES) for patches in made)
 
 
 def _mixes(normals: NormalSet) -> tuple[Mixes, ...]:
@@ -31,8 +35,8 @@ def _mixes(normals: NormalSet) -> tuple[Mixes, ...]:
     return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
 
 
-def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, str]:
-    """Why a codec cannot be used so, by use; nothing where it can.
+def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Why a codec cannot be used so, by use: inside a surface, and across an edge; nothing where it can.
 
     Args:
         uses: some of table.USES.
@@ -45,5 +49,10 @@ def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -
     backend = "jax" if has_twin(codec.encoding) else "glsl"
     cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes(normals))
     rows = [row for case in cases for row in measure(case)]
+    inside, across = ([row for row in rows if is_decisive(row)] for is_decisive in (decides, decides_across))
+    return _summed(inside, uses), _summed(across, uses)
+
+
+def _summed(rows: Sequence[Row], uses: Sequence[str]) -> dict[str, str]:
     found = {use: worst_fault([row for row in rows if row["operation"] in USES[use]]) for use in uses}
     return {use: summed_up(row) for use, row in found.items() if row}

@@ -56,6 +56,7 @@ class Case:
     def name(self) -> str:
         patches = self.mixes.patches
         angle = "" if patches.angle_deg is None else f" {patches.angle_deg:g}"
+        angle += f" edge {patches.edge_deg:g}" if patches.edge_deg else ""
         return f"{self.codec.name} {patches.name}{angle} {self.backend}"
 
 
@@ -214,6 +215,7 @@ def _described(case: Case) -> Row:
         "storage": case.codec.storage.name,
         "normals": patches.name,
         "angle_deg": patches.angle_deg,
+        "edge_deg": patches.edge_deg,
         "backend": case.backend,
         "bits": case.codec.bits,
         "samples": case.mixes.samples,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.mixing.passes import QUARTERS, SIDE, Meetings
 from ...normals.normal_sets import NormalSet
-from .reference import reoriented, tilted, unit_rows
+from .reference import angles_between, reoriented, tilted, unit_rows
 
 # Places of a filter are multiples of 2^-12 of a texel, which texture coordinates have exactly.
 FRACTION_BITS = 12
@@ -19,6 +19,8 @@ ALPHAS = tuple(tenth / 10 for tenth in range(1, 10))
 # The fewest patches of an image, so that each alpha has rows of its own.
 LEAST_SIDE = 16
 TEXELS = SIDE * SIDE
+# Neighbours of an image that are further apart lie on either side of an edge.
+LEAST_EDGE_DEG = 20.0
 
 
 def in_domain(normals: np.ndarray, views: np.ndarray, domain: str) -> np.ndarray:
@@ -37,6 +39,7 @@ class Patches:
     Attributes:
         name: the set's.
         angle_deg: between neighbours; None where they are an image's own.
+        edge_deg: across an edge that runs through each patch; None where none does.
         count: how many of the patches count; the others fill the image up.
         normals: unit normals, float64 of shape (TEXELS, patches, 3), row by row from the first texel.
         views: float32 of shape (patches, 3).
@@ -49,6 +52,7 @@ class Patches:
     normals: np.ndarray
     views: np.ndarray
     seed: int
+    edge_deg: float | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -136,14 +140,18 @@ def mixes_of(patches: Patches, samples: int) -> Mixes:
     )
 
 
-def patches_of(normals: NormalSet, angles_deg: tuple[float, ...], count: int, seed: int) -> Iterator[Patches]:
-    """The patches of a set: an image's own neighbours, or of each angle patches about the set's directions."""
+def patches_of(
+    normals: NormalSet, angles_deg: tuple[float, ...], count: int, seed: int, edges_deg: tuple[float, ...] = ()
+) -> Iterator[Patches]:
+    """The patches of a set: an image's own neighbours; or of each angle patches about the set's directions, then of
+    each edge the patches of the first angle with that edge through them."""
     if normals.shape:
         yield from _own_neighbours(normals, count, seed)
         return
     directions = _directions(normals, count, seed)
-    for angle in angles_deg:
-        yield _about(normals.name, directions, angle, seed)
+    made = [_about(normals.name, directions, angle, seed) for angle in angles_deg]
+    yield from made
+    yield from (_with_edge(made[0], edge, seed) for edge in edges_deg)
 
 
 def _filled(count: int) -> np.ndarray:
@@ -188,6 +196,27 @@ def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Pa
     return Patches(name, angle_deg, count, _rounded(n[:, chosen]), views, seed)
 
 
+def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
+    """Patches whose texels on one side of a line are turned by an angle about a tangent: another surface. The line runs
+    between the first texel and the second, at any angle, so that every mix has texels of both.
+
+    n' = n cos a + (t x n) sin a + t (t . n) (1 - cos a), with t unit (Rodrigues).
+    """
+    random = np.random.default_rng([seed, 3])
+    count = patches.normals.shape[1]
+    turn, lean = random.uniform(0, 2 * np.pi, count), random.uniform(-np.pi / 3, np.pi / 3, count)
+    at = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
+    way = np.stack([np.cos(lean), np.sin(lean)], axis=-1)
+    is_beyond = np.sum((at - np.array([0.5, 0.0])) * way, axis=-1) > 0
+    n, angle = patches.normals, np.radians(edge_deg)
+    tangent = reoriented(n[0], tilted(np.full(count, np.pi / 2), turn))
+    along = np.sum(n * tangent, axis=-1, keepdims=True)
+    turned = n * np.cos(angle) + np.cross(np.broadcast_to(tangent, n.shape), n) * np.sin(angle)
+    turned += tangent * along * (1 - np.cos(angle))
+    mixed = np.where(is_beyond[..., None], unit_rows(turned), n)
+    return replace(patches, edge_deg=edge_deg, normals=_rounded(mixed))
+
+
 def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patches]:
     """Squares of an image's pixels that are all covered, at random places; none of an image that has none."""
     assert normals.shape
@@ -203,8 +232,21 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
     chosen = _filled(len(x))
     right, up = np.meshgrid(np.arange(SIDE), np.arange(SIDE))
     rows, columns = (a.reshape(TEXELS, 1) + b for a, b in ((up, y[chosen]), (right, x[chosen])))
-    cut = unit_rows(n[rows, columns].astype(np.float64))
-    yield Patches(normals.name, None, len(x), _rounded(cut), view[rows[0], columns[0]], seed)
+    cut, seen = unit_rows(n[rows, columns].astype(np.float64)), view[rows[0], columns[0]]
+    steepest = _steepest(cut)
+    for is_edge in (False, True):
+        (which,) = np.nonzero((steepest[: len(x)] > LEAST_EDGE_DEG) == is_edge)
+        if len(which):
+            again = which[_filled(len(which))]
+            edge = float(np.round(np.median(steepest[which]))) if is_edge else None
+            yield Patches(normals.name, None, len(which), _rounded(cut[:, again]), seen[again], seed, edge)
+
+
+def _steepest(normals: np.ndarray) -> np.ndarray:
+    """The largest angle between neighbours of each patch (TEXELS, patches, 3), in degrees."""
+    grid = normals.reshape(SIDE, SIDE, *normals.shape[1:])
+    pairs = ((grid[1:], grid[:-1]), (grid[:, 1:], grid[:, :-1]))
+    return np.max([angles_between(one, other).max(axis=(0, 1)) for one, other in pairs], axis=0)
 
 
 def _rounded(n: np.ndarray) -> np.ndarray:

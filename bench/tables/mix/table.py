@@ -28,12 +28,24 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
 )
 # What a code can be used for, and the operations that decide.
 USES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"filter": ("filter", "mip_2x2", "mip_4x4"), "blend": ("blend", "detail"), "resolve": ("resolve",)}
+    {
+        "filter": ("filter", "mip_2x2", "mip_4x4"),
+        "blend": ("blend", "detail"),
+        "resolve": ("resolve",),
+        "upsample": ("upsample",),
+    }
 )
-VERDICTS: Mapping[str, str] = MappingProxyType({"filter": "filterable", "blend": "blendable", "resolve": "resolvable"})
+VERDICTS: Mapping[str, str] = MappingProxyType(
+    {"filter": "filterable", "blend": "blendable", "resolve": "resolvable", "upsample": "upsamplable"}
+)
+# Of the same verdicts, those across an edge.
+ACROSS = "_across"
 # A result is garbage where it is this much farther off than the texels' own errors explain, in degrees, or farther than
 # every texel of the mix is from the right normal.
 GARBAGE_DEG = 5.0
+# What the texels' own errors explain: twice the largest, which is read once and written once. Where stored codes are
+# mixed it is no more than twice this: a code that is farther off by itself is not excused for it.
+MOST_ALONE_DEG = 1.0
 # A code can be used where nothing is garbage and the largest error, less twice that of the texels alone, is at most
 # this share of the largest angle between the right normal and a texel that was mixed. A map that has a kink and no seam
 # stays below it: of those of the catalogue hemi-octahedral comes nearest, with 0.62.
@@ -60,6 +72,12 @@ class MixOptions(Reading):
     angle: Annotated[
         str, Option("--angle", "Degrees between neighbours, comma-separated. Images have their own neighbours.")
     ] = "1,5,20"
+    edge: Annotated[
+        str,
+        Option(
+            "--edge", "Degrees across an edge through a patch, comma-separated, or none. Images have their own edges."
+        ),
+    ] = "60"
     backend: Backends = "jax,glsl"
     samples: Annotated[int, Option("--samples", "Samples per pixel that are resolved; the device may give more.")] = 4
     power: Annotated[float, Option("--power", "The specular power that Toksvig's formula starts from.")] = 64.0
@@ -80,8 +98,14 @@ def _degrees(name: str, says: str, drops: int = 0) -> Column:
 
 def _verdict(use: str) -> Column:
     decides = ", ".join(USES[use])
-    said = f"The verdict, yes or no, by all rows of {decides} of this codec and back end with angle_deg of at most "
-    return Column(VERDICTS[use], f"{said}{MOST_JUDGED_DEG:g}.", HOW)
+    said = f"The verdict, yes or no, by all rows of {decides} of this codec and back end "
+    inside = f"inside a surface: those without an edge, with angle_deg of at most {MOST_JUDGED_DEG:g}."
+    return Column(VERDICTS[use], f"{said}{inside}", HOW)
+
+
+def _across(use: str) -> Column:
+    said = f"The same across an edge: by rows of {', '.join(USES[use])} with an edge."
+    return Column(f"{VERDICTS[use]}{ACROSS}", said, HOW, drops=3)
 
 
 COLUMNS = (
@@ -89,6 +113,7 @@ COLUMNS = (
     shared.STORAGE,
     Column("normals", "The set of normals: patches about its directions, or the neighbours of an image.", KEY),
     Column("angle_deg", "The angle between neighbours; empty for an image's own.", KEY, "degrees"),
+    Column("edge_deg", "The angle across an edge that runs through each patch; empty for none.", KEY, "degrees"),
     Column(
         "operation",
         f"{'; '.join(f'{name}: {said}' for name, said in OPERATIONS.items())}. The right normal is the same mix of "
@@ -118,7 +143,7 @@ COLUMNS = (
         "garbage_percent",
         f"Results that are off by more than {GARBAGE_DEG:g} degrees, or by more than the angle between the right "
         "normal and the farthest texel of the mix: those lie across a seam. Twice alone_max_deg and the error of the "
-        "geometry come on top.",
+        f"geometry come on top; where stored codes are mixed, at most {MOST_ALONE_DEG:g} degree of it counts.",
         unit="%",
         better="less",
     ),
@@ -147,6 +172,7 @@ COLUMNS = (
         drops=3,
     ),
     *map(_verdict, USES),
+    *map(_across, USES),
     Column("why", "What decided a verdict of no.", HOW, drops=2),
     Column(
         "mixed_by",
@@ -188,7 +214,14 @@ TABLE = Table(
             "count": 2048,
         },
     ),
-    single={"encoding": "octahedral", "operation": "filter", "normals": "axes", "angle": "5", "backend": "jax"},
+    single={
+        "encoding": "octahedral",
+        "operation": "filter",
+        "normals": "axes",
+        "angle": "5",
+        "edge": "none",
+        "backend": "jax",
+    },
     is_measured_beside=True,
     section=Section(
         title="Can a code be filtered, blended or resolved?",

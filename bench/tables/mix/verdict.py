@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from .table import MOST_ADDED, MOST_JUDGED_DEG, USES, VERDICTS
+from .figures import excused
+from .table import ACROSS, MOST_ADDED, MOST_JUDGED_DEG, USES, VERDICTS
 
 Row = dict[str, Any]
 # What is done to codes, as a reason says it.
@@ -16,12 +17,13 @@ DONE: Mapping[str, str] = {
     "resolve": "resolved",
     "blend": "blended",
     "detail": "blended with a detail",
+    "upsample": "upsampled",
 }
 
 
 def _excess(row: Row) -> float:
-    """The largest error less geometry's, and less twice that of the texels alone: once read, once written."""
-    return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * row["alone_max_deg"]
+    """The largest error less geometry's, and less what the texels alone explain: once read, once written."""
+    return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * excused(row["operation"], row["alone_max_deg"])
 
 
 def _allowed(row: Row) -> float:
@@ -37,6 +39,7 @@ def summed_up(row: Row) -> str:
     """What a row is and how far off it is, in a few words."""
     angle = row["angle_deg"]
     apart = "neighbours" if angle is None else f"normals {angle:g} degree{'s' * (angle != 1)} apart"
+    apart = f"an edge of {row['edge_deg']:g} degrees" if row["edge_deg"] else apart
     far = f"up to {row['angle_max_deg']:.3g} degrees off"
     share = row["garbage_percent"]
     how = f"{share:.{0 if share >= 10 else 1 if share >= 1 else 3}f} % garbage, {far}" if share else far
@@ -70,26 +73,35 @@ def codec_of(row: Row) -> tuple[str, ...]:
 
 
 def _verdicts(rows: Sequence[Row]) -> Row:
-    made: Row = dict.fromkeys(VERDICTS.values())
+    made: Row = {}
     reasons = []
-    for use, operations in USES.items():
-        part = [row for row in rows if row["operation"] in operations and decides(row)]
-        if {row["operation"] for row in part} != set(operations):
-            continue
-        worst = worst_fault(part)
-        made[VERDICTS[use]] = "no" if worst else "yes"
-        reasons += [_reason(worst)] if worst else []
+    for suffix, is_decisive in (("", decides), (ACROSS, decides_across)):
+        for use, operations in USES.items():
+            part = [row for row in rows if row["operation"] in operations and is_decisive(row)]
+            column = f"{VERDICTS[use]}{suffix}"
+            made[column] = None
+            if {row["operation"] for row in part} != set(operations):
+                continue
+            worst = worst_fault(part)
+            made[column] = "no" if worst else "yes"
+            reasons += [_reason(worst)] if worst else []
     return made | {"why": "; ".join(dict.fromkeys(reasons)) or None}
 
 
 def decides(row: Row) -> bool:
-    """Whether a row decides: it has figures, and its neighbours are as close as those of a surface."""
-    return row["angle_max_deg"] is not None and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
+    """Whether a row decides inside a surface: it has figures, no edge, and its neighbours are as close as those of a
+    surface."""
+    return row["angle_max_deg"] is not None and not row["edge_deg"] and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
+
+
+def decides_across(row: Row) -> bool:
+    """Whether a row decides across an edge."""
+    return row["angle_max_deg"] is not None and bool(row["edge_deg"])
 
 
 def worst_fault(rows: Sequence[Row]) -> Row | None:
-    """The worst of the rows that decide and speak against their codec; None where none does."""
-    faulty = [row for row in rows if decides(row) and is_faulty(row)]
+    """The worst of the rows that speak against their codec; None where none does."""
+    faulty = [row for row in rows if row["angle_max_deg"] is not None and is_faulty(row)]
     return max(faulty, key=_severity) if faulty else None
 
 
@@ -102,7 +114,7 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
     for group in groups.values():
         first = group[0]
         line = {name: first[name] for name in ("encoding", "storage", "backend")}
-        line |= {name: first[name] for name in VERDICTS.values()}
+        line |= {name: first[name] for name in (*VERDICTS.values(), f"{VERDICTS['filter']}{ACROSS}")}
         line |= {"alone_max_deg": max(row["alone_max_deg"] for row in group)}
         for use, operations in USES.items():
             part = [row["garbage_percent"] for row in group if row["operation"] in operations]

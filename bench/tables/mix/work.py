@@ -25,6 +25,8 @@ from .verdict import decides, judged, lines
 
 # Two neighbours further apart than this lie on no surface that a filter is for.
 MOST_ANGLE, MOST_SAMPLES, MOST_POWER = 60.0, 64, 65536
+# Two sides of an edge face away from each other at most so far.
+MOST_EDGE = 170.0
 NEAREST = "nearest"
 SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
 
@@ -42,10 +44,11 @@ def cases(options: MixOptions) -> list[Case]:
     if not 1 <= options.power <= MOST_POWER:
         raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
     angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
+    edges = () if options.edge.strip() == "none" else checked_numbers("--edge", options.edge, float, 1, MOST_EDGE)
     operations = tuple(pick("operation", options.operation, {name: name for name in OPERATIONS}))
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs = _codecs(options)
-    sets = _patches(options, angles, any(codec.encoding.domain == "view" for codec in codecs))
+    sets = _patches(options, (angles, edges), any(codec.encoding.domain == "view" for codec in codecs))
     samples = _samples(options.samples, backends)
     mixes = [{given: mixes_of(patches, given) for given in set(samples.values())} for patches in sets]
     return [
@@ -68,10 +71,13 @@ def _codecs(options: MixOptions) -> list[Codec]:
     return codecs
 
 
-def _patches(options: MixOptions, angles: tuple[float, ...], needs_rays: bool) -> list[Patches]:
+def _patches(
+    options: MixOptions, apart: tuple[tuple[float, ...], tuple[float, ...]], needs_rays: bool
+) -> list[Patches]:
+    angles, edges = apart
     made: list[Patches] = []
     for normals in normal_sets_named(options.normals, options.count, options.seed, options.reading, needs_rays):
-        found = list(patches_of(normals, angles, options.count, options.seed))
+        found = list(patches_of(normals, angles, options.count, options.seed, edges))
         if not found:
             raise UsageError(f"--normals {normals.name}: no square of 4 x 4 pixels of it is covered")
         made += found
@@ -92,6 +98,7 @@ def _steps(options: MixOptions, outputs: MixOutputs) -> list[Step]:
 def _key(case: Case) -> Row:
     patches = case.mixes.patches
     key: Row = {"codec": case.codec.name, "normals": patches.name, "angle": patches.angle_deg, "backend": case.backend}
+    key |= {"edge": patches.edge_deg}
     key |= {"operations": list(case.operations), "samples": case.mixes.samples, "power": case.power}
     return key | {"count": patches.count, "seed": patches.seed}
 
@@ -109,7 +116,7 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def _group(row: Row) -> tuple[Any, ...]:
-    return row["normals"], row["angle_deg"], row["operation"]
+    return row["normals"], row["angle_deg"], row["edge_deg"], row["operation"]
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
@@ -121,11 +128,13 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 def _shown(done: Measured) -> Iterator[Sheet]:
     """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
     yield from _summary(done.rows)
-    shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "alone_max_deg", "angle_mean_deg")
-    shown += ("angle_max_deg", "garbage_percent", "power_error_percent", "power_decoded_percent")
-    worst = [{name: row[name] for name in shown} for row in _worst(one_backend(done.rows))]
-    if worst:
-        yield Sheet("The worst of all sets and angles, by operation", worst, TABLE.drops(worst))
+    shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "edge_deg", "alone_max_deg")
+    shown += ("angle_mean_deg", "angle_max_deg", "garbage_percent", "power_error_percent", "power_decoded_percent")
+    inside = [row for row in one_backend(done.rows) if not row["edge_deg"]]
+    across = [row for row in one_backend(done.rows) if row["edge_deg"]]
+    for title, rows in (("inside a surface, of all sets and angles", inside), ("across an edge", across)):
+        if worst := [{name: row[name] for name in shown} for row in _worst(rows)]:
+            yield Sheet(f"The worst {title}, by operation", worst, TABLE.drops(worst))
     if ways := _ways(done.rows):
         yield Sheet("How the device mixes, and the least agreement with the model", ways)
 
@@ -163,7 +172,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(made) if line["why"]
         )
         shown = [{name: value for name, value in line.items() if name != "why"} for line in made]
-        title = f"What each code can be used for, by neighbours up to {MOST_JUDGED_DEG:g} degrees apart"
+        title = f"What each code can be used for: inside a surface, by neighbours up to {MOST_JUDGED_DEG:g} degrees "
+        title += "apart or an image's own; and filtered across an edge"
         yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
 
 

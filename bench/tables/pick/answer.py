@@ -42,7 +42,7 @@ INDISTINGUISHABLE_DB = 70.0
 # The share of the angle that the error of a decode's length has, from which on it must be normalised before it is lit.
 # `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
 LENGTH = 0.1
-STEP_DB = 0.5
+STEP = 0.5
 # Rungs of a ladder that differ by less are one.
 LEAST_DB = 0.25
 MOST_RUNGS = 2
@@ -50,7 +50,7 @@ MOST_RUNGS = 2
 # better by a bit of each component.
 BETTER_DB, MUCH_BETTER_DB = 1.0, 6.0
 # How many figures behind the loss decide where codes are equal.
-TIES = 4
+TIES = 3
 
 
 def largest(row: Row) -> float | None:
@@ -122,20 +122,25 @@ def is_enough(row: Row) -> bool:
 def order(row: Row) -> tuple[float, ...]:
     """By what rows are sorted, less is better.
 
-    Of codes that are enough and cost little the cheapest is first, then the one of fewest bits. The others follow by
-    loss + worth log2(price / floor), to half a decibel, and then by the price.
+    Of codes that are enough and cost little the cheapest is first, to half a doubling, then the one of fewest bits. The
+    others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
     """
-    ties = (_of_image(row), price(row), _bits(row), decibels(largest(row)))
+    ties = (_of_image(row), price(row), _bits(row))
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
-        return (0, bool(row["table"]), price(row), _bits(row), loss_db(row), *ties)
+        return (0, bool(row["table"]), _to_a_step(doublings(row)), _bits(row), _to_a_tenth(loss_db(row)), *ties)
     return (1, _to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
 
 
-def _to_a_step(score: float) -> float:
-    """A score to the half decibel: nobody chooses by less, and of equals the cheaper code is first."""
-    return round(score / STEP_DB) * STEP_DB if math.isfinite(score) else score
+def _to_a_step(figure: float) -> float:
+    """A score to the half decibel, or a price to the half doubling: nobody chooses by less."""
+    return round(figure / STEP) * STEP if math.isfinite(figure) else figure
+
+
+def _to_a_tenth(loss: float) -> float:
+    """A loss in tenths of a decibel, so that of equals the storage that comes first stays first."""
+    return round(loss, 1) if math.isfinite(loss) else loss
 
 
 def figures(row: Row) -> tuple[float, float, float]:
@@ -162,7 +167,7 @@ def why_left_out(row: Row) -> str:
     if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
         return "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
     if row.get("cannot_mix"):
-        return row["cannot_mix"]
+        return str(row["cannot_mix"]).partition(":")[0]
     most, once = row["most_instructions"], row["slots_once"]
     if most is not None and once is None:
         return "issue slots not known"
@@ -296,11 +301,5 @@ def _elsewhere(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
     packed = [row for row in others if row["same_target"] and _bits(row) <= _bits(best)]
     packed = [row for row in packed if loss_db(best) - loss_db(row) >= BETTER_DB]
     better = [row for row in others if not row["same_target"] and loss_db(best) - loss_db(row) >= MUCH_BETTER_DB]
-    kept = [min(some, key=_roughly, default=None) for some in (packed, better)]
+    kept = [min(some, key=lambda row: order(row)[:-TIES], default=None) for some in (packed, better)]
     return [row | {"front": False, "place": ELSEWHERE} for row in kept if row]
-
-
-def _roughly(row: Row) -> tuple[float, ...]:
-    """The order of a row with its loss to a tenth of a decibel, so that of equals the first stays first."""
-    *rank, loss = order(row)[:-TIES]
-    return (*rank, round(loss, 1))

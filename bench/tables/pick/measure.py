@@ -34,7 +34,7 @@ from ..mix import judge
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
-from .answer import AFFORDABLE, IMAGE, answered, floor, price
+from .answer import AFFORDABLE, IMAGE, answered, floor, price, why_left_out
 from .prices import Costs
 from .table import TABLE
 
@@ -128,10 +128,21 @@ class Question:
             self._rows[name] |= angles[name]
             if not self._cases[name].is_beside:
                 tick(f"{name} {self._cases[name].normal_set.name}")
-        for row in self._qualified("angle"):
-            if row["mixing"]:
+        # Also of codes with a hole, which has none where the codes without it do not survive.
+        for row in list(self._rows.values()):
+            if row["mixing"] and not row["beside"] and not why_left_out(row | {"aim": "angle"}):
                 self._rows[_name(row)] |= _mixed(self._cases[_name(row)])
+        self._judge_others()
         self._find_suprema(self._qualified("angle") if self._aim == "worst" else self._placed())
+
+    def _judge_others(self) -> None:
+        """What mixing does to the code of another storage that the answer would name; to the next one where it does not
+        survive."""
+        judged: set[str] = set()
+        while waits := [row for row in self._placed() if row["beside"] and row["mixing"] and _name(row) not in judged]:
+            for row in waits:
+                judged.add(_name(row))
+                self._rows[_name(row)] |= _mixed(self._cases[_name(row)])
 
     def draw(self, pictures: Pictures | None) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
@@ -183,9 +194,10 @@ def _mixed(case: Case) -> Row:
     key = _key("mixing", case.codec, uses, domain, _normals(case))
 
     def judged() -> Row:
-        found = judge.faults(case.codec, uses.split(","), case.normal_set, domain)
-        said = (f"cannot be {DONE[use]}: {why}" for use, why in found.items())
-        return {"cannot_mix": "; ".join(said) or None}
+        inside, across = judge.faults(case.codec, uses.split(","), case.normal_set, domain)
+        said = (f"cannot be {DONE[use]}: {why}" for use, why in inside.items())
+        edges = (f"{DONE[use]} across {why}" for use, why in across.items())
+        return {"cannot_mix": "; ".join(said) or None, "mixed_across": "; ".join(edges) or None}
 
     return kept.kept(key, judged)
 
@@ -197,7 +209,11 @@ def _described(case: Case) -> Row:
         TABLE.empty(images)
         | dict(case.said)
         | {"storage": codec.storage.name, "encoding": encoding.name, "domain": encoding.domain}
-        | {"bits": codec.bits, "free_bits": 8 * codec.storage.texel_bytes - codec.bits, "table": encoding.has_tables}
+        | {
+            "bits": codec.bits,
+            "free_bits": 8 * codec.storage.texel_bytes - codec.bits + encoding.sign_bits,
+            "table": encoding.has_tables,
+        }
         | {"seed": case.normal_set.seed, "lost_percent": _lost(case.normal_set, encoding.domain)}
     )
 

@@ -34,6 +34,7 @@ AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst i
 RUNGS = {MORE_EXACT: "More exact", MOST_EXACT: "Most exact", CHEAPER: "Cheaper", FEWER_BITS: "Fewer bits"}
 # Reasons for which more codes are left out than this are counted instead of named.
 MOST_NAMED = 6
+UPSAMPLE = "upsample"
 # How far the mirror's image is, in metres.
 FAR = 10.0
 
@@ -47,7 +48,7 @@ def sentences(group: Sequence[Row]) -> list[str]:
     others = [_elsewhere(row, best) for row in group if ELSEWHERE in _places(row)]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
     made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
-    made += list(filter(None, [_images(best)]))
+    made += list(filter(None, [_images(best), _mixing(best)]))
     made += rungs(group, best)
     made += [_against(row, best) for row in group if row["against"] and row is not best]
     return [*made, *left_out(group)]
@@ -101,9 +102,13 @@ def _seen(row: Row) -> str:
     if is_enough(row):
         return f"That is enough: a reflection moves by at most {degrees(moved[1])}, and {texel} is more."
     texels = " and ".join(f"{value / TEXEL_DEG:.1f}" for value in moved)
-    far = " and ".join(f"{100 * FAR * math.tan(math.radians(min(value, 89.0))):.2g}" for value in moved)
+    far = " and ".join(_length(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror shows it: a reflection moves by {degrees(moved[0])} in the mean and up to {degrees(moved[1])}"
     return f"{said}, which is {texels} texels of a 1k environment map, or {far} cm at {FAR:g} m."
+
+
+def _length(value: float) -> str:
+    return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
 
 
 def _price(row: Row) -> str:
@@ -144,6 +149,24 @@ def _images(row: Row) -> str:
     if worst > INDISTINGUISHABLE_DB:
         return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}."
     return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}."
+
+
+def _mixing(row: Row) -> str:
+    """What mixing does to a code that survives it inside a surface; empty where it was not asked for."""
+    if not row["mixing"]:
+        return ""
+    upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
+    said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
+    across = row.get("mixed_across")
+    return said + (
+        f"Inside a surface it survives {_uses(row)}, but across an edge not: {across}."
+        if across
+        else f"It survives {_uses(row)}, inside a surface and across an edge."
+    )
+
+
+def _uses(row: Row) -> str:
+    return " and ".join(row["mixing"].split(","))
 
 
 def _reservation(row: Row) -> str:
@@ -203,13 +226,21 @@ def _against(row: Row, best: Row) -> str:
 
 def left_out(group: Sequence[Row]) -> Iterator[str]:
     """Which codes do not qualify, and why."""
-    reasons: dict[str, list[str]] = {}
+    reasons: dict[str, list[Row]] = {}
     for row in group:
         if row["left_out"] and not row["against"]:
-            where = f" {row['hole']}" if row.get("hole") else ""
-            reasons.setdefault(row["left_out"], []).append(f"{_called(row)}{where}")
+            reasons.setdefault(row["left_out"], []).append(row)
     if reasons:
-        yield "Left out: " + "; ".join(f"{_named(names)} ({why})" for why, names in reasons.items()) + "."
+        yield "Left out: " + "; ".join(_with_reason(rows, why) for why, rows in reasons.items()) + "."
+
+
+def _with_reason(rows: Sequence[Row], why: str) -> str:
+    """The codes that are left out for a reason; where its details differ, those of the first."""
+    names = [f"{_called(row)} {row['hole']}" if row.get("hole") else _called(row) for row in rows]
+    detail = str(rows[0].get("cannot_mix") or "").partition(":")[2]
+    if not detail:
+        return f"{_named(names)} ({why})"
+    return f"{_named(names)} ({why}:{detail})" if len(rows) == 1 else f"{_named(names)} ({why}; {names[0]}:{detail})"
 
 
 def _named(names: Sequence[str]) -> str:

@@ -65,7 +65,7 @@ def rank(row: dict) -> tuple:
     if row["aim"] == "cost":
         return (price, not enough, lost)
     if enough and price <= 2 * hidden:
-        return (0, row["table"], price, row["bits"], lost)
+        return (0, row["table"], round(2 * math.log2(price / hidden)), row["bits"], round(lost, 1))
     return (1, round(2 * (lost + row["worth"] * math.log2(price / hidden))), price, lost)
 
 
