@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...encodings.codecs.codec import Codec
+from ..languages.words import is_translated
 from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
@@ -106,7 +107,7 @@ def _python(codec: Codec, prefix: str) -> str:
 def _untranslatable(codec: Codec, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
-    if encoding.source in (None, encoding.glsl):
+    if encoding.source is None or not is_translated(encoding.source):
         return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
     return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"

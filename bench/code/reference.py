@@ -83,7 +83,8 @@ def reference_of(codec: Codec, n: np.ndarray, view: np.ndarray, compiled: bool =
     n_planes, view_planes = planes
     code = _array(made(codec.stored)(n_planes, view_planes)) if by_device is None else by_device[0]
     channels = Channels(codec)
-    integers = np.stack([_integers(c, code[:, at]) for at, c in enumerate(channels.channels)], axis=1)
+    texels = code.astype(np.float64) * 0.5 + 0.5 if codec.storage.is_biased else code
+    integers = np.stack([_integers(c, texels[:, at]) for at, c in enumerate(channels.channels)], axis=1)
     words = _words(channels, integers)
     stored = _stored(codec, channels, integers, code)
     if by_device is None:
@@ -124,19 +125,18 @@ def _array(planes) -> np.ndarray:
     return np.stack([np.asarray(plane, np.float32) for plane in planes], axis=1)
 
 
-def _integers(channel: Channel, numbers: np.ndarray) -> np.ndarray:
-    """The bits that stored numbers are kept as, uint32 of shape (count,)."""
-    numbers = numbers.astype(np.float64)
+def _integers(channel: Channel, texels: np.ndarray) -> np.ndarray:
+    """The bits that a texel's numbers are kept as, uint32 of shape (count,)."""
+    numbers = texels.astype(np.float64)
     if channel.kind == "unorm":
-        return np.rint((numbers * 0.5 + 0.5) * channel.integer).astype(np.uint32)
+        return np.rint(numbers * channel.integer).astype(np.uint32)
     if channel.kind == "snorm":
         whole = np.rint(numbers * channel.integer).astype(np.int64) + (channel.integer if channel.is_across else 0)
         return (whole & (1 << channel.bits) - 1).astype(np.uint32)
     if channel.bits in FLOATS:
         kind = FLOATS[channel.bits]
         return numbers.astype(kind).view(f"u{channel.bits // 8}").astype(np.uint32)
-    texels = (numbers * 0.5 + 0.5).astype(np.float16)
-    return (texels.view(np.uint16) >> HALF - channel.bits).astype(np.uint32)
+    return (numbers.astype(np.float16).view(np.uint16) >> HALF - channel.bits).astype(np.uint32)
 
 
 def _words(channels: Channels, integers: np.ndarray) -> np.ndarray:

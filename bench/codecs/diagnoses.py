@@ -116,7 +116,7 @@ def _likely(trip: Trip) -> str:
     return "hemisphere" if FAR_BETTER * angles[~behind].mean() < angles[behind].mean() else "sphere"
 
 
-def is_biased(codes: np.ndarray) -> bool:
+def is_unit(codes: np.ndarray) -> bool:
     """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills it.
 
     Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
@@ -231,9 +231,6 @@ def _ranges(trip: Trip, held: Trip) -> Iterator[str]:
     for at in constant:
         yield f"number {at + 1} of the code carries nothing: it is always {low[at]:.3g}"
     others = [at for at in range(size) if at not in constant]
-    if others and all(low[at] > -BEYOND and abs(high[at] - 1) < 0.1 for at in others):
-        yield "codes fill [0, 1] of [-1, 1]: half of each number is unused. Is * 0.5 + 0.5 in it?"
-        return
     for at in others:
         if (np.abs(held.codes[:, at]) > 1 + BEYOND).mean() > FEW:
             worst = int(np.argmax(np.abs(held.codes[:, at])))

@@ -4,9 +4,9 @@
 
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
-what comes back, `wrong`, a list of what is likely wrong, and `biased`, where codes of another language than GLSL fill
-[0, 1]. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
-`error`, what it raises; `apart`, where it contradicts the GLSL.
+what comes back, `wrong`, a list of what is likely wrong, and `is_unit`, where its codes fill [0, 1]. Of a translation
+also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin: `error`, what it raises;
+`apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..languages.words import is_translated, twin_of
 from ..machine import children
 from ..output.errors import MissingError, UsageError
-from .diagnoses import Trip, diagnoses, guessed, is_biased
+from .diagnoses import Trip, diagnoses, guessed, is_unit
 from .names import check_twin
 from .second_look import second_look
 from .signatures import of_hlsl
@@ -72,9 +72,9 @@ def first_look(path: Path) -> dict[str, Any]:
         by = other.get("by", "")
         encoding = read_encoding(path, NOT_ASKED, by=by) if by else encoding
         codes, _ = exact_values(gl, encoding, given, view, given)
-        biased = {"biased": True} if is_translated(path) and is_biased(codes[:, : encoding.components]) else {}
-        if biased:
-            encoding = read_encoding(path, NOT_ASKED, is_biased=True, by=by)
+        unit = {"is_unit": True} if is_unit(codes[:, : encoding.components]) else {}
+        if unit:
+            encoding = read_encoding(path, NOT_ASKED, is_unit=True, by=by)
             codes, _ = exact_values(gl, encoding, given, view, given)
         # As a storage clips them.
         _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
@@ -85,7 +85,7 @@ def first_look(path: Path) -> dict[str, Any]:
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
     judged = broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
-    return judged | biased | other
+    return judged | unit | other
 
 
 def _second_look(path: Path, gl: Device, encoding: Encoding) -> dict[str, Any]:

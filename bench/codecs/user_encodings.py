@@ -18,10 +18,13 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
+from ...gbuffer.codecs.harness import takes_view
 from ...gbuffer.gl.shader import ShaderError, read_shader
 from ...reports.page.verdict import MADE_FOR
+from ..languages.pairs import NORMAL, Function
+from ..languages.programs import pair
 from ..languages.source import Source
-from ..languages.translated import translated
+from ..languages.translated import glsl_file, translated
 from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from ..machine import children, forks
 from ..machine.cores import on_all_cores
@@ -41,7 +44,7 @@ OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 TIME_LIMIT = 60.0
 FIRST_LOOK = "normalbench.bench.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
-BIASED = "its codes fill [0, 1], not [-1, 1]; an unsigned storage holds them as they are"
+UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
 class NoTwinError(Exception):
@@ -166,21 +169,22 @@ def _what_names(encoding: Encoding) -> str:
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
-def read_encoding(path: Path, fault: str = "", is_biased: bool = False, by: str = "") -> Encoding:
+def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
     """An encoding from its file, and from the Python file of the same name where there is one.
 
     Args:
         path: of the file, with the names of its functions behind it where they are needed: see `languages/words.py`.
         fault: why the Python file is not to be used; what it would measure says so.
-        is_biased: whether its codes lie in [0, 1]; of another language than GLSL alone.
+        is_unit: whether its codes lie in [0, 1].
         by: the language whose compiler reads it, if not its own.
 
     Raises:
         UsageError: it cannot be read, or does not define its two functions.
         MissingError: the compiler of its language is not there.
     """
-    text = _text(path, is_biased, by)
+    text = _text(path, is_unit, by)
     encode, decode = _lacking(fault) if fault else _twin(twin_of(path))
+    encode, decode = _of_unit(encode, decode) if is_unit else (encode, decode)
     return Encoding(
         name=text.name,
         title=called(str(path)),
@@ -193,8 +197,14 @@ def read_encoding(path: Path, fault: str = "", is_biased: bool = False, by: str 
         ulps=(0, 0),
         ulps_reason="a user's own",
         functions=text.functions,
-        source=file_of(path).absolute() if is_translated(path) else None,
+        source=file_of(path).absolute() if is_unit or is_translated(path) else None,
+        is_unit=is_unit,
     )
+
+
+def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """A twin whose codes lie in [0, 1] as one of codes in [-1, 1]."""
+    return lambda n, view: encode(n, view) * 2.0 - 1.0, lambda e, view: decode(e * 0.5 + 0.5, view)
 
 
 class _Text(NamedTuple):
@@ -206,19 +216,31 @@ class _Text(NamedTuple):
     functions: str = ""
 
 
-def _text(path: Path, is_biased: bool, by: str) -> _Text:
+def _text(path: Path, is_unit: bool, by: str) -> _Text:
     if is_translated(path):
         made = translated(path, by)
         # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
         name = called(file_of(path).name) if made.name in ENCODINGS else made.name
-        return _Text(name, made.components, made.glsl(is_biased), made.prefix)
+        return _Text(name, made.components, made.glsl(is_unit), made.prefix)
     try:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
     check_given(path, _with_includes(path))
     # Not resolved: the twin lies next to the path that was given.
-    return _Text(name, components, path.absolute())
+    return _of_unit_text(path.absolute(), name, components) if is_unit else _Text(name, components, path.absolute())
+
+
+def _of_unit_text(path: Path, name: str, components: int) -> _Text:
+    """A file that includes one of GLSL whose codes lie in [0, 1], and has functions of codes in [-1, 1]."""
+    sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
+    encoder, decoder = (
+        Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(path, f"{name}_{side}") else (given,))
+        for side, (made, given) in sizes.items()
+    )
+    prefix = f"unit_{name}"
+    text = f'#include "{path}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
+    return _Text(name, components, glsl_file(prefix, text), prefix)
 
 
 def _with_includes(path: Path) -> str:
@@ -293,13 +315,13 @@ class Looks:
 
     def encoding(self, path: Path) -> Encoding:
         """The encoding that was looked at."""
-        read = read_encoding(path, self.fault, self.is_biased, self.glsl.get("by", ""))
+        read = read_encoding(path, self.fault, self.is_unit, self.glsl.get("by", ""))
         return replace(read, domain=self.domain)
 
     @property
-    def is_biased(self) -> bool:
+    def is_unit(self) -> bool:
         """Whether its codes lie in [0, 1]."""
-        return self.glsl.get("biased", False)
+        return self.glsl.get("is_unit", False)
 
     @property
     def domain(self) -> str:
@@ -316,7 +338,7 @@ class Looks:
         """What was guessed of it."""
         held = MADE_FOR.get(self.domain)
         made_for = [f"taken to be made for {held} alone: no others come back"] if held else []
-        return [*self.said, *self.glsl.get("notes", []), *([BIASED] if self.is_biased else []), *made_for]
+        return [*self.said, *self.glsl.get("notes", []), *([UNIT] if self.is_unit else []), *made_for]
 
 
 def _look(path: Path) -> Looks:

@@ -17,10 +17,11 @@ from typing import Any
 from ...encodings.codecs.files import called
 from ..machine import children
 from ..output.errors import MissingError, UsageError
+from . import programs
 from .language import Language, also_read_by, language_of
-from .pairs import NoPairError, Pair, pair_of
+from .pairs import NORMAL, Function, NoPairError, Pair, pair_of
 from .plain import NotPlainError, plain
-from .programs import TranslationError, has_halves, template
+from .programs import TranslationError, has_halves
 from .source import Source
 from .tools import ToolError
 
@@ -65,7 +66,7 @@ def _translated(path: Path, asked: tuple[str, str] | None, folder: Path, by: str
         "prefix": prefix,
         "components": pair.components,
         "notes": [IN_32_BITS] if has_halves(source) else [],
-        "texts": [_text(source, language, pair, prefix, biased, folder) for biased in (0, 1)],
+        "texts": _texts(source, language, pair, prefix, folder),
         "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
     }
 
@@ -78,13 +79,13 @@ def _name(path: Path, pair: Pair, asked: tuple[str, str] | None) -> str:
     return called(f"{path.name}:{pair.encode.name}" if asked else path.name)
 
 
-def _text(source: Source, language: Language, pair: Pair, prefix: str, biased: int, folder: Path) -> str:
-    """The two functions in GLSL."""
-    sides = {"ENCODE": (pair.encode, f"{prefix}_e"), "DECODE": (pair.decode, f"{prefix}_d")}
-    made = [plain(language.shader(source, one, folder), name, one.given[0]) for one, name in sides.values()]
-    words = {f"{side}_main": f"{name}_main" for side, (_, name) in sides.items()}
-    words |= {f"NAME_{side}": f"{prefix}_{side}" for side in ("encode", "decode")}
-    return "".join(made) + template("pair.glsl", CODE=f"vec{pair.components}", BIASED=biased, **words)
+def _texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
+    """The two functions in GLSL, of codes in [-1, 1] and of codes in [0, 1]."""
+    sides = {f"{prefix}_e": pair.encode, f"{prefix}_d": pair.decode}
+    made = "".join(plain(language.shader(source, one, folder), name, one.given[0]) for name, one in sides.items())
+    mains = (Function(f"{name}_main", one.result, (one.given[0], NORMAL)) for name, one in sides.items())
+    encoder, decoder = mains
+    return [made + programs.pair(prefix, pair.components, encoder, decoder, is_unit) for is_unit in (False, True)]
 
 
 if __name__ == "__main__":

@@ -41,6 +41,10 @@ class Function:
         """Whether it has a second parameter, the view-space position."""
         return len(self.given) == 2
 
+    def called(self, given: str) -> str:
+        """A call of it, in a function that has the position as `view`."""
+        return f"{self.name}({given}, view)" if self.takes_view else f"{self.name}({given})"
+
     @property
     def may_encode(self) -> bool:
         """Whether it is of a normal, and of a view-space position if of anything else."""

@@ -36,6 +36,18 @@ def _text(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
+def pair(name: str, components: int, encoder: Function, decoder: Function, is_unit: bool) -> str:
+    """The two functions NAME_encode and NAME_decode that every program calls, of two functions that stand before them.
+
+    Args:
+        is_unit: whether these two give and take codes in [0, 1], which become [-1, 1] on their way out, and come back.
+    """
+    way_out, way_back = (" * 2.0 - 1.0", " * 0.5 + 0.5") if is_unit else ("", "")
+    words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode")}
+    words |= {"ENCODED": encoder.called("n") + way_out, "DECODED": decoder.called(f"e{way_back}")}
+    return template("pair.glsl", CODE=f"vec{components}", **words)
+
+
 def program(source: Source, function: Function) -> str:
     """A source with an entry point that calls one of its functions."""
     arguments = "normalbench_given, normalbench_view" if function.takes_view else "normalbench_given"

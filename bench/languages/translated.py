@@ -21,7 +21,7 @@ from .words import file_of, functions_of
 
 # Of one file: a hundred times what it takes.
 TIME_LIMIT = 60.0
-TEXTS = ("", "-biased")
+TEXTS = ("", "-unit")
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,9 @@ class Translated:
     texts: list[str]
     functions: list[tuple[str, bool]]
 
-    def glsl(self, is_biased: bool) -> Path:
+    def glsl(self, is_unit: bool) -> Path:
         """A file with one of the texts, that other processes find as well."""
-        text = self.texts[is_biased]
-        return _file(f"{self.prefix[:40]}-{kept.key_of(text)[:16]}{TEXTS[is_biased]}.glsl", text)
+        return glsl_file(self.prefix, self.texts[is_unit], TEXTS[is_unit])
 
 
 def translated(word: str | Path, by: str = "") -> Translated:
@@ -120,6 +119,11 @@ def _by_child(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, A
     if "error" in found:
         raise UsageError(found["error"])
     return found
+
+
+def glsl_file(name: str, text: str, mark: str = "") -> Path:
+    """A file of GLSL that other processes find as well, in the cache."""
+    return _file(f"{name[:40]}-{kept.key_of(text)[:16]}{mark}.glsl", text)
 
 
 def _file(name: str, text: str) -> Path:

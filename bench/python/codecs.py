@@ -142,12 +142,13 @@ def _integer(codec: Codec, component: int, number: Any) -> Any:
     storage: Storage = codec.storage
     if component >= codec.encoding.components:
         return (number > 0).astype(jnp.uint32)
+    number = number * 0.5 + 0.5 if storage.is_biased else number
     if storage.kind == "float":
         kind, bits = BITS[storage.bits[component]]
         return jax.lax.bitcast_convert_type(number.astype(kind), bits).astype(jnp.uint32)
     scale = storage.scale(component)
     if storage.kind == "unorm":
-        return jnp.rint((number * 0.5 + 0.5) * scale).astype(jnp.uint32)
+        return jnp.rint(number * scale).astype(jnp.uint32)
     signed = jnp.rint(number * scale).astype(jnp.int32)
     # Laid across channels, -1 is the integer 0; else it is two's complement.
     return signed.astype(jnp.uint32) + scale if storage.is_packed else signed.astype(jnp.uint32)

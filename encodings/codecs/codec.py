@@ -11,7 +11,7 @@ from functools import reduce
 import numpy as np
 
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import LARGEST, Storage
+from ..storages.storage import LARGEST, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -32,11 +32,18 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
 
 @dataclass(frozen=True)
 class Codec:
-    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`."""
+    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`.
+
+    An encoding of numbers in [0, 1] fills every storage with these, signed ones as well.
+    """
 
     encoding: Encoding
     storage: Storage
     rounding: str = "nearest"
+
+    def __post_init__(self) -> None:
+        if self.encoding.is_unit:
+            object.__setattr__(self, "storage", of_unit(self.storage))
 
     @property
     def name(self) -> str:

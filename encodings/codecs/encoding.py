@@ -85,6 +85,7 @@ class Encoding:
         is_half: every step of encode and decode is rounded to a float of 16 bits; codes are of that type.
         source: the user's file that its GLSL was translated from; None where the GLSL was written.
         before: the codec that normals have been through when they are encoded; None where it is given them as they are.
+        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
     """
 
     name: str
@@ -111,6 +112,7 @@ class Encoding:
     is_half: bool = False
     source: Path | None = None
     before: Any = None
+    is_unit: bool = False
 
     @property
     def twin(self) -> Path:

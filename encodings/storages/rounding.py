@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..vec import jnp, maximum, minimum, select
-from .storage import MANTISSA, STORAGES, Storage
+from .storage import MANTISSA, STORAGES, Storage, of_unit
 
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
@@ -145,10 +145,15 @@ def shared(storage: Storage, count: int, number: type[np.floating] = np.float32)
     format with as many bits in these channels stands for them. Others stand for themselves."""
     if storage.kind == "float":
         alike = (s for s in STORAGES.values() if (s.kind, s.bits[:count]) == ("float", storage.bits[:count]))
-        return next(alike, storage), ()
+        return _filled_as(storage, next(alike, storage)), ()
     if storage.curved:
         return storage, ()
-    return STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], scales_of(storage, number)[:count]
+    like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
+    return _filled_as(storage, like), scales_of(storage, number)[:count]
+
+
+def _filled_as(storage: Storage, like: Storage) -> Storage:
+    return of_unit(like) if storage.holds_unit else like
 
 
 def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:

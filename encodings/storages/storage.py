@@ -34,6 +34,7 @@ class Storage:
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
         is_packed: numbers of so many bits lie as integers across the channels of RGBA8.
         is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
+        holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Storage:
     curved: int = 0
     is_packed: bool = False
     is_centred: bool = False
+    holds_unit: bool = False
 
     @property
     def channels(self) -> int:
@@ -52,8 +54,8 @@ class Storage:
 
     @property
     def is_biased(self) -> bool:
-        """Whether a number c is stored as c/2 + 1/2: the format has no sign."""
-        return self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
+        """Whether a number c is stored as c/2 + 1/2: the format has no sign, or its sign is not used."""
+        return self.holds_unit or self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
 
     @property
     def largest(self) -> float:
@@ -81,7 +83,7 @@ class Storage:
     def levels(self, channel: int) -> int:
         """How many values of a number in [-1, 1] a channel tells apart at least, evenly spread ones."""
         if self.kind != "float":
-            return self.scale(channel) * (1 + (self.kind == "snorm")) + 1
+            return self.scale(channel) * (1 + (not self.is_biased)) + 1
         return 2 ** (MANTISSA[self.bits[channel]] + 1 - self.is_biased)
 
     def count(self, channel: int) -> int:
@@ -110,6 +112,11 @@ def _packed(name: str, title: str, kind: str, *bits: int) -> Storage:
 def _centred(like: Storage) -> Storage:
     name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
     return replace(like, name=name, title=title, kind="snorm", is_centred=True)
+
+
+def of_unit(storage: Storage) -> Storage:
+    """A storage as an encoder fills it whose codes are in [0, 1]: nothing between the code and the texel."""
+    return storage if storage.is_biased else replace(storage, holds_unit=True)
 
 
 CENTRED = "_centred"

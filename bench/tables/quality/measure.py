@@ -279,6 +279,7 @@ def _described(case: Case) -> Row:
         "not_finite": case.normal_set.not_finite,
         "domain": case.domain,
         "codes": case.codec.codes,
+        "code_range": "[0, 1]" if case.codec.encoding.is_unit else None,
         "seed": case.normal_set.seed,
     }
 

@@ -149,6 +149,12 @@ COLUMNS = (
         drops=7,
     ),
     shared.CODES,
+    Column(
+        "code_range",
+        "[0, 1], where that is what an encoder's numbers fill: every storage holds them as they are. Else empty.",
+        HOW,
+        drops=7,
+    ),
     Column("limit_mean_deg", "The least mean angle that this many codes can have.", HOW, "degrees"),
     Column("limit_rms_deg", "The least RMS angle that this many codes can have.", HOW, "degrees"),
     Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees"),
