@@ -99,7 +99,18 @@ def list_command(
 def doctor(
     file: Annotated[Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL or Slang.")] = None,
     plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw the encoding's error over the sphere, in rgba8, into this file.")
+        Path | None,
+        typer.Option("--plot", help="Draw the encoding's error over the sphere into this file, bad directions marked."),
+    ] = None,
+    storage: Annotated[
+        str | None,
+        typer.Option(
+            "--storage", help="The storage of the picture and of the comparison with the catalogue. Default: rgba8."
+        ),
+    ] = None,
+    domain: Annotated[
+        str | None,
+        typer.Option("--domain", help="The normals it is meant for: sphere, hemisphere or view. Default: found out."),
     ] = None,
     build_mesa: Annotated[
         Path | None,
@@ -121,21 +132,21 @@ def doctor(
     directions before any storage.
     """
     if build_mesa is not None:
-        if file is not None or plot is not None:
-            raise UsageError("--build-mesa builds and does nothing else; leave out the file and --plot")
+        if file is not None or plot is not None or storage or domain:
+            raise UsageError("--build-mesa builds and does nothing else; leave out the file and its options")
         from ..isa.mobile.build import build_command
 
         return build_command(build_mesa, mesa_source, yes)
     if mesa_source is not None or yes:
         raise UsageError("--mesa-source and --yes go with --build-mesa DIR")
-    if file is None and plot is None:
+    if file is None and plot is None and not storage and not domain:
         from ..results.machine import examine
 
         write(examine(), format_of(format, output), output)
         return 0
     from ..suite.examine import examine_encoding
 
-    return examine_encoding(file, plot, format_of(format, output), output)
+    return examine_encoding(file, plot, format_of(format, output), output, storage, domain)
 
 
 add_tables(app, TABLES.values())

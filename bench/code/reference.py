@@ -15,7 +15,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.codec_passes import CodecPasses
 from ...gbuffer.gl.device import device
-from ..codecs.first_look import directions
+from ..codecs.doctor.probe import directions
 from ..worst_case.exact_figures import has_twin
 from .channels import WORD, Channel, Channels
 

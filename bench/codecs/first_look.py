@@ -1,17 +1,19 @@
 """A first look at a user's code, in a process that may hang or die.
 
-    python -m normalbench.bench.codecs.first_look FILE
+    python -m normalbench.bench.codecs.first_look FILE [DOMAIN]
+
+With DOMAIN it is looked at closely: what its author says that it is made for, or "any".
 
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
-what comes back, `wrong`, a list of what is likely wrong, and `is_unit`, where its codes fill [0, 1]. Of a translation
-also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin: `error`, what it raises;
-`apart`, where it contradicts the GLSL.
+what comes back, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`, a list of what is likely
+wrong, and `is_unit`, where its codes fill [0, 1]. Closely also `like`, the encodings of the catalogue that both its
+functions are, and `bad`, directions that come back elsewhere. Of a translation also `by`, the language whose compiler
+reads it right, and `notes`, lines. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
 import re
@@ -33,13 +35,19 @@ from ...gbuffer.gl.shader import ShaderError, read_shader
 from ..languages.words import is_translated, twin_of
 from ..machine import children
 from ..output.errors import MissingError, UsageError
-from .diagnoses import Trip, diagnoses, guessed, is_unit
+from .doctor import folds
+from .doctor.diagnoses import bad, diagnosed
+from .doctor.domains import Domain, guessed
+from .doctor.exact import SAME_DEG, is_unit
+from .doctor.likeness import likeness
+from .doctor.probe import VIEW, Probe, Trip, directions, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import of_hlsl
-from .user_encodings import NoTwinError, read_encoding, twin_is_looked_at
+from .user_encodings import ANY, NoTwinError, read_encoding, twin_is_looked_at
 
-RANDOM = 4096
+# Of directions that a picture is marked with.
+MOST_BAD = 4000
 NOT_ASKED = "the twin is looked at by itself"
 # Letters of a compiler's message; what follows the first errors follows from them.
 LONGEST = 1000
@@ -47,45 +55,42 @@ LONGEST = 1000
 APART, APART_SHARE = 1e-3, 0.01
 
 
-def directions() -> np.ndarray:
-    """Axes with both zeros and what lies beside them, diagonals, and random directions: float32 of shape (count, 3)."""
-    near = (0.0, -0.0, 1e-7, -1e-7, 1e-3, -1e-3)
-    sides = itertools.product(range(3), (1.0, -1.0), near, near)
-    axes = [np.insert(np.array([a, b]), axis, side) for axis, side, a, b in sides]
-    diagonals = [d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(d)]
-    random = np.random.default_rng(0).normal(size=(RANDOM, 3))
-    found = np.concatenate([axes, diagonals, random])
-    return (found / np.linalg.norm(found, axis=1, keepdims=True)).astype(np.float32)
+def first_look(path: Path, domain: str = "") -> dict[str, Any]:
+    """What there is to say of a file; see above.
 
-
-def first_look(path: Path) -> dict[str, Any]:
-    """What there is to say of a file; see above."""
-    n = directions()
-    view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
-    given = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
+    Args:
+        domain: what its author says that it is made for, or ANY, to look closely.
+    """
     try:
         encoding, gl = read_encoding(path, NOT_ASKED), device()
-        broken = _ended(gl, encoding, given, view)
+        broken = _endless(gl, encoding)
         other = {} if broken or not is_translated(path) else _second_look(path, gl, encoding)
         if "error" in other:
             return other
         by = other.get("by", "")
         encoding = read_encoding(path, NOT_ASKED, by=by) if by else encoding
-        codes, _ = exact_values(gl, encoding, given, view, given)
-        unit = {"is_unit": True} if is_unit(codes[:, : encoding.components]) else {}
+        unit = {"is_unit": True} if not broken and _is_unit(probe_of(gl, encoding)) else {}
         if unit:
             encoding = read_encoding(path, NOT_ASKED, is_unit=True, by=by)
-            codes, _ = exact_values(gl, encoding, given, view, given)
-        # As a storage clips them.
-        _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
+        return (broken or _judged(probe_of(gl, encoding), gl, domain)) | unit | other
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
-    judged = broken or _judged(Trip(n, view[:, :3], codes[:, : encoding.components], decoded[:, :3]))
-    return judged | unit | other
+
+
+def _is_unit(probe: Probe) -> bool:
+    """Whether the codes of all directions fill [0, 1], or those of the directions that come back."""
+    n = directions()
+    codes = probe.encode(n)
+    if is_unit(codes):
+        return True
+    trip = Trip(n, np.broadcast_to(np.array(VIEW, np.float32), n.shape), codes, probe.decode(codes))
+    with np.errstate(invalid="ignore"):
+        domain = guessed(trip, SAME_DEG)
+    return bool(domain.name) and is_unit(domain.held(trip).codes)
 
 
 def _second_look(path: Path, gl: Device, encoding: Encoding) -> dict[str, Any]:
@@ -103,7 +108,9 @@ def _of_compiler(path: Path, said: str) -> str:
     return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
 
 
-def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> dict[str, Any]:
+def _endless(gl: Device, encoding: Encoding) -> dict[str, Any]:
+    n = _widened(directions())
+    view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     for what, flags in zip(("encode", "decode"), loops_ended(gl, encoding, n, view), strict=True):
         if flags.any():
             said = f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
@@ -111,19 +118,27 @@ def _ended(gl: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> d
     return {}
 
 
-def _judged(trip: Trip) -> dict[str, Any]:
+def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
+    trip = trip_of(probe, directions())
     for what, found in (("encode", trip.codes), ("decode", trip.decoded)):
         bad = ~np.isfinite(found).all(axis=1)
         if bad.any():
-            return {"broken": f"{what} of {trip.n[bad][0].tolist()} is {found[bad][0].tolist()}, no number"}
-    domain = guessed(trip)
-    return {"domain": domain, "wrong": diagnoses(trip, domain)}
+            broken = f"{what} of {trip.n[bad][0].tolist()} is {found[bad][0].tolist()}, no number"
+            return {"broken": broken, "wrong": folds.mistakes(probe)}
+    found = diagnosed(probe, gl, domain.replace(ANY, ""))
+    half = {"half": [found.domain.axis, found.domain.side]} if found.domain.is_turned else {}
+    closely = _closely(probe, gl, found.domain) if domain else {}
+    return {"domain": found.domain.name, "wrong": found.wrong} | half | closely
+
+
+def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
+    return {"like": likeness(gl, probe, domain).shared, "bad": bad(probe, domain)[:MOST_BAD].tolist()}
 
 
 def twin_look(path: Path) -> dict[str, Any]:
     """What there is to say of a file's Python twin; see above."""
     n = directions()
-    view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
+    view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     try:
         encoding = read_encoding(path)
         check_twin(encoding)
@@ -176,8 +191,8 @@ def _alone() -> int:
     return said
 
 
-def _looks(path: Path) -> Iterator[dict[str, Any]]:
-    found = first_look(path)
+def _looks(path: Path, domain: str = "") -> Iterator[dict[str, Any]]:
+    found = first_look(path, domain)
     yield found
     if twin_is_looked_at(path, found):
         yield twin_look(path)
@@ -187,7 +202,7 @@ def main(words: Sequence[str]) -> None:
     """What the command does; see above."""
     children.limit_this_process()
     answer = _alone()
-    for look in _looks(Path(words[0])):
+    for look in _looks(Path(words[0]), *words[1:]):
         os.write(answer, json.dumps(look).encode() + b"\n")
 
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from traceback import extract_tb
 from types import MappingProxyType
@@ -20,7 +20,6 @@ from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.harness import takes_view
 from ...gbuffer.gl.shader import ShaderError, read_shader
-from ...reports.page.verdict import MADE_FOR
 from ..languages.pairs import NORMAL, Function
 from ..languages.programs import pair
 from ..languages.source import Source
@@ -32,6 +31,7 @@ from ..options.words import given_in
 from ..output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ..output.spelling import spelled
 from . import tuned_names
+from .doctor.domains import SPHERE, Domain
 from .signatures import check_given, encode_of
 
 # Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
@@ -42,6 +42,8 @@ OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
+# In place of a domain, to look closely at a file whose author does not say what it is made for.
+ANY = "any"
 FIRST_LOOK = "normalbench.bench.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
 UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
@@ -113,7 +115,8 @@ def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
         found = _look(path)
         _check(path, found.glsl)
         encoding = found.encoding(path)
-        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes)]
+        # That codes are in [0, 1] is said by doctor, and in rows by a column.
+        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes) if line != UNIT]
         said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
         return encoding, said
     except (UsageError, MissingError) as error:
@@ -121,16 +124,32 @@ def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
 
 
 class Examined(NamedTuple):
-    """A file's encoding, what is likely wrong with it, what else there is to say, and whether it can be measured."""
+    """What a close look at a file found.
+
+    Attributes:
+        encoding: the file's.
+        domain: what it is made for.
+        wrong: what is likely wrong with it, lines.
+        notes: what else there is to say, lines.
+        is_measurable: whether it can be measured.
+        like: the name of the encoding of the catalogue that it is, whatever its axes; empty where it is none.
+        bad: directions that come back elsewhere, in its own axes.
+    """
 
     encoding: Encoding
+    domain: Domain
     wrong: list[str]
     notes: list[str]
     is_measurable: bool
+    like: str
+    bad: list[list[float]]
 
 
-def examined(path: Path) -> Examined:
+def examined(path: Path, domain: str = ANY) -> Examined:
     """What there is to say of a file.
+
+    Args:
+        domain: the normals that its author says it is made for; "any" to find out.
 
     Raises:
         UsageError: it is not an encoding, or does not compile.
@@ -141,7 +160,7 @@ def examined(path: Path) -> Examined:
     if known and not path.exists():
         command = f"normalbench quality --encoding {known}"
         raise UsageError(f"{path} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
-    found = _look(path)
+    found = _look(path, domain)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
     if "error" in found.glsl:
@@ -151,7 +170,9 @@ def examined(path: Path) -> Examined:
     of_twin += [found.fault] if found.fault else []
     encoding = found.encoding(path)
     notes = [*found.notes, *([TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else [])]
-    return Examined(encoding, [*broken, *found.wrong, *of_twin], notes, not broken)
+    wrong = [*broken, *found.wrong, *of_twin]
+    close = found.glsl.get("like", ""), found.glsl.get("bad", [])
+    return Examined(encoding, found.domain, wrong, notes, not broken, *close)
 
 
 def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -> Encoding:
@@ -306,17 +327,19 @@ class Looks:
         said: what a translation says of it.
         twin: of the Python twin; empty where there is none, or the shader is of no use.
         fault: why the twin cannot be measured; empty where it can be.
+        is_asked: whether the user says what it is made for.
     """
 
     glsl: dict[str, Any]
     twin: dict[str, Any]
     fault: str
     said: tuple[str, ...] = ()
+    is_asked: bool = False
 
     def encoding(self, path: Path) -> Encoding:
         """The encoding that was looked at."""
         read = read_encoding(path, self.fault, self.is_unit, self.glsl.get("by", ""))
-        return replace(read, domain=self.domain)
+        return self.domain.measured(read)
 
     @property
     def is_unit(self) -> bool:
@@ -324,9 +347,9 @@ class Looks:
         return self.glsl.get("is_unit", False)
 
     @property
-    def domain(self) -> str:
+    def domain(self) -> Domain:
         """What the shader is made for, as far as what comes back of it says."""
-        return self.glsl.get("domain") or "sphere"
+        return Domain(self.glsl.get("domain") or SPHERE.name, *self.glsl.get("half", ()))
 
     @property
     def wrong(self) -> list[str]:
@@ -336,32 +359,34 @@ class Looks:
     @property
     def notes(self) -> list[str]:
         """What was guessed of it."""
-        held = MADE_FOR.get(self.domain)
-        made_for = [f"taken to be made for {held} alone: no others come back"] if held else []
-        return [*self.said, *self.glsl.get("notes", []), *([UNIT] if self.is_unit else []), *made_for]
+        domain = self.domain
+        turned = "; tables turn it, so that this is their z >= 0" if domain.is_turned else ""
+        made_for = [f"taken to be made for {domain.made_for} alone: no others come back{turned}"]
+        notes = [*self.said, *self.glsl.get("notes", []), *([UNIT] if self.is_unit else [])]
+        return [*notes, *(made_for if domain.made_for and not self.is_asked else [])]
 
 
-def _look(path: Path) -> Looks:
-    """A first look in a process of its own.
+def _look(path: Path, domain: str = "") -> Looks:
+    """A first look in a process of its own; see `first_look`.
 
     Raises:
         UsageError: it cannot be translated, or its shader does not let that process end well.
         MissingError: the compiler of its language is not there.
     """
     try:
-        done = forks.finished(FIRST_LOOK, [str(path)], TIME_LIMIT)
+        done = forks.finished(FIRST_LOOK, [str(path), *([domain] if domain else [])], TIME_LIMIT)
         said, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
         said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
     lines = list(_answers(said))
     if not lines:
         raise UsageError(f"{path}: its shader {ended}")
-    said_of_it = () if "error" in lines[0] else _said_of(path)
+    said_of_it, is_asked = () if "error" in lines[0] else _said_of(path), domain not in ("", ANY)
     has_twin = twin_is_looked_at(path, lines[0])
     if has_twin and len(lines) < 2:
-        return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it)
+        return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
     twin = lines[1] if has_twin else {}
-    return Looks(lines[0], twin, twin.get("error", ""), said_of_it)
+    return Looks(lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
 
 
 def _said_of(path: Path) -> tuple[str, ...]:

@@ -2,36 +2,106 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.storages.storage import STORAGES
+from ...encodings.storages.storage import Storage
 from ...reports.charts import charts
-from ..codecs.user_encodings import examined
-from ..output.errors import UsageError, tell
+from ..codecs.names import storages_named
+from ..codecs.user_encodings import ANY, Examined, examined
+from ..normals.normal_sets import NORMAL_SETS
+from ..output.errors import UsageError, pick_one, tell
 from ..output.writing import check_plot, save_plot, write
+from ..tables.quality.measure import Case, measure
 from ..tables.quality.sphere_maps import sphere_map
 
 STORAGE = "rgba8"
+DOMAINS = ("sphere", "hemisphere", "view")
+# Normals that it is compared with the catalogue's on, and by how much it may be worse.
+COUNT, WORSE = 1 << 16, 1.05
+# What is worse by more is another encoding, of which the findings say why.
+ANOTHER = 4.0
 
 
-def examine_encoding(file: Path | None, plot: Path | None, format: str, output: Path | None) -> int:
+def examine_encoding(
+    file: Path | None,
+    plot: Path | None,
+    format: str,
+    output: Path | None,
+    storage: str | None = None,
+    domain: str | None = None,
+) -> int:
     """Write a row for each finding, and the picture if one is asked for.
+
+    Args:
+        storage: the name of the one that it is measured in; None for STORAGE.
+        domain: one of DOMAINS, that it is meant for; None to find out.
 
     Returns:
         the exit status: 1 where something is likely wrong.
 
     Raises:
-        UsageError: there is no file, it is not an encoding, or something cannot be written.
+        UsageError: there is no file, it is not an encoding, a name is unknown, or something cannot be written.
     """
     if file is None:
-        raise UsageError("--plot draws an encoding's error: name its file")
+        raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
     check_plot(plot)
-    encoding, wrong, notes, is_measurable = examined(file)
-    about = {"file": file.name, "encoding": encoding.name, "domain": encoding.domain}
-    write([about | {"finding": line} for line in [*wrong, *notes] or ["nothing is likely wrong"]], format, output)
-    if plot and is_measurable:
-        found = sphere_map(Codec(encoding, STORAGES[STORAGE]))
-        save_plot(plot, charts.sphere_chart({f"{encoding.name}/{STORAGE}": found.mean_deg}))
+    kept = _storage(storage or STORAGE)
+    found = examined(file, pick_one("domain", domain, DOMAINS) if domain else ANY)
+    codec = Codec(found.encoding, kept)
+    if storage and codec.misfit:
+        raise UsageError(f"{codec.name}: {codec.misfit}")
+    worse = _compared(found, codec) if found.is_measurable and not codec.misfit else []
+    wrong = [*found.wrong, *worse]
+    about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found)}
+    write([about | {"finding": line} for line in [*wrong, *found.notes] or ["nothing is likely wrong"]], format, output)
+    if plot and found.is_measurable:
+        save_plot(plot, _picture(codec, found))
         tell(f"the error over the sphere is in {plot}")
     return int(bool(wrong))
+
+
+def _storage(name: str) -> Storage:
+    """Raises UsageError where it is not one."""
+    found = storages_named(name)
+    if len(found) != 1:
+        raise UsageError(f"--storage {name}: doctor measures in one storage")
+    return found[0]
+
+
+def _domain(found: Examined) -> str:
+    """What a row calls the domain: of a hemisphere that is not z >= 0, which it is."""
+    return found.domain.name + (f", {found.domain.text}" if found.domain.is_turned else "")
+
+
+def _compared(found: Examined, codec: Codec) -> list[str]:
+    """How much worse it is than the encoding of the catalogue that it is; nothing where it is as good."""
+    if not found.like:
+        return []
+    like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit)
+    own, its = (_means(Codec(encoding, codec.storage)) for encoding in (codec.encoding, like))
+    if not WORSE < own[0] / its[0] < ANOTHER:
+        return []
+    how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
+    return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}"]
+
+
+def _means(codec: Codec) -> tuple[float, float]:
+    """The mean and the largest angle that were met of a codec, in degrees."""
+    chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
+    row = measure(Case(codec, chosen, "glsl"))
+    return row["angle_mean_deg"], row["angle_max_deg"]
+
+
+def _picture(codec: Codec, found: Examined) -> Any:
+    """The error over the sphere, with each direction marked that comes back elsewhere."""
+    name, shown = codec.name, sphere_map(codec).mean_deg
+    halves = ("z >= 0, towards the viewer", "z < 0")
+    if found.domain.is_turned:
+        return charts.sphere_chart({name: shown}, halves=(found.domain.text, ""))
+    return charts.sphere_chart({name: shown}, {name: np.array(found.bad).reshape(-1, 3)}, halves)

@@ -180,8 +180,8 @@ class Encoding:
         made = replace(self, constants={**self.constants, **macros})
         return made._variant(said, **values)
 
-    def turned(self, axis: str, sign: int, said: str) -> Encoding:
-        """The encoding of directions in other axes, in both languages, named after `said`.
+    def turned(self, axis: str, sign: int, said: str = "") -> Encoding:
+        """The encoding of directions in other axes, in both languages, its name followed by `said`.
 
         Args:
             axis: which axis of a normal becomes its z, a key of AXES.
@@ -239,7 +239,8 @@ class Encoding:
 
     def _variant(self, said: str, **values: float) -> Encoding:
         encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
-        name, title = self.name + said, f"{self.title}, {said.removeprefix(':').replace(':', ', ')}"
+        name = self.name + said
+        title = f"{self.title}, {said.removeprefix(':').replace(':', ', ')}" if said else self.title
         return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)
 
 

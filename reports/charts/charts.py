@@ -304,12 +304,28 @@ def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     return np.round(colours * 255).astype(np.uint8)
 
 
-def sphere_chart(maps: Maps) -> Any:
+def _mark(axis: Any, n: np.ndarray, cells: int) -> None:
+    """A ring around each direction, on the disc of its half."""
+    is_behind = n[:, 2] < 0
+    # Lambert (1772): a distance r from the middle has |z| = 1 - r^2, and the rim is at 1.
+    across = n[:, :2] / np.sqrt(1 + np.abs(n[:, 2:]))
+    x, y = (across[:, 0] + 1) / 2 + is_behind, (1 - across[:, 1]) / 2
+    axis.scatter(x * cells - 0.5, y * cells - 0.5, s=9, facecolors="none", edgecolors="red", linewidths=0.6)
+
+
+def _marked(name: str, marks: Maps | None) -> str:
+    count = len((marks or {}).get(name, ()))
+    return f"{name}; {count} directions that come back elsewhere are marked" if count else name
+
+
+def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] = ("", "")) -> Any:
     """Angles over the sphere, two discs for each codec, in one scale of colours.
 
     Args:
         maps: by codec degrees of shape (2, cells, cells): the half that faces the viewer and the other, in Lambert's
             azimuthal equal-area projection; NaN where there is none.
+        marks: by codec directions of shape (count, 3), each of which is marked.
+        halves: what stands below the two discs.
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
@@ -319,9 +335,12 @@ def sphere_chart(maps: Maps) -> Any:
     down = -(-len(maps) // across)
     size = (3.2 * across + 0.9, 1.9 * down + 0.3)
     figure, axes = _figure(size, nrows=down, ncols=across, squeeze=False)
-    for axis, (name, halves) in zip(axes.flat, maps.items(), strict=False):
-        axis.imshow(coloured(np.concatenate(list(halves), axis=1), limits), interpolation="none")
-        axis.set_title(name, size=8)
+    for axis, (name, discs) in zip(axes.flat, maps.items(), strict=False):
+        axis.imshow(coloured(np.concatenate(list(discs), axis=1), limits), interpolation="none")
+        _mark(axis, (marks or {}).get(name, np.empty((0, 3))), discs.shape[-1])
+        for side, said in enumerate(halves):
+            axis.text((side + 0.5) * discs.shape[-1], discs.shape[-1], said, size=6, ha="center", va="top")
+        axis.set_title(_marked(name, marks), size=8)
     for axis in axes.flat:
         axis.set_axis_off()
     scale = ScalarMappable(LogNorm(*limits), SPHERE_COLOURS)

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from normalbench.bench.codecs.diagnoses import Trip, diagnoses, guessed
-from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.bench.codecs.doctor.diagnoses import diagnosed
+from normalbench.bench.codecs.doctor.domains import Domain
+from normalbench.bench.codecs.doctor.probe import probe_of
+from normalbench.bench.codecs.first_look import first_look
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.gbuffer.codecs.codec_passes import exact_values
 
 ENCODE = """vec2 mine_encode(vec3 n, vec3 view) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
@@ -83,13 +83,16 @@ WRONG = {
     "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "number 1 of the code is 1.4 for (1, 0, 0)"),
     "a mirrored half": (
         octahedral(result="normalize(vec3(abs(n.x), n.yz))"),
-        "directions with x < 0 come back with x reversed: (-1, 0, 0) becomes (1, 0, 0)",
+        "decode loses directions with x < 0, which come back with x reversed: encode gives them codes of their own",
     ),
     "a fold without .yx": (
         octahedral().replace("abs(p.yx)", "abs(p)"),
-        "directions with z < 0 come back with |x| and |y| swapped: is .yx missing?",
+        "encode is octahedral, but its fold has .xy where .yx belongs: directions with z < 0 are lost",
     ),
-    "a scale on one side": (HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1), "are not a pair: 0.791 degrees"),
+    "a scale on one side": (
+        HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1),
+        "and 0.98 times number 2 of the code",
+    ),
     "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
     "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
     "swapped axes of a half": (
@@ -102,7 +105,7 @@ WRONG = {
     ),
     "a wrong scale of a half": (
         STEREO.replace("return n.xy", "return 0.5 * n.xy"),
-        "degrees apart on average of directions with z >= 0 without any storage; (",
+        "of directions with z >= 0 without any storage; encode gives 0.5 times the code that decode takes",
     ),
     "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
     "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
@@ -156,13 +159,9 @@ def test_of_a_right_encoder_nothing_is_said(tmp_path, what):
 @pytest.mark.parametrize("name", ENCODINGS)
 def test_of_the_catalogue_nothing_is_said(gl, name):
     """And what each is made for is found."""
-    encoding, n = ENCODINGS[name], directions()
-    view = np.tile(np.array([0.1, -0.2, -1.0, 0.0], np.float32), (len(n), 1))
-    given = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
-    codes, _ = exact_values(gl, encoding, given, view, given)
-    _, decoded = exact_values(gl, encoding, given, view, np.clip(codes, -1, 1))
-    trip = Trip(n, view[:, :3], codes[:, : encoding.components + encoding.sign_bits], decoded[:, :3])
-    assert guessed(trip) == encoding.domain and diagnoses(trip, encoding.domain) == []
+    encoding = ENCODINGS[name]
+    found = diagnosed(probe_of(gl, encoding), gl)
+    assert (found.domain, found.wrong) == (Domain(encoding.domain), [])
 
 
 @pytest.mark.usefixtures("gl")
@@ -194,7 +193,10 @@ def test_a_table_says_it_too(run, tmp_path):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (("--plot", "a.png"), "name its file"),
+        (("--plot", "a.png"), "name it"),
+        (("--domain", "sphere"), "name it"),
+        (("a.glsl", "--domain", "z"), "unknown domain 'z'"),
+        (("a.glsl", "--storage", "rg8,rg16"), "doctor measures in one storage"),
         ((".",), ".: it is a folder; name a file"),
         (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.codecs import user_encodings
-from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.bench.codecs.doctor.probe import directions
+from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.machine import forks
 from normalbench.bench.output.errors import UsageError

@@ -217,7 +217,7 @@ def test_what_is_missing_is_one_line_with_the_packages(run, tmp_path, tarball, t
     [
         (["--build-mesa", "mesa", "--yes", "--mesa-source", "no/such.tar"], "--mesa-source no/such.tar: no such file"),
         (["--build-mesa", "mesa", "--yes", "--mesa-source", __file__], "test_mobile.py: "),
-        (["--build-mesa", "mesa", "--plot", "sphere.png"], "leave out the file and --plot"),
+        (["--build-mesa", "mesa", "--plot", "sphere.png"], "leave out the file and its options"),
         (["--yes"], "go with --build-mesa DIR"),
     ],
 )

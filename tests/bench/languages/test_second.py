@@ -9,7 +9,8 @@ from everyday import WGSL
 from languages import require_runner
 
 from normalbench.bench.codecs import second_look
-from normalbench.bench.codecs.first_look import directions, first_look
+from normalbench.bench.codecs.doctor.probe import directions
+from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.languages import second
 from normalbench.bench.languages.translated import translated

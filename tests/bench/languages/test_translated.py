@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.codecs.diagnoses import is_unit
-from normalbench.bench.codecs.first_look import directions
+from normalbench.bench.codecs.doctor.exact import is_unit
+from normalbench.bench.codecs.doctor.probe import directions
 from normalbench.bench.languages import tools, translated
 from normalbench.bench.languages.plain import NotPlainError, plain
 from normalbench.bench.results.measuring import files_of
@@ -140,15 +140,18 @@ def test_names_of_glsl_name_the_encoding(run, tmp_path):
 
 @pytest.mark.usefixtures("hlsl")
 def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
-    """What engines return is what an unsigned storage holds; a line says so."""
+    """What engines return is what an unsigned storage holds; a column says so in rows, and doctor in a line."""
     text = changed("return float2(p.x + p.y, p.x - p.y) * 0.5 + 0.5;").replace(
         "float2 p = float2(e", "e = e * 2.0 - 1.0; float2 p = float2(e"
     )
     one, other = written(tmp_path, MINE, "signed.hlsl"), written(tmp_path, text, "unsigned.hlsl")
     _, out, err = run("quality", "--encoding", f"{one},{other}", *QUICK)
-    first, second = (row["angle_mean_deg"] for row in json.loads(out))
+    rows = json.loads(out)
+    first, second = (row["angle_mean_deg"] for row in rows)
     assert first == pytest.approx(second, rel=1e-6)
-    assert err.count("its codes are in [0, 1]; every storage holds them as they are") == 1, err
+    assert [row["code_range"] for row in rows] == [None, "[0, 1]"] and "[0, 1]" not in err
+    _, out, _ = run("doctor", other, "--format", "json")
+    assert "its codes are in [0, 1]; every storage holds them as they are" in out
 
 
 def test_the_way_to_a_signed_number_and_back_moves_no_integer():

@@ -1,0 +1,1 @@
+"""What is likely wrong with a user's encoder and decoder: each is tried by itself, and both together."""

@@ -1,0 +1,144 @@
+"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+
+import json
+
+import pytest
+
+from normalbench.bench.codecs.first_look import first_look
+
+pytestmark = pytest.mark.usefixtures("gl")
+FOLD = "vec2 fold(vec2 p) { return (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0); }\n"
+NO_FOLD = f"""{FOLD}vec2 dir_encode(vec3 n) {{ n /= abs(n.x) + abs(n.y) + abs(n.z); return n.xy; }}
+vec3 dir_decode(vec2 e) {{
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    if (n.z < 0.0) n.xy = fold(n.xy);
+    return normalize(n);
+}}
+"""
+NO_UNFOLD = f"""{FOLD}vec2 dir_encode(vec3 n) {{
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    return n.z >= 0.0 ? n.xy : fold(n.xy);
+}}
+vec3 dir_decode(vec2 e) {{ return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }}
+"""
+# The third number says the side, and is never read.
+SIGN_UNREAD = """vec3 dir_encode(vec3 n) {
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    float y = n.y * 0.5 + 0.5;
+    return vec3(n.x * 0.5 + y, y - n.x * 0.5, n.z < 0.0 ? 0.0 : 1.0);
+}
+vec3 dir_decode(vec3 p) {
+    vec3 n = vec3(p.x - p.y, p.x + p.y - 1.0, 0.0);
+    n.z = 1.0 - abs(n.x) - abs(n.y);
+    return normalize(n);
+}
+"""
+# A decoder of the whole spheremap, whose encoder mirrors: no octahedron, so that the sides alone say who loses it.
+MIRRORED = """vec2 dir_encode(vec3 n) { n.z = abs(n.z); return n.xy / sqrt(2.0 * n.z + 2.0); }
+vec3 dir_decode(vec2 e) { float f = min(dot(e, e), 1.0); return vec3(2.0 * e * sqrt(1.0 - f), 1.0 - 2.0 * f); }
+"""
+LOST = {
+    "no fold": (NO_FOLD, "encode is octahedral, but its fold is missing: directions with z < 0 are lost"),
+    "no unfold": (NO_UNFOLD, "decode is octahedral, but its unfold is missing: directions with z < 0 are lost"),
+    "a sign that is not read": (
+        SIGN_UNREAD,
+        "decode does not read number 3 of the code, which encode fills",
+    ),
+    "a mirror": (
+        MIRRORED,
+        "encode loses directions with z < 0, which come back with z reversed: it gives them",
+    ),
+}
+# Designs for z >= 0, as functions of m, which is n in other axes.
+DESIGNS = {
+    "xy": ("m.xy", "vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))))"),
+    "hemi-octahedral": (
+        "vec2(m.x + m.y, m.x - m.y) / (abs(m.x) + abs(m.y) + abs(m.z))",
+        "normalize(vec3(e.x + e.y, e.x - e.y, 2.0 - abs(e.x + e.y) - abs(e.x - e.y)))",
+    ),
+    "a disc of equal areas": (
+        "m.xy / sqrt(1.0 + max(m.z, 0.0))",
+        "vec3(e * sqrt(max(0.0, 2.0 - dot(e, e))), 1.0 - dot(e, e))",
+    ),
+    "stereographic": ("m.xy / (1.0 + max(m.z, 0.0))", "vec3(2.0 * e, 1.0 - dot(e, e)) / (1.0 + dot(e, e))"),
+    "paraboloid in [0, 1]": (
+        "m.xy / (1.0 + abs(m.z)) * 0.5 + 0.5",
+        "normalize(vec3(e * 4.0 - 2.0, 4.0 * dot(e, 1.0 - e) - 1.0))",
+    ),
+}
+# The half of each pair of axes and sign, m of n, and n of m.
+HALVES = {
+    "z >= 0": ("n", "m"),
+    "z <= 0": ("vec3(n.xy, -n.z)", "vec3(m.xy, -m.z)"),
+    "y >= 0": ("n.zxy", "m.yzx"),
+    "y <= 0": ("-n.zxy", "-m.yzx"),
+    "x >= 0": ("n.yzx", "m.zxy"),
+    "x <= 0": ("-n.yzx", "-m.zxy"),
+}
+
+
+def design(name: str, half: str) -> str:
+    encode, decode = DESIGNS[name]
+    to, back = HALVES[half]
+    return (
+        f"vec2 dir_encode(vec3 n) {{ vec3 m = {to}; return {encode}; }}\n"
+        f"vec3 dir_decode(vec2 e) {{ vec3 m = {decode}; return {back}; }}\n"
+    )
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("what", LOST)
+def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
+    text, said = LOST[what]
+    (tmp_path / "dir.glsl").write_text(text)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    rows = json.loads(out)
+    assert status == 1 and said in rows[0]["finding"] and rows[0]["domain"] == "sphere", rows
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "hemisphere", "--format", "json")
+    assert json.loads(out)[0]["domain"] == "hemisphere" and "directions with" not in out, out
+    # The mirrored spheremap leaves the rim of its square unused, whatever it is meant for.
+    assert status == (what == "a mirror")
+
+
+@pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("what", DESIGNS)
+def test_a_design_for_a_half_is_none(tmp_path, what, half):
+    (tmp_path / "dir.glsl").write_text(design(what, half))
+    found = first_look(tmp_path / "dir.glsl")
+    axis, side = found.get("half", (2, 1))
+    assert found["wrong"] == [] and found["domain"] == "hemisphere", found
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
+
+
+def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
+    """Whichever it is, its figures are those of the same code for z >= 0, and a line says which half."""
+    means = {}
+    for half in HALVES:
+        (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+        words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "65536", "--backend", "glsl")
+        status, out, err = run("quality", "--encoding", "dir.glsl", *words, "--format", "json")
+        (row,) = json.loads(out)
+        means[half] = row["angle_mean_deg"]
+        assert status == 0 and f"taken to be made for normals with {half} alone" in err
+        assert row["domain"] == "hemisphere" and row["encoding"] == "dir"
+    assert min(means.values()) == pytest.approx(max(means.values()), rel=0.01)
+    assert means["z >= 0"] == pytest.approx(0.239, abs=0.003)
+
+
+def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
+    (tmp_path / "dir.glsl").write_text(design("xy", "z >= 0"))
+    assert run("doctor", "dir.glsl")[0] == run("doctor", "dir.glsl", "--domain", "hemisphere")[0] == 0
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
+    assert status == 1 and "directions with z <= 0 come back with z reversed" in out
+
+
+def test_a_square_that_is_half_used_is_a_finding(run, tmp_path):
+    """Neither folds: each number is used from -1 to 1, and half of the square is not."""
+    text = NO_FOLD.split("vec3 dir_decode")[0] + NO_UNFOLD[NO_UNFOLD.index("vec3 dir_decode") :]
+    (tmp_path / "dir.glsl").write_text(text)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    assert status == 1 and "% of the square that the storage spends bits on" in out, out
