@@ -1,0 +1,185 @@
+"""Mistakes that people make in an encoder or a decoder, as edits of right texts in GLSL."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+# The octahedral map as it is written everywhere; mistakes of numbers are put where CODE is returned.
+PLAIN = """vec2 mine_encode(vec3 n) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 s = vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    vec2 c = n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * s;
+    return CODE;
+}
+vec3 mine_decode(vec2 e) {
+    BEFORE
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float t = max(-n.z, 0.0);
+    n.xy -= vec2(n.x >= 0.0 ? t : -t, n.y >= 0.0 ? t : -t);
+    return normalize(n);
+}
+"""
+# The fold by mix and step.
+STEPS = """vec2 mine_encode(vec3 n) {
+    vec3 a = abs(n);
+    vec2 p = n.xy / (a.x + a.y + a.z);
+    vec2 s = step(0.0, p) * 2.0 - 1.0;
+    vec2 c = mix((1.0 - abs(p.yx)) * s, p, step(0.0, n.z));
+    return CODE;
+}
+vec3 mine_decode(vec2 e) {
+    BEFORE
+    float z = 1.0 - dot(abs(e), vec2(1.0));
+    vec2 s = step(0.0, e) * 2.0 - 1.0;
+    vec2 p = mix((1.0 - abs(e.yx)) * s, e, step(0.0, z));
+    return normalize(vec3(p, z));
+}
+"""
+# Turned by 45 degrees about its pole.
+TURNED = PLAIN.replace(
+    "mine_encode(vec3 n) {", "mine_encode(vec3 m) {\n    vec3 n = vec3(m.x + m.y, m.x - m.y, m.z * 1.41421356);"
+)
+TURNED = TURNED.replace(
+    "return normalize(n);", "n.z *= 1.41421356; return normalize(vec3(n.x + n.y, n.x - n.y, n.z));"
+).replace(
+    "n.z *= 1.41421356; return normalize(vec3(n.x + n.y, n.x - n.y, n.z))",
+    "return normalize(vec3(n.x + n.y, n.x - n.y, n.z * 1.41421356))",
+)
+SPHEREMAP = """vec2 mine_encode(vec3 n) {
+    vec2 c = n.z > -1.0 ? n.xy * (2.0 / sqrt(8.0 * n.z + 8.0)) : vec2(1.0, 0.0);
+    return CODE;
+}
+vec3 mine_decode(vec2 e) {
+    BEFORE
+    vec2 g = e * 2.0;
+    float f = min(dot(g, g), 4.0);
+    return vec3(g * sqrt(1.0 - f / 4.0), 1.0 - f / 2.0);
+}
+"""
+CUBE = """vec3 mine_encode(vec3 n) {
+    vec3 a = abs(n);
+    bool is_z = a.z >= a.x && a.z >= a.y, is_y = a.y >= a.x;
+    vec3 t = is_z ? n : is_y ? n.zxy : n.yzx;
+    float face = 2.0 * (is_z ? 2.0 : is_y ? 1.0 : 0.0) + (t.z < 0.0 ? 1.0 : 0.0);
+    vec3 c = vec3(t.xy / abs(t.z), face / 5.0 * 2.0 - 1.0);
+    return CODE;
+}
+vec3 mine_decode(vec3 e) {
+    BEFORE
+    float face = floor((e.z * 0.5 + 0.5) * 5.0 + 0.5);
+    float axis = floor(0.5 * face);
+    vec3 n = normalize(vec3(e.xy, 1.0 - 2.0 * (face - 2.0 * axis)));
+    return axis == 2.0 ? n : axis == 1.0 ? n.yzx : n.zxy;
+}
+"""
+# Each text: it, what is returned, and what stands before the decoder's first line.
+TEXTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
+    {
+        "octahedral": (PLAIN, "c", ""),
+        "by mix and step": (STEPS, "c", ""),
+        "in [0, 1]": (PLAIN, "c * 0.5 + 0.5", "e = e * 2.0 - 1.0;"),
+        "turned by 45 degrees": (TURNED, "c", ""),
+        "spheremap": (SPHEREMAP, "c", ""),
+        "cube": (CUBE, "c", ""),
+    }
+)
+OCTAHEDRAL = tuple(TEXTS)[:4]
+
+
+class Mistake(NamedTuple):
+    """A mistake: what its finding says, and the edits of a text that make it; each edit must change the text.
+
+    Attributes:
+        said: a regular expression; empty where the mistake changes no result. STEPS stands for the largest integer of
+            so many bits, BITS for their number.
+        edits: what is replaced, by what; of several spellings the first that a text has.
+        code: what becomes of the code; {} stands for it, in [0, 1] where the text is, else in [-1, 1].
+        unit: whether that is a code in [0, 1], into which others are brought.
+    """
+
+    said: str
+    edits: tuple[tuple[tuple[str, str], ...], ...] = ()
+    code: str = ""
+    unit: bool = False
+
+
+def _edit(*spellings: tuple[str, str]) -> tuple[tuple[tuple[str, str], ...], ...]:
+    return (spellings,)
+
+
+MISTAKES: Mapping[str, Mistake] = MappingProxyType(
+    {
+        "no fold": Mistake(
+            "encode is octahedral, but its fold is missing",
+            _edit(("n.z >= 0.0 ? p", "true ? p"), ("p, step(0.0, n.z))", "p, 1.0)")),
+        ),
+        "no unfold": Mistake(
+            "decode is octahedral, but its unfold is missing",
+            _edit(("max(-n.z, 0.0)", "0.0"), ("e, step(0.0, z))", "e, 1.0)")),
+        ),
+        "sign(0)": Mistake(
+            r"sign\(\) is 0|a comparison or sign\(\)",
+            _edit(
+                ("vec2 s = vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0)", "vec2 s = sign(p)"),
+                ("vec2 s = step(0.0, p) * 2.0 - 1.0", "vec2 s = sign(p)"),
+            ),
+        ),
+        "> for >=": Mistake(
+            "", _edit((">= 0.0", "> 0.0"), ("step(0.0, p) * 2.0 - 1.0", "1.0 - 2.0 * step(p, vec2(0.0))"))
+        ),
+        ".xy for .yx": Mistake("its fold has .xy where .yx belongs", _edit(("abs(p.yx)", "abs(p.xy)"))),
+        ".xy for .yx in decode": Mistake("its unfold has .xy where .yx belongs", _edit(("abs(e.yx)", "abs(e.xy)"))),
+        "abs missing in the fold": Mistake(r"abs\(\) is missing in its fold", _edit(("abs(p.yx)", "p.yx"))),
+        "abs missing in the sum": Mistake(
+            r"abs\(\) is missing in \|x\| \+ \|y\| \+ \|z\|",
+            _edit(
+                ("abs(n.x) + abs(n.y) + abs(n.z)", "abs(n.x) + n.y + abs(n.z)"), ("a.x + a.y + a.z", "a.x + n.y + a.z")
+            ),
+        ),
+        "abs missing in decode": Mistake(
+            r"abs\(\) is missing in 1 - \|x\| - \|y\|",
+            _edit(("abs(e.x) -", "e.x -"), ("dot(abs(e), ", "dot(vec2(e.x, abs(e.y)), ")),
+        ),
+        "normalise missing": Mistake(r"normalize\(\) is missing", _edit(("normalize(", "("))),
+        "254 for 255": Mistake("LESS/STEPS times", code="{} * (LESS.0 / STEPS.0)", unit=True),
+        "255 for 254": Mistake("STEPS/LESS times", code="{} * (STEPS.0 / LESS.0)", unit=True),
+        "254 for 255, rounded": Mistake("LESS/STEPS times", code="floor({} * LESS.0 + 0.5) / STEPS.0", unit=True),
+        "cut off": Mistake("cut off to BITS bits", code="floor({} * STEPS.0) / STEPS.0", unit=True),
+        "half-step bias": Mistake("half a step of BITS bits too large", code="{} + 0.5 / STEPS.0", unit=True),
+        "half-step bias, rounded": Mistake(
+            "half a step of BITS bits too large", code="floor({} * STEPS.0 + 1.0) / STEPS.0", unit=True
+        ),
+        "swapped channels": Mistake("swapped", code="({}).SWAPPED"),
+        "wrong range": Mistake(r"c \* 2 - 1 between the two|c \* 0.5 \+ 0.5 between the two", code="({}) * 0.5 + 0.5"),
+    }
+)
+
+
+def program(text: str, mistake: str, bits: int) -> str | None:
+    """A text with a mistake; None where the text has nothing that the mistake is made in."""
+    body, code, before = TEXTS[text]
+    found = MISTAKES[mistake] if mistake else Mistake("")
+    for spellings in found.edits:
+        fitting = next((one for one in spellings if one[0] in body), None)
+        if fitting is None:
+            return None
+        body = body.replace(*fitting)
+    if found.code and "0.5 + 0.5" in code:
+        code = found.code.format(f"({code})") if mistake != "wrong range" else "c"
+    elif found.code and found.unit:
+        code = f"({found.code.format(f'({code} * 0.5 + 0.5)')}) * 2.0 - 1.0"
+    elif found.code:
+        code = found.code.format(code)
+    swapped = "yxz" if "vec3 mine_encode" in body else "yx"
+    return in_bits(body.replace("CODE", code).replace("BEFORE", before).replace("SWAPPED", swapped), bits)
+
+
+def said(mistake: str, bits: int) -> str:
+    """What the finding of a mistake says, a regular expression."""
+    return in_bits(MISTAKES[mistake].said, bits)
+
+
+def in_bits(text: str, bits: int) -> str:
+    """A text with the integers of so many bits."""
+    steps = 2**bits - 1
+    return text.replace("STEPS", str(steps)).replace("LESS", str(steps - 1)).replace("BITS", str(bits))
