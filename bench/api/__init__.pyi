@@ -342,6 +342,7 @@ def roofline(
     reads: Names = ...,
     overdraw: float = ...,
     cache_share: float = ...,
+    shared: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """Bytes saved against instructions spent: which code is faster on which GPU, by a model.
@@ -356,6 +357,7 @@ def roofline(
         reads: Passes that read and decode each pixel's normal, comma-separated.
         overdraw: How often each pixel's normal is encoded and written.
         cache_share: The share of the last-level cache that normals may have, 0 to 1.
+        shared: Something else uses the rest of each texel: bytes are those of a code's own bits.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 

@@ -79,12 +79,18 @@ class Work:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Codes on one GPU, in several frames."""
+    """Codes on one GPU, in several frames.
+
+    Attributes:
+        codecs, gpu, rates, frames: what is compared, and where.
+        is_shared: whether something else uses what a code leaves of its texel, so that its own bits count alone.
+    """
 
     codecs: Sequence[Codec]
     gpu: str
     rates: Rates
     frames: Sequence[Frame]
+    is_shared: bool = False
 
     def rows(self) -> Iterator[Row]:
         """A row for each code and frame."""
@@ -109,10 +115,13 @@ class Case:
         for codec in self.codecs:
             try:
                 encode, decode = (self._counted(costs, codec, operation) for operation in cost.OPERATIONS)
-                found[codec] = Work(codec.bits / 8, encode, decode)
+                found[codec] = Work(self._bytes(codec), encode, decode)
             except LeftOutError as reason:
                 found[codec] = lost or str(reason)
         return found
+
+    def _bytes(self, codec: Codec) -> float:
+        return codec.bits / 8 if self.is_shared else codec.storage.texel_bytes
 
     def _counted(self, costs: Costs, codec: Codec, operation: str) -> float:
         column = COLUMNS[all(row[COLUMNS[0]] is None for row in self._counts)]
@@ -134,7 +143,7 @@ class Case:
         size = "x".join(map(str, frame.size))
         about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "gpu": self.gpu, "size": size}
         about |= {"reads": frame.reads, "overdraw": frame.overdraw, "bits": codec.bits}
-        return TABLE.empty() | about | {"family": self.rates.family}
+        return TABLE.empty() | about | {"shared": self.is_shared, "family": self.rates.family}
 
 
 def _figures(work: Work, frame: Frame, rates: Rates) -> Row:

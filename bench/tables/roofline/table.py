@@ -37,6 +37,10 @@ class RooflineOptions:
     cache_share: Annotated[
         float, Option("--cache-share", "The share of the last-level cache that normals may have, 0 to 1.")
     ] = 0.25
+    shared: Annotated[
+        bool,
+        Option("--shared", "Something else uses the rest of each texel: bytes are those of a code's own bits."),
+    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +57,7 @@ COLUMNS = (
     Column("size", "Width and height of the G-buffer in pixels.", KEY),
     Column("reads", "Passes that read and decode each pixel's normal.", KEY),
     shared.BITS,
-    Column("bytes_per_pixel", "Of the normal alone: what lies beside it in the texel is not its cost.", better="less"),
+    Column("bytes_per_pixel", "Of the texel; with --shared of the code's own bits.", better="less"),
     Column(
         "encode", "Instructions to encode and pack, in full-rate ones where they are known.", better="less", drops=5
     ),
@@ -67,6 +71,7 @@ COLUMNS = (
     Column("rank", "The place by frame_us among the codes on this GPU, size and reads; equal ones share it.", HOW),
     Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),
     Column("ridge", "Instructions that take as long as one byte does, at the bandwidth of the row.", HOW, drops=6),
+    Column("shared", "Whether something else uses the rest of the texel.", HOW, drops=10),
     Column("overdraw", "How often each pixel's normal is encoded and written.", HOW, drops=10),
     Column("family", "The GPU family that instructions are counted for.", HOW, drops=9),
     Column("driver", "The compiler of the counts.", HOW, drops=11),

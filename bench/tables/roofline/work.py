@@ -36,7 +36,7 @@ def cases(options: RooflineOptions) -> list[Case]:
     gpus = gpus_named(options.gpu)
     codecs = that_fit(codecs_named(options.encoding, options.storage, "nearest"))
     frames = [Frame(size, count, options.overdraw, options.cache_share) for size in sizes for count in reads]
-    return [Case(codecs, name, rates, frames) for name, rates in gpus.items()]
+    return [Case(codecs, name, rates, frames, options.shared) for name, rates in gpus.items()]
 
 
 def _steps(options: RooflineOptions, _: RooflineOutputs) -> list[Step]:
@@ -44,9 +44,10 @@ def _steps(options: RooflineOptions, _: RooflineOutputs) -> list[Step]:
 
 
 def _key(case: Case) -> Row:
-    rates = {name: getattr(case.rates, name) for name in ("family", *RANGES)}
+    about = {"gpu": case.gpu, "shared": case.is_shared}
+    about |= {name: getattr(case.rates, name) for name in ("family", *RANGES)}
     frames = [[*frame.size, frame.reads, frame.overdraw, frame.cache_share] for frame in case.frames]
-    return {"gpu": case.gpu, **rates, "codecs": [codec.name for codec in case.codecs], "frames": frames}
+    return {**about, "codecs": [codec.name for codec in case.codecs], "frames": frames}
 
 
 def _check(outputs: RooflineOutputs, _: Sequence[Step]) -> None:
@@ -62,7 +63,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """A table for each GPU and size, the fastest code first, of the fewest reads."""
-    hidden = ["encoding", "storage", "gpu", "size", "overdraw", "ridge", "family", "driver", "skipped"]
+    hidden = ["encoding", "storage", "gpu", "size", "shared", "overdraw", "ridge", "family", "driver", "skipped"]
     known = [row for row in rows if row["frame_us"] is not None]
     for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
         part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]

@@ -157,6 +157,25 @@ def test_options_out_of_range_are_one_line(run, words, said):
 
 
 @pytest.mark.usefixtures("radv")
+@pytest.mark.parametrize(
+    "words, expected",
+    [
+        ([], {("octahedral", "rgb10a2"): 4, ("xyz", "rgb10a2"): 4, ("octahedral", "rgb8_12_12"): 4}),
+        (["--shared"], {("octahedral", "rgb10a2"): 2.5, ("xyz", "rgb10a2"): 3.75, ("octahedral", "rgb8_12_12"): 3}),
+    ],
+)
+def test_a_texel_moves_as_a_whole_unless_something_else_uses_the_rest(run, words, expected):
+    chosen = ["--encoding", "octahedral,xyz", "--storage", "rgb10a2,rgb8_12_12", "--gpu", "rx6800xt", "--size", "64x64"]
+    status, out, _ = run("roofline", *chosen, "--reads", "1", "--format", "json", *words)
+    rows = json.loads(out)
+    found = {(row["encoding"], row["storage"]): row["bytes_per_pixel"] for row in rows}
+    assert status == 0 and found == expected and {row["shared"] for row in rows} == {bool(words)}
+    # One byte is written and one read of each of 64 x 64 pixels.
+    assert all(row["megabytes"] == pytest.approx(2 * 64**2 * row["bytes_per_pixel"] / 1e6) for row in rows)
+    assert (" is faster than " in run("roofline", *chosen, *words)[1]) == bool(words)
+
+
+@pytest.mark.usefixtures("radv")
 def test_rows_are_the_counts_of_cost_and_the_answer_stands_below(run, tmp_path):
     words = [
         "--encoding",
