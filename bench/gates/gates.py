@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_toml
+from ..languages.words import files_in
 from ..options.option import fields_of
 from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline
 from .limits import Limit, limits_on, split_limits
-from .measured import Found, measured, table_named, with_their_options
+from .measured import Found, located, measured, table_named, with_their_options
 
 MAX_GATES = 1000
 BASELINE = "matches_baseline"
@@ -30,6 +32,7 @@ class Gate:
         options: what is measured, by the table's options; of a run's rows, which, by the values of their columns.
         limits: one for each column.
         place: file and number, for messages.
+        folder: the file's, where the files that options name are looked for.
         baseline: the file that every row is compared with, beside the limits or without any; None for none.
     """
 
@@ -37,7 +40,30 @@ class Gate:
     options: Mapping[str, Any]
     limits: tuple[Limit, ...]
     place: str
+    folder: Path
     baseline: Path | None = None
+
+    def located(self) -> dict[str, Any]:
+        """The options, files by their paths from here.
+
+        Raises:
+            UsageError: a file that is in the folder of the shell only.
+        """
+        for name, value in self.files().items():
+            for word in map(str.strip, value.split(",")):
+                there = files_in(word, self.folder)
+                # A name without an ending may be one of the catalogue's.
+                lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
+                if lost:
+                    said = f"{lost[0]} is in this shell's folder, and paths are relative to the file of gates"
+                    raise UsageError(f"{name}: {said}; write {os.path.relpath(lost[0], self.folder)}")
+        return located(self.table, self.options, self.folder)
+
+    def files(self) -> dict[str, str]:
+        """The options whose words may be files, as the file of gates has them."""
+        known = fields_of(self.table.options)
+        may_be = [name for name in self.options if name in known and known[name].option.files]
+        return {name: value for name in may_be if isinstance(value := self.options[name], str)}
 
 
 def read_gates(path: Path) -> list[Gate]:
@@ -74,7 +100,7 @@ def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
             limit.check(table)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from error
-    return Gate(table, options, limits, place, folder / named if named else None)
+    return Gate(table, options, limits, place, folder, folder / named if named else None)
 
 
 Measure = Callable[[Gate], list[Found]]
@@ -88,9 +114,11 @@ def measured_for(gate: Gate) -> list[Found]:
         MissingError: this machine lacks what they need.
     """
     try:
-        return measured(gate.table, with_their_options(gate.table, gate.options, gate.limits))
+        found = measured(gate.table, with_their_options(gate.table, gate.located(), gate.limits))
     except UsageError as error:
         raise UsageError(f"{gate.place}: {error}") from error
+    # A baseline has paths as the file of gates has them, from wherever it is compared.
+    return [replace(one, asked={**one.asked, **gate.files()}) for one in found]
 
 
 def _rows_of_run(run: Path) -> Measure:

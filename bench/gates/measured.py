@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any
 
-from ..languages.words import file_of, names_an_encoder, twin_of
+from ..languages.words import file_of, files_in, names_an_encoder, twin_of, with_files
 from ..metrics.totals import Worst
-from ..options.option import checked_options
+from ..options.option import checked_options, fields_of
 from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps
 from ..tables.registry import TABLES
-from ..tables.table import Row, Step, Table
+from ..tables.table import Role, Row, Step, Table
 from .limits import Limit
 
 
@@ -69,8 +71,53 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
     steps = measured_steps(ask, Nothing())
     # By name: a finished row may be another object.
     step_of = {table.name_of(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
-    rows = table.work.finish([row for rows in steps for row in rows])
+    rows = named_rows(table, given, table.work.finish([row for rows in steps for row in rows]))
     return [_found(table, row, step_of[table.name_of(row)], asdict(options)) for row in rows]
+
+
+def named_rows(table: Table, given: Mapping[str, Any], rows: Sequence[Row]) -> list[Row]:
+    """The rows that options name by the values of key columns, where a table gives others beside them.
+
+    `cost` measures the packing of a storage beside an encoding, and `depth` the whole range beside a distance. Where no
+    row has every value that is named, those that have no other value in its place.
+    """
+    keys = {column.name for column in table.of_role(Role.KEY)}
+    words = {name: words for name, value in given.items() if name in keys and (words := _words(value))}
+    for name in list(words):
+        # "all", a vendor's name or a file stands for values that rows spell otherwise.
+        if not words[name] <= {_word(row.get(name)) for row in rows}:
+            del words[name]
+    whole = [row for row in rows if all(_word(row.get(name)) in words[name] for name in words)]
+    return whole or [row for row in rows if all(_word(row.get(name)) in {*words[name], ""} for name in words)]
+
+
+def _words(value: Any) -> set[str]:
+    return {_word(word.strip()) for word in value.split(",")} if isinstance(value, str) else {_word(value)}
+
+
+def _word(value: Any) -> str:
+    """A value of a row or of an option as text, numbers in one spelling; empty for none."""
+    try:
+        return f"{float(value):.17g}"
+    except (TypeError, ValueError):
+        return "" if value is None else str(value)
+
+
+def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Options with the words that are files by their paths from here: they are looked for in a folder."""
+    known = fields_of(table.options)
+    return {
+        name: ",".join(path_in(folder, word.strip()) for word in value.split(","))
+        if isinstance(value, str) and name in known and known[name].option.files
+        else value
+        for name, value in options.items()
+    }
+
+
+def path_in(folder: Path, word: str) -> str:
+    """A word with the files of a folder that it names by their paths from here."""
+    found = (path for path in files_in(word, folder) if not Path(path).is_absolute())
+    return with_files(word, {path: os.path.relpath(folder / path) for path in found})
 
 
 def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Found:

@@ -26,17 +26,18 @@ class GateFile(pytest.File):
 
 
 class GateItem(pytest.Item):
-    """One gate. Files that it names are looked for where pytest was started, as `normalbench check` does."""
+    """One gate. Files that it names are looked for next to the file of gates, as `normalbench check` does."""
 
     def __init__(self, *, gate: Gate, **others: Any):
         super().__init__(**others)
         self.gate = gate
 
     def runtest(self) -> None:
-        bench = Normalbench(session_of(self.config), self.config.invocation_params.dir)
+        bench = Normalbench(session_of(self.config), self.gate.folder)
         said: list[str] = []
         for holds in (self._limits, self._baseline):
             try:
+                self.gate.located()
                 holds(bench)
             except AssertionError as error:
                 said.append(str(error))

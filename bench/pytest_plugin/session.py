@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import json
-import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -16,8 +15,7 @@ from ...encodings.codecs.files import CatalogueError
 from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
-from ..gates.measured import Found, measured, single, table_named, with_their_options
-from ..languages.words import files_in, with_files
+from ..gates.measured import Found, located, measured, single, table_named, with_their_options
 from ..machine.devices import found_device
 from ..options.option import checked_options, fields_of
 from ..output.errors import MissingError, UsageError
@@ -70,7 +68,8 @@ class Session:
         known = fields_of(table.options)
         usual = {name: known[name].parsed(value) for name, value in self.usual.items() if name in known}
         asked = checked_options(table.options, {**usual, **values})
-        options = _located(table, asked, values, folder, self.typed_in)
+        said = {name: value for name, value in asked.items() if name in values}
+        options = located(table, asked, self.typed_in) | located(table, said, folder)
         key = json.dumps([table.name, str(Path.cwd()), options], sort_keys=True)
         if key not in self._found:
             self._found[key] = measured(table, options)
@@ -81,22 +80,6 @@ class Session:
         if str(error) == found_device()[1] and not self.require_gl:
             pytest.skip(str(error))
         pytest.fail(str(error), pytrace=False)
-
-
-def _located(
-    table: Table, asked: Mapping[str, Any], said: Mapping[str, Any], folder: Path, typed_in: Path
-) -> dict[str, Any]:
-    """The options, words that are files by their paths from here: a test's beside it, others where they were typed."""
-    known, found = fields_of(table.options), dict(asked)
-    for name, value in asked.items():
-        if known[name].option.files and isinstance(value, str):
-            there = folder if name in said else typed_in
-            found[name] = ",".join(_path(there, word.strip()) for word in value.split(","))
-    return found
-
-
-def _path(folder: Path, word: str) -> str:
-    return with_files(word, {path: os.path.relpath(folder / path) for path in files_in(word, folder)})
 
 
 @dataclass(frozen=True)
