@@ -41,6 +41,7 @@ def pick(
     curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
+    code_space: Names = ...,
     view_matrix: Names | None = ...,
     mask: Names | None = ...,
     nan_share: float = ...,
@@ -77,6 +78,7 @@ def pick(
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
+        code_space: Captures: the space that normals are encoded in: view, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
         mask: Captures: a file or a channel that is 0 on the background.
         nan_share: Captures: the share of NaN that is masked and counted.
@@ -102,6 +104,7 @@ def quality(
     curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
+    code_space: Names = ...,
     view_matrix: Names | None = ...,
     mask: Names | None = ...,
     nan_share: float = ...,
@@ -129,6 +132,7 @@ def quality(
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
+        code_space: Captures: the space that normals are encoded in: view, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
         mask: Captures: a file or a channel that is 0 on the background.
         nan_share: Captures: the share of NaN that is masked and counted.
@@ -211,6 +215,7 @@ def mix(
     curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
+    code_space: Names = ...,
     view_matrix: Names | None = ...,
     mask: Names | None = ...,
     nan_share: float = ...,
@@ -239,6 +244,7 @@ def mix(
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
+        code_space: Captures: the space that normals are encoded in: view, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
         mask: Captures: a file or a channel that is 0 on the background.
         nan_share: Captures: the share of NaN that is masked and counted.
@@ -259,6 +265,7 @@ def maps(
     curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
+    code_space: Names = ...,
     view_matrix: Names | None = ...,
     mask: Names | None = ...,
     nan_share: float = ...,
@@ -281,6 +288,7 @@ def maps(
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
+        code_space: Captures: the space that normals are encoded in: view, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
         mask: Captures: a file or a channel that is 0 on the background.
         nan_share: Captures: the share of NaN that is masked and counted.
@@ -615,6 +623,7 @@ def tune(
     curve: Names = ...,
     normalise: bool = ...,
     space: Names = ...,
+    code_space: Names = ...,
     view_matrix: Names | None = ...,
     mask: Names | None = ...,
     nan_share: float = ...,
@@ -639,6 +648,7 @@ def tune(
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
         normalise: Captures: accept normals of any length.
         space: Captures: view, view-left-handed, world.
+        code_space: Captures: the space that normals are encoded in: view, world.
         view_matrix: World to view space: 9 or 16 numbers by rows, or a file.
         mask: Captures: a file or a channel that is 0 on the background.
         nan_share: Captures: the share of NaN that is masked and counted.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -38,6 +38,7 @@ NORMAL_WORDS = re.compile(r"n|nrm.*|.*norm.*", re.IGNORECASE)
 SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
     {"view": np.eye(3), "view-left-handed": MIRRORED, "world": None}
 )
+CODE_SPACES = ("view", "world")
 
 
 def _by(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
@@ -57,7 +58,7 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
         UsageError: it cannot be read, or does not hold unit normals as `reading` says.
     """
     reading = checked(reading)
-    to_view, notes = view_matrix(reading)
+    turns, notes = turns_of(reading)
     chosen: list[str] = []
 
     def choose(names: Sequence[str]) -> Sequence[str]:
@@ -69,19 +70,20 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     n, covered, of_lengths = _directions(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
-    notes += of_lengths + _which_way(n, covered, to_view, reading, chosen)
+    notes += of_lengths + _which_way(n, covered, turns.to_view, reading, chosen)
     if pixels.full == EIGHT_BITS:
         notes.append(
             "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
             "they are; 16 bits or floats do not favour any"
         )
-    if not np.array_equal(to_view, np.eye(3)):
-        n = np.tensordot(to_view, n, 1)
+    if not np.array_equal(turns.to_code, np.eye(3)):
+        n = np.tensordot(turns.to_code, n, 1)
     shape = pixels.shape if len(pixels.shape) == 2 else None
     n = np.moveaxis(n, 0, -1).astype(np.float32)
     name = called(path.name)
-    made = from_arrays(name, f"normals of {name}", n, _rays(n, reading.fov), covered, shape, not_finite)
-    return made, notes
+    rays = (_rays(n, reading.fov) @ turns.of_rays.T).astype(np.float32)
+    made = from_arrays(name, f"normals of {name}", n, rays, covered, shape, not_finite)
+    return replace(made, code_space=reading.code_space), notes
 
 
 def checked(reading: Reading) -> Reading:
@@ -91,7 +93,8 @@ def checked(reading: Reading) -> Reading:
     if reading.fov is not None and not 1 <= reading.fov <= 175:
         raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
     space, curve = pick_one("space", reading.space, SPACES), pick_one("curve", reading.curve, CURVES)
-    return replace(reading, space=space, curve=curve)
+    code_space = pick_one("code space", reading.code_space, CODE_SPACES)
+    return replace(reading, space=space, curve=curve, code_space=code_space)
 
 
 # Channels
@@ -261,23 +264,52 @@ def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterato
 # Where they point
 
 
-def view_matrix(reading: Reading) -> tuple[np.ndarray, list[str]]:
-    """What turns the file's normals to view space, (3, 3) for column vectors, and what is to be said of it.
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """How a frame is turned, (3, 3) for column vectors.
+
+    Attributes:
+        to_view: the file's normals to view space; None where nobody says.
+        to_code: the file's normals to the space that they are encoded in.
+        of_rays: rays in view space to that space.
+    """
+
+    to_view: np.ndarray | None
+    to_code: np.ndarray
+    of_rays: np.ndarray
+
+
+def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
+    """How a frame is turned, and what is to be said of it.
 
     Raises:
-        UsageError: world space without a matrix, a matrix without world space, or a matrix that is not a rotation.
+        UsageError: two spaces without a matrix between them, a matrix that nothing needs, or one that does not rotate.
     """
-    known = SPACES[reading.space]
-    if known is not None:
-        if reading.view_matrix is not None:
-            raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
-        return known, []
+    known, is_world, same = SPACES[reading.space], reading.code_space == CODE_SPACES[1], np.eye(3)
     if reading.view_matrix is None:
-        raise UsageError(
-            f"--space {reading.space} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which "
-            "turn world space to view space: x right, y up, z towards the viewer"
-        )
-    return _rotation(reading.view_matrix)
+        if (known is None) != is_world:
+            raise _no_matrix(reading)
+        if known is None and reading.fov is not None:
+            raise UsageError("--fov gives rays in view space; --view-matrix turns them to world space")
+        return Turns(known, same if known is None else known, same), []
+    if known is not None and not is_world:
+        raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
+    matrix, notes = _rotation(reading.view_matrix)
+    if not is_world:
+        return Turns(matrix, matrix, same), notes
+    return Turns(matrix, same, matrix.T) if known is None else Turns(known, matrix.T @ known, matrix.T), notes
+
+
+def _no_matrix(reading: Reading) -> UsageError:
+    asked, other = f"--space {reading.space}", ""
+    if SPACES[reading.space] is None:
+        other = "; or --code-space world, where the engine encodes world-space normals"
+    else:
+        asked += f" --code-space {reading.code_space}"
+    return UsageError(
+        f"{asked} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which turn world space to "
+        f"view space: x right, y up, z towards the viewer{other}"
+    )
 
 
 def _rotation(text: str) -> tuple[np.ndarray, list[str]]:
@@ -330,9 +362,11 @@ def typed(matrix: np.ndarray) -> str:
 
 
 def _which_way(
-    n: np.ndarray, covered: np.ndarray, to_view: np.ndarray, reading: Reading, chosen: Sequence[str]
+    n: np.ndarray, covered: np.ndarray, to_view: np.ndarray | None, reading: Reading, chosen: Sequence[str]
 ) -> list[str]:
     """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
+    if to_view is None:
+        return []
     is_world = SPACES[reading.space] is None
     pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
     found = which_way(pixels, to_view, reading.fov, is_world)
@@ -349,7 +383,12 @@ def _remedy(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[s
         return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(found)}"
     if found is not None:
         return "check --fov, which is the vertical angle"
-    return "check --view-matrix" if is_world else "is it in world space? --space world --view-matrix turns it"
+    if is_world:
+        return "check --view-matrix"
+    return (
+        "is it in world space? --space world --view-matrix turns it to view space; where the engine encodes "
+        "world-space normals, --space world --code-space world leaves it as it is"
+    )
 
 
 def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:

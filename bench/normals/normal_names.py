@@ -15,11 +15,12 @@ from ..options.option import Count, Reading, fields_of
 from ..options.scene_names import mesh_file, say_notes
 from ..options.words import given_in
 from ..output.errors import UsageError, names_a_folder, pick_or_read, tell
-from .captures import capture
+from .captures import CODE_SPACES, capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from .pixel_files import MAX_PIXELS
 from .pixel_files import READERS as IMAGES
 
+WORLD = CODE_SPACES[1]
 SEES_NOTHING = "its camera sees nothing; move it, or leave it out to have everything framed"
 MAX_SIDE = 16384
 ENDINGS = (*IMAGES, *files.READERS)
@@ -49,6 +50,8 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     def read(path: Path) -> Callable[[int, int], NormalSet]:
         if path.suffix.lower() in IMAGES:
             made, notes[path] = capture(path, reading)
+            if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
+                raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
             if needs_rays and reading.fov is None:
                 notes[path].append("without --fov, rays are parallel for codes that need them")
         else:

@@ -57,6 +57,7 @@ class NormalSet:
         chunk: start index -> Chunk.
         background: how many of them are of no surface and do not count; None where there can be none.
         not_finite: how many of a file's were NaN or infinite, which do not count either.
+        code_space: of a captured frame the space that its normals are in: "view" or "world".
         of: by number the chunks that are meant where this is a part of a set; None for all.
     """
 
@@ -69,7 +70,7 @@ class NormalSet:
     chunk: Callable[[int], Chunk]
     background: int | None = None
     not_finite: int | None = None
-
+    code_space: str | None = None
     of: range | None = None
 
     @property

@@ -89,7 +89,8 @@ class Reading:
         unpack: whether [0, 1] stands for [-1, 1]; None: in files of whole numbers, which have nothing else.
         curve: one of captures.CURVES: what was done to the components before they were stored.
         normalise: whether any length will do.
-        space: one of captures.SPACES.
+        space: of the frame, one of captures.SPACES.
+        code_space: the space that its normals are encoded in, one of captures.CODE_SPACES.
         view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
         mask: a file or a channel, 0 where there is background; None for normals of no length.
         nan_share: the share of normals that may be NaN or infinite; these are masked and counted.
@@ -109,6 +110,9 @@ class Reading:
     ] = "linear"
     normalise: Annotated[bool, Option("--normalise", "Captures: accept normals of any length.", in_run=True)] = False
     space: Annotated[str, Option("--space", "Captures: view, view-left-handed, world.", in_run=True)] = "view"
+    code_space: Annotated[
+        str, Option("--code-space", "Captures: the space that normals are encoded in: view, world.", in_run=True)
+    ] = "view"
     view_matrix: Annotated[
         str | None,
         Option("--view-matrix", "World to view space: 9 or 16 numbers by rows, or a file.", files=True, in_run=True),

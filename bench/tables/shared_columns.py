@@ -13,6 +13,9 @@ BITS = Column(
     "bits",
     "Bits that the code occupies: all bits of the channels that it uses, and a bit for each sign kept elsewhere.",
 )
+CODE_SPACE = Column(
+    "code_space", "The space that a captured frame's normals were encoded in: view or world.", Role.HOW, drops=9
+)
 PIPELINE = Column("pipeline", "The order of passes that rendered it.", Role.KEY)
 LIGHT_TARGETS = Column(
     "light_targets", "2: diffuse and specular light; 1: diffuse, and the luminance of the specular.", Role.KEY, drops=4

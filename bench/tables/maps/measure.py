@@ -201,6 +201,7 @@ def _described(case: Case) -> Row:
         "decoder": case.decoder,
         "bits_per_texel": case.block.bits(case.encoding.components),
         "background": case.normal_set.background,
+        "code_space": case.normal_set.code_space,
     }
 
 

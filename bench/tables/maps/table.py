@@ -112,6 +112,7 @@ COLUMNS = (
         drops=4,
     ),
     Column("count", "How many normals were measured.", HOW, drops=6),
+    shared.CODE_SPACE,
     Column("background", "Texels without a surface. They hold (0, 0, 1) and do not count.", HOW, drops=7),
     Column("encoder", "The package that encoded the blocks, and its effort.", HOW, drops=1),
     Column("device", "What decoded the blocks.", HOW, drops=1),

@@ -220,5 +220,6 @@ def _described(case: Case) -> Row:
         "bits": case.codec.bits,
         "samples": case.mixes.samples,
         "power": case.power,
+        "code_space": patches.code_space,
         "seed": patches.seed,
     }

@@ -44,6 +44,7 @@ class Patches:
         normals: unit normals, float64 of shape (TEXELS, patches, 3), row by row from the first texel.
         views: float32 of shape (patches, 3).
         seed: what it was made with.
+        code_space: of a captured frame the space that its normals are in.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Patches:
     views: np.ndarray
     seed: int
     edge_deg: float | None = None
+    code_space: str | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -239,7 +241,8 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
         if len(which):
             again = which[_filled(len(which))]
             edge = float(np.round(np.median(steepest[which]))) if is_edge else None
-            yield Patches(normals.name, None, len(which), _rounded(cut[:, again]), seen[again], seed, edge)
+            cut_out = _rounded(cut[:, again]), seen[again]
+            yield Patches(normals.name, None, len(which), *cut_out, seed, edge, normals.code_space)
 
 
 def _steepest(normals: np.ndarray) -> np.ndarray:

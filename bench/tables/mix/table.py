@@ -190,6 +190,7 @@ COLUMNS = (
         "%",
         drops=2,
     ),
+    shared.CODE_SPACE,
     Column("samples", "Samples per pixel that were resolved.", HOW, drops=2),
     Column("power", "The specular power that Toksvig's formula started from.", HOW, drops=2),
     shared.DEVICE,

@@ -185,6 +185,7 @@ COLUMNS = (
     Column("same_target", "Whether that is packed into the texel that was asked for.", HOW, shown=False),
     Column("bytes", "Bytes of the texel that was asked for.", HOW, shown=False),
     Column("count", "How many normals were measured.", HOW),
+    shared.CODE_SPACE,
     shared.DEVICE,
     shared.SEED,
     shared.SKIPPED,

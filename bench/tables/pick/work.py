@@ -78,7 +78,8 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
         leave_out(line)
 
     def case(codec: Codec, normals: NormalSet, about: Row) -> measure.Case:
-        more = {"normals": normals.name, "against": codec.encoding.name in named and not about["beside"]}
+        more: Row = {"normals": normals.name, "code_space": normals.code_space}
+        more["against"] = codec.encoding.name in named and not about["beside"]
         return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline)
 
     return [

@@ -277,6 +277,7 @@ def _described(case: Case) -> Row:
         "bits": case.codec.bits,
         "background": case.normal_set.background,
         "not_finite": case.normal_set.not_finite,
+        "code_space": case.normal_set.code_space,
         "domain": case.domain,
         "codes": case.codec.codes,
         "code_range": "[0, 1]" if case.codec.encoding.is_unit else None,

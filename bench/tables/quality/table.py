@@ -81,6 +81,7 @@ COLUMNS = (
     Column("count", "How many normals were measured.", HOW, drops=13),
     Column("background", "Pixels without a surface; they do not count.", HOW, drops=3),
     Column("not_finite", "Normals of the set that were NaN or infinite; they do not count.", HOW, drops=4),
+    shared.CODE_SPACE,
     Column(
         "invalid",
         "Decodes that were NaN or infinite; each counts as the opposite direction.",

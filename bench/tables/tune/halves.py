@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import numpy as np
@@ -51,7 +51,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
     if np.ptp(n[fitting], axis=0).max() == 0:
         raise UsageError(f"{chosen.name}: every normal to fit to is the same; take a set of several directions")
     held = from_arrays(chosen.name, chosen.title, n[others], view[others], np.ones(len(others), bool))
-    return Halves(Normals(n[fitting], view[fitting]), held)
+    return Halves(Normals(n[fitting], view[fitting]), replace(held, code_space=chosen.code_space))
 
 
 def _tiles(chosen: NormalSet) -> np.ndarray:

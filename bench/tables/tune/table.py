@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from ...options.option import Option, Reading, Seed
+from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
@@ -41,6 +42,7 @@ COLUMNS = (
     Column("error", "What the tuning makes small, or in decibels large.", KEY),
     Column("fitted_to", "Normals that it was fitted to.", HOW),
     Column("held_out", "Normals that were held out and measured on.", HOW),
+    shared.CODE_SPACE,
     Column("seed", "The random seed of uniform sets and of the hold-out.", HOW, drops=1),
     Column("tuned_encoding", "What was found, by the name that --encoding takes.", HOW),
     Column("tuned_storage", "What was found, by the name that --storage takes.", HOW),

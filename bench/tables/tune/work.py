@@ -76,6 +76,7 @@ class Tuning:
         before, after = (Side(c, _measured(c, halves)) for c in (chosen.codec, codec))
         self.sides = before, after
         about = {"normals": halves.held_out.name, "error": goal, "seed": self.options.seed}
+        about |= {"code_space": halves.held_out.code_space}
         about |= {"fitted_to": len(halves.fitting), "held_out": halves.held_out.count}
         return list(rows(before, after, chosen, found, about))
 

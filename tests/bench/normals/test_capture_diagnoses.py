@@ -113,7 +113,11 @@ WRONG = {
         WORLD,
     ),
     "world space read as view space": Wrong(
-        WORLD_FILE, "is it in world space? --space world --view-matrix turns it", Reading(), WORLD
+        WORLD_FILE,
+        "is it in world space? --space world --view-matrix turns it to view space; where the engine encodes "
+        "world-space normals, --space world --code-space world leaves it as it is",
+        Reading(),
+        WORLD,
     ),
     "view space read as world space": Wrong(
         lambda path: floats(path, N), "in view space already: read it with --space view", WORLD, Reading()

@@ -24,7 +24,7 @@ from written import (
 )
 
 from normalbench.bench.normals import captures, pixel_files, pixel_process
-from normalbench.bench.normals.captures import Reading, checked, chosen_channels, view_matrix
+from normalbench.bench.normals.captures import Reading, checked, chosen_channels, turns_of
 from normalbench.bench.normals.normal_sets import NormalSet, playground
 from normalbench.bench.normals.pixel_files import read_pixels
 from normalbench.bench.output.errors import UsageError
@@ -46,7 +46,7 @@ def capture(path: Path, reading: Reading) -> NormalSet:
 
 def figures(made, codec: Codec = RG8) -> dict:
     row = measure(Case(codec, made, "jax"))
-    hidden = ("normals", "not_finite")
+    hidden = ("normals", "not_finite", "code_space")
     return {column: value for column, value in row.items() if column not in hidden}
 
 
@@ -236,6 +236,55 @@ def test_world_space_is_turned_to_view_space(tmp_path):
     assert "if z points the other way: read it with --space view-left-handed" in note
 
 
+def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_path):
+    """A frame in world space of an engine that encodes there is measured as it is, with or without the matrix; one in
+    view space is turned back. Rays are turned with the normals."""
+    n, matrix = some_normals(), ",".join(map(str, ROTATION.ravel()))
+    world = (n.astype(np.float64) @ ROTATION).astype(np.float32)
+    for name, frame in (("world", world), ("view", n), ("left", n * np.float32([1, 1, -1]))):
+        np.save(tmp_path / f"{name}.npy", frame)
+    spaces = {"world": "world", "view": "view", "left": "view-left-handed"}
+    for name, space in spaces.items():
+        reading = Reading(space=space, code_space="world", view_matrix=matrix, fov=60)
+        made = capture(tmp_path / f"{name}.npy", reading)
+        assert np.allclose(given(made)[0], world.reshape(-1, 3), atol=2e-7) and made.code_space == "world"
+        seen = capture(tmp_path / "view.npy", Reading(fov=60))
+        ours, views = (np.stack([np.asarray(c) for c in next(s.loads())().view], 1) for s in (made, seen))
+        assert np.allclose(ours, views @ ROTATION, atol=2e-7) and seen.code_space == "view"
+    made = capture(tmp_path / "world.npy", Reading(space="world", code_space="world"))
+    assert np.array_equal(given(made)[0], world.reshape(-1, 3))
+    assert playground().code_space is None
+
+
+def test_the_space_of_codes_is_in_the_row_and_named_by_the_hint(run, tmp_path):
+    """Octahedral in world space is not octahedral in view space: the same frame has other errors."""
+    n = rendered().normals[1::4, 1::4]
+    np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
+    matrix = ",".join(map(str, ROTATION.ravel()))
+    words = ["quality", "--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json"]
+    words += ["--normals", str(tmp_path / "world.npy")]
+    found = {}
+    for space in ("view", "world"):
+        more = ["--space", "world", "--code-space", space, "--view-matrix", matrix]
+        (row,) = json.loads(run(*words, *more)[1])
+        assert row["code_space"] == space
+        found[space] = row["angle_mean_deg"]
+    assert found["view"] != pytest.approx(found["world"], rel=1e-4)
+    (row,) = json.loads(run(*words, "--space", "world", "--code-space", "world")[1])
+    assert row["angle_mean_deg"] == found["world"]
+    err = run(*words)[2]
+    assert "--space world --view-matrix" in err and "--space world --code-space world" in err
+
+
+def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
+    np.save(tmp_path / "world.npy", some_normals())
+    words = ("quality", "--normals", str(tmp_path / "world.npy"), "--space", "world", "--code-space", "world")
+    status, out, err = run(*words, "--encoding", "per_pixel_view", "--storage", "rg8")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "need --view-matrix where they are in world space" in err
+    status, out, err = run(*words, "--encoding", "octahedral", "--storage", "rg8", "--fov", "60")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "--fov gives rays in view space" in err
+
+
 @pytest.mark.parametrize(
     "space, matrix, said",
     [
@@ -252,8 +301,17 @@ def test_world_space_is_turned_to_view_space(tmp_path):
 def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix, said):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UsageError, match=said) as error:
-        view_matrix(checked(Reading(space=space, view_matrix=matrix)))
+        turns_of(checked(Reading(space=space, view_matrix=matrix)))
     assert "\n" not in str(error.value)
+
+
+def test_a_space_of_codes_that_cannot_be_is_one_line():
+    with pytest.raises(UsageError, match="unknown code space 'screen'; known: view, world"):
+        checked(Reading(code_space="screen"))
+    with pytest.raises(UsageError, match="--space view --code-space world needs --view-matrix"):
+        turns_of(checked(Reading(code_space="world")))
+    with pytest.raises(UsageError, match=r"--space world needs --view-matrix.*or --code-space world"):
+        turns_of(checked(Reading(space="world")))
 
 
 def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
