@@ -29,6 +29,7 @@ def pick(
     aim: Names = ...,
     readers: int = ...,
     worth: float = ...,
+    enough: float = ...,
     accept_holes: bool = ...,
     accept_lengths: bool = ...,
     most_instructions: int | None = ...,
@@ -66,6 +67,7 @@ def pick(
         aim: What a code must be good at: angle (the mean), worst (the largest angle), image (the lowest dB), or cost (cheap before exact).
         readers: Passes that decode: light, reflections, occlusion, denoiser. Encoding counts once.
         worth: The decibels that a code must gain for twice the price.
+        enough: Degrees that a mirror's reflection may move. Default: a texel of a 1k environment map.
         accept_holes: Take codes whose largest angle is over 4 times the least.
         accept_lengths: Take codes whose decodes are not of length 1.
         most_instructions: The most issue slots that encoding and decoding once may execute.

@@ -12,7 +12,7 @@ from ...encodings.storages.storage import STORAGES
 from ..tables.devices.agreement import time_of
 from ..tables.pick.answer import BEST, answered
 from ..tables.pick.sentences import degrees, left_out, rungs
-from ..tables.pick.table import READERS, WORTH_DB, PickOptions
+from ..tables.pick.table import READERS, TEXEL_DEG, WORTH_DB, PickOptions
 from ..tables.table import Row, Sheet
 
 # A question of `pick`: codes for every direction, the smallest mean angle first.
@@ -89,6 +89,7 @@ def _asked(row: Row, known: Known) -> Row:
     made |= {"angle_mean_deg": row["mean_deg"], "angle_max_deg": row["max_deg"], "angle_sup_deg": None}
     made |= {"bits": codec.bits if codec else None, "free_bits": None, "length_share": None}
     made |= {name: row[name] for name in ("encode_ms", "decode_ms")} | {"ms": time_of(row)}
+    made |= {"enough": TEXEL_DEG, "code_bits": None, "packed": False, "encode_slots": None, "decode_slots": None}
     return made | {"slots": None, "slots_once": None} | known.of(row)
 
 

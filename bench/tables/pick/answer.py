@@ -17,10 +17,8 @@ from .table import HOLE
 Row = dict[str, Any]
 
 IMAGE = "image_db_"
-BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS, AGAINST, ELSEWHERE = (
-    *("best", "more exact", "most exact", "cheaper", "fewer bits"),
-    *("against", "elsewhere"),
-)
+BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more exact", "most exact", "cheaper", "fewer bits"
+ACROSS, PLAIN, AGAINST, ELSEWHERE = "across an edge", "plain channels", "against", "elsewhere"
 # What codes of a domain hold, by the domain that is needed.
 HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
     {
@@ -33,9 +31,7 @@ HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
 BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer"}
 # Issue slots of an encoder, or of a reader, that hide behind the write and the read of the target.
 HIDDEN_SLOTS = 16
-# Of a texel of an environment map of 1024 x 512, in degrees: who moves a reflection by less is not seen.
-TEXEL_DEG = 360 / 1024
-# How many times the price that hides anybody pays for what nobody sees.
+# How many times the price that hides anybody pays for what is not seen.
 AFFORDABLE = 2.0
 # Images above it are equal.
 INDISTINGUISHABLE_DB = 70.0
@@ -43,12 +39,15 @@ INDISTINGUISHABLE_DB = 70.0
 # `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
 LENGTH = 0.1
 STEP = 0.5
+SAME_PRICE = 0.1
 # Rungs of a ladder that differ by less are one.
 LEAST_DB = 0.25
 MOST_RUNGS = 2
-# Another packing of the same texel is named where it is better by so much, another texel of the same bytes where it is
-# better by a bit of each component.
-BETTER_DB, MUCH_BETTER_DB = 1.0, 6.0
+# Another storage of the same bytes is named where it is better by a bit of each component.
+MUCH_BETTER_DB = 6.0
+NO_FIGURE = "no figure for --aim"
+# A code has no use for a storage that has so many more bits than it has codes for.
+WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
 TIES = 3
 
@@ -103,9 +102,10 @@ def floor(row: Row) -> float:
 
 
 def price(row: Row) -> float:
-    """The issue slots to encode once and to decode for each reader, at least those that hide; these where the slots are
-    not known."""
-    return max(row["slots"] or 0.0, floor(row))
+    """The issue slots to encode once and to decode for each reader, in each pass at least those that hide; these alone
+    where the slots are not known."""
+    encode, decode = (max(row[name] or 0.0, HIDDEN_SLOTS) for name in ("encode_slots", "decode_slots"))
+    return encode + row["readers"] * decode
 
 
 def doublings(row: Row) -> float:
@@ -114,22 +114,23 @@ def doublings(row: Row) -> float:
 
 
 def is_enough(row: Row) -> bool:
-    """Whether nobody sees what a code does to a reflection: twice its largest angle is below a texel."""
+    """Whether an environment map does not show what a code does to a reflection: twice its largest angle is at most
+    what was asked for."""
     found = largest(row)
-    return found is not None and 2 * found <= TEXEL_DEG
+    return found is not None and 2 * found <= row["enough"]
 
 
 def order(row: Row) -> tuple[float, ...]:
     """By what rows are sorted, less is better.
 
-    Of codes that are enough and cost little the cheapest is first, to half a doubling, then the one of fewest bits. The
+    Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to half a doubling. The
     others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
     """
     ties = (_of_image(row), price(row), _bits(row))
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
-        return (0, bool(row["table"]), _to_a_step(doublings(row)), _bits(row), _to_a_tenth(loss_db(row)), *ties)
+        return (0, bool(row["table"]), _bits(row), _to_a_step(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
     return (1, _to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
 
 
@@ -145,7 +146,7 @@ def _to_a_tenth(loss: float) -> float:
 
 def figures(row: Row) -> tuple[float, float, float]:
     """What the front is made of: loss, price and bits, less is better."""
-    return loss_db(row), price(row), _bits(row)
+    return _to_a_tenth(loss_db(row)), price(row), _bits(row)
 
 
 def beats(one: Row, other: Row) -> bool:
@@ -154,8 +155,8 @@ def beats(one: Row, other: Row) -> bool:
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
 
 
-def why_left_out(row: Row) -> str:
-    """Why a code does not qualify, whatever the others do; empty where it does."""
+def why_unfit(row: Row) -> str:
+    """Why a code can never be the answer to a question, whatever it costs; empty where it can."""
     if row["skipped"]:
         return row["skipped"]
     if row["invalid"]:
@@ -166,6 +167,15 @@ def why_left_out(row: Row) -> str:
         return lost(row)
     if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
         return "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
+    if row["bits"] and row["code_bits"] and row["bits"] - row["code_bits"] > WASTED_BITS:
+        return f"its codes are of {row['code_bits']:.0f} bits in any storage"
+    return ""
+
+
+def why_left_out(row: Row) -> str:
+    """Why a code does not qualify by itself; empty where it does."""
+    if why := why_unfit(row):
+        return why
     if row.get("cannot_mix"):
         return str(row["cannot_mix"]).partition(":")[0]
     most, once = row["most_instructions"], row["slots_once"]
@@ -174,7 +184,7 @@ def why_left_out(row: Row) -> str:
     if most is not None and once > most:
         return f"more than {most} issue slots"
     if loss_db(row) == math.inf:
-        return f"no figure for --aim {row['aim']}"
+        return f"{NO_FIGURE} {row['aim']}"
     return ""
 
 
@@ -223,17 +233,25 @@ def _said(row: Row, places: Sequence[str]) -> str | None:
 
 
 def _holes(rows: Sequence[Row]) -> list[Row]:
-    """The rows, those with a hole left out."""
-    fit = [row for row in rows if not row["left_out"] and largest(row) is not None]
-    least = min((largest(row) or math.inf for row in fit if not row["beside"]), default=math.inf)
+    """The rows with the size of their hole, left out for it. The least error is that of all codes of the storage that
+    could be asked for, whatever they cost and survive."""
     said = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
-    return [row | {"left_out": said, "hole": hole} if (hole := _hole(row, least)) else row for row in rows]
+    least: dict[str, float] = {}
+    for row in rows:
+        if not why_unfit(row) and (found := largest(row)) is not None:
+            least[row["storage"]] = min(found, least.get(row["storage"], math.inf))
+    made: list[Row] = []
+    for row in rows:
+        hole = _hole(row, least.get(row["storage"], math.inf))
+        is_why = hole and (not row["left_out"] or str(row["left_out"]).startswith(NO_FIGURE))
+        made.append(row | {"hole": hole or None, "left_out": said if is_why else row["left_out"]})
+    return made
 
 
 def _hole(row: Row, least: float) -> str:
     """How large a code's hole is, and where; empty where it has none."""
     found = largest(row)
-    if row["left_out"] or row["accept_holes"] or found is None or found <= HOLE * least:
+    if why_unfit(row) or row["accept_holes"] or found is None or found <= HOLE * least:
         return ""
     worst = [f"{float(x):.2f}" for x in re.findall(r"[-+.\de]+", str(row.get("worst_normal") or ""))]
     return f"{found:.3g}°" + (f" at {' '.join(worst)}" if worst else "")
@@ -255,6 +273,10 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
+    for place, is_lacking in ((ACROSS, lambda row: row.get("mixed_across")), (PLAIN, lambda row: row.get("packed"))):
+        others = [at for at, row in enumerate(fit) if not is_lacking(row)] if is_lacking(fit[0]) else []
+        for at in others[:1]:
+            places[at].append(place)
     best, rungs = fit[0], [at for at, row in enumerate(fit) if at and not any(beats(other, row) for other in fit)]
     places[0].append(BEST)
     exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))
@@ -264,12 +286,26 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     below = [at for at in rungs if loss_db(fit[at]) >= loss_db(best)]
     for place, chosen in (
         (MORE_EXACT, _apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
-        (CHEAPER, [at for at in below if price(fit[at]) < price(best) and fit[at]["bits"] == best["bits"]][:1]),
-        (FEWER_BITS, _first_of_each_size([at for at in below if _bits(fit[at]) < _bits(best)], fit)[:MOST_RUNGS]),
+        (CHEAPER, [at for at in below if _is_cheaper(fit[at], best) and fit[at]["bits"] == best["bits"]][:1]),
+        (FEWER_BITS, _first_of_each_size([at for at in below if _is_smaller(fit[at], best)], fit)[:MOST_RUNGS]),
     ):
         for at in chosen:
             places[at].append(place)
     return places
+
+
+def is_same_price(one: Row, other: Row) -> bool:
+    """Whether two prices are less than a tenth of a doubling apart."""
+    return abs(math.log2(price(one) / price(other))) < SAME_PRICE
+
+
+def _is_cheaper(row: Row, best: Row) -> bool:
+    return price(row) < price(best) and not is_same_price(row, best)
+
+
+def _is_smaller(row: Row, best: Row) -> bool:
+    """Whether a code takes fewer bits, for no higher price."""
+    return _bits(row) < _bits(best) and (price(row) <= price(best) or is_same_price(row, best))
 
 
 def _bits(row: Row) -> float:
@@ -292,14 +328,8 @@ def _apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
 
 
 def _elsewhere(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
-    """The best code of other storages of the same bytes: one packed into the same texel that is better in no more bits,
-    and one in another texel that is much better."""
+    """The best code of other storages of the same bytes, where it is much better."""
     others = [row for row in judged if row["beside"] and not row["left_out"]]
-    if not fit or not others:
-        return []
-    best = fit[0]
-    packed = [row for row in others if row["same_target"] and _bits(row) <= _bits(best)]
-    packed = [row for row in packed if loss_db(best) - loss_db(row) >= BETTER_DB]
-    better = [row for row in others if not row["same_target"] and loss_db(best) - loss_db(row) >= MUCH_BETTER_DB]
-    kept = [min(some, key=lambda row: order(row)[:-TIES], default=None) for some in (packed, better)]
-    return [row | {"front": False, "place": ELSEWHERE} for row in kept if row]
+    better = [row for row in others if fit and loss_db(fit[0]) - loss_db(row) >= MUCH_BETTER_DB]
+    kept = sorted(better, key=lambda row: order(row)[:-TIES])[:1]
+    return [row | {"front": False, "place": ELSEWHERE} for row in kept]

@@ -31,6 +31,7 @@ from ...output import cache as kept
 from ...output.sources import sources
 from ...worst_case.exact_figures import has_twin
 from ..mix import judge
+from ..mix.patches import in_domain
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
@@ -41,7 +42,7 @@ from .table import TABLE
 Row = dict[str, Any]
 # Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
 SIZE = (320, 240)
-SUPREMUM = "angle_sup_deg"
+SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 # Normals that tell whether decodes have length 1.
 FEW = 2**14
 QUALITY = ("angle_mean_deg", "angle_max_deg", "worst_normal", "invalid", "count", "device", "skipped")
@@ -109,16 +110,18 @@ class Question:
         self._cases = {case.codec.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
         self._rows = {name: _described(case) | costs.of(case.codec) for name, case in self._cases.items()}
-        # Of another storage only codes are compared that cost no more than what hides.
-        chosen = [case for name, case in self._cases.items() if not case.is_beside or self._is_cheap(name)]
+        # Of other storages only codes are compared that cost little, of packings those that do not cost much.
+        chosen = [case for name, case in self._cases.items() if price(self._rows[name]) <= self._most(case)]
         self._rows = {case.codec.name: self._rows[case.codec.name] for case in chosen}
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
         # What has no twin is measured by GL, in the thread that draws.
         self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
         self._angles = pool.submit(_angles, self._by_jax)
 
-    def _is_cheap(self, name: str) -> bool:
-        return price(self._rows[name]) <= AFFORDABLE * floor(self._rows[name])
+    def _most(self, case: Case) -> float:
+        """The price up to which a code is compared."""
+        cheap = AFFORDABLE * floor(self._rows[case.codec.name])
+        return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
     def measure(self, tick: Callable[[str], None]) -> None:
         """Angles; the suprema that they ask for are still computed in the other thread."""
@@ -151,7 +154,16 @@ class Question:
         if pictures:
             for row in self._qualified("angle") if self._aim == "image" else self._placed():
                 self._rows[_name(row)] |= pictures.of(self._cases[_name(row)])
-        self._find_suprema(self._placed())
+        placed = self._placed()
+        self._find_suprema(placed)
+        self._measure_axes([self._cases[_name(row)] for row in placed])
+
+    def _measure_axes(self, cases: Sequence[Case]) -> None:
+        """Errors of axis-aligned normals, of codes for every direction."""
+        whole = [case for case in cases if case.codec.encoding.domain == "sphere"]
+        axes = NORMAL_SETS["axes"](0, 0)
+        for case, row in zip(whole, _angles([replace(case, normal_set=axes) for case in whole]), strict=True):
+            self._rows[case.codec.name][AXES] = row["angle_max_deg"]
 
     def answered(self) -> list[Row]:
         """The rows as far as they are known, the best first."""
@@ -196,8 +208,7 @@ def _mixed(case: Case) -> Row:
     def judged() -> Row:
         inside, across = judge.faults(case.codec, uses.split(","), case.normal_set, domain)
         said = (f"cannot be {DONE[use]}: {why}" for use, why in inside.items())
-        edges = (f"{DONE[use]} across {why}" for use, why in across.items())
-        return {"cannot_mix": "; ".join(said) or None, "mixed_across": "; ".join(edges) or None}
+        return {"cannot_mix": "; ".join(said) or None, "mixed_across": "; ".join(across.values()) or None}
 
     return kept.kept(key, judged)
 
@@ -215,6 +226,7 @@ def _described(case: Case) -> Row:
             "table": encoding.has_tables,
         }
         | {"seed": case.normal_set.seed, "lost_percent": _lost(case.normal_set, encoding.domain)}
+        | {"code_bits": math.log2(codec.codes) if all(map(encoding.levels_of, range(encoding.components))) else None}
     )
 
 
@@ -236,7 +248,7 @@ def _angles(chosen: Sequence[Case]) -> list[Row]:
 
 def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
     """By codec the share of the error of lengths, over a few normals of the sphere."""
-    said: Row = {"beside": False}
+    said: Row = {"beside": False, "packed": False}
     normals = NORMAL_SETS["sphere"](FEW, 0)
     cases = [Case(codec, normals, (), Setting(), (), said) for codec in codecs]
     return {case.codec.name: row["length_share"] for case, row in zip(cases, _angles(cases), strict=True)}
@@ -298,17 +310,23 @@ class Pictures:
                 found |= kept.kept(key, lambda maker=maker: self._measured(case, maker))
             except (LayoutError, *render.UNMEASURABLE):
                 continue
+        if case.codec.encoding.domain != "sphere":
+            lost = (self.lost_percent(case, maker) for maker in case.makers)
+            found["image_lost_percent"] = max(lost, default=0.0)
         return found
 
-    def covered_percent(self, case: Case, maker: SceneMaker) -> float:
-        """The share of the pixels that a surface covers."""
-        return 100.0 * float(np.mean(self._reference(case, maker).covered))
+    def lost_percent(self, case: Case, maker: SceneMaker) -> float:
+        """The share of covered pixels whose normals the encoding is not made for."""
+        reference = self._reference(case, maker)
+        covered, held = (np.count_nonzero(reference.held_by(one)) for one in ("sphere", case.codec.encoding.domain))
+        return 100.0 * (1 - held / max(covered, 1))
 
     def _measured(self, case: Case, maker: SceneMaker) -> Row:
-        covered = self._reference(case, maker).covered
+        held = self._reference(case, maker).held_by(case.codec.encoding.domain)
         return {
-            f"{IMAGE}{maker.name}_{power:g}": psnr_db(squared_error(image[covered], right[covered])[0])
+            f"{IMAGE}{maker.name}_{power:g}": psnr_db(squared_error(image[held], right[held])[0])
             for power, (image, right) in self.shown(case, maker).items()
+            if held.any()
         }
 
     def shown(self, case: Case, maker: SceneMaker) -> dict[float, tuple[np.ndarray, np.ndarray]]:
@@ -343,24 +361,29 @@ class Pictures:
 
     def _drawn(
         self, case: Case, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
-    ) -> tuple[list[np.ndarray], np.ndarray]:
-        """The image at each power, and which pixels a surface covers."""
+    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
+        """The image at each power, and the positions and normals of its pixels."""
         plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         scene, shown = maker.make(case.setting), []
         with rendering(self._device, case.pipeline, scene, plan) as made:
             for power in case.powers:
                 made.draw(scene.with_power(power), keeps)
                 shown.append(made.image())
-            covered = made.gbuffer()[0][..., 2] != 0
-        return shown, covered
+            position, direction, *_ = made.gbuffer()
+        return shown, position[..., :3], direction[..., :3]
 
 
 @dataclass(frozen=True)
 class Reference:
-    """What exact normals show: an image in linear light at each power, and which pixels a surface covers."""
+    """What exact normals show: an image in linear light at each power; positions and normals, (height, width, 3)."""
 
     images: list[np.ndarray]
-    covered: np.ndarray
+    position: np.ndarray
+    normals: np.ndarray
+
+    def held_by(self, domain: str) -> np.ndarray:
+        """Which pixels a surface covers whose normal an encoding of that domain holds, (height, width)."""
+        return (self.position[..., 2] != 0) & in_domain(self.normals, self.position, domain)
 
 
 def _display(maker: SceneMaker, right: np.ndarray) -> Display:

@@ -8,35 +8,49 @@ from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
 from .answer import (
+    ACROSS,
     BEST,
     CHEAPER,
     ELSEWHERE,
     FEWER_BITS,
+    HIDDEN_SLOTS,
     INDISTINGUISHABLE_DB,
     MORE_EXACT,
     MOST_EXACT,
-    TEXEL_DEG,
+    PLAIN,
     beats,
-    doublings,
     floor,
     images,
     is_enough,
+    is_same_price,
     largest,
     loss_db,
     lost,
     price,
+    why_unfit,
 )
 
 Row = dict[str, Any]
 
 AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst image", "cost": "mean error"}
 # The rungs, as a sentence begins with each.
-RUNGS = {MORE_EXACT: "More exact", MOST_EXACT: "Most exact", CHEAPER: "Cheaper", FEWER_BITS: "Fewer bits"}
+RUNGS = {
+    MORE_EXACT: "More exact",
+    MOST_EXACT: "Most exact",
+    CHEAPER: "Cheaper",
+    FEWER_BITS: "Fewer bits",
+    ACROSS: "Survives an edge, too",
+    PLAIN: "In plain channels",
+}
+BETTER_IMAGE = {MORE_EXACT: "Better image", MOST_EXACT: "Best image"}
 # Reasons for which more codes are left out than this are counted instead of named.
 MOST_NAMED = 6
 UPSAMPLE = "upsample"
-# How far the mirror's image is, in metres.
-FAR = 10.0
+# Axis-aligned normals that come back closer are exact.
+EXACT_DEG = 1e-3
+# How far the mirror's image is, in metres, and the size of the environment map, whose texel is in degrees.
+FAR, MAP, MAP_TEXEL_DEG = 10.0, "a 1k environment map", 360 / 1024
+WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
@@ -44,19 +58,32 @@ def sentences(group: Sequence[Row]) -> list[str]:
     best = next((row for row in group if BEST in _places(row)), None)
     where = f"{group[0]['asked']}, on {group[0]['normals']}"
     if best is None:
-        return [f"{where}: no code qualifies{_constraints(group[0])}.", *left_out(group)]
+        return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group), *left_out(group)]
     others = [_elsewhere(row, best) for row in group if ELSEWHERE in _places(row)]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
     made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
     made += list(filter(None, [_images(best), _mixing(best)]))
+    made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
     made += rungs(group, best)
     made += [_against(row, best) for row in group if row["against"] and row is not best]
     return [*made, *left_out(group)]
 
 
+def _instead(group: Sequence[Row]) -> Iterator[str]:
+    """What comes nearest where no code qualifies."""
+    fit = [row for row in group if not row["beside"] and not row.get("hole") and not why_unfit(row)]
+    if group[0]["mixing"]:
+        yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
+    elif fit and group[0]["most_instructions"] is not None:
+        nearest = min(fit, key=lambda row: math.inf if row["slots_once"] is None else row["slots_once"])
+        if nearest["slots_once"] is not None:
+            yield f"The nearest is {_called(nearest)}, with {nearest['slots_once']:g} issue slots."
+
+
 def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
     """A sentence for each rung of the ladder."""
-    for place, title in RUNGS.items():
+    titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
+    for place, title in titles.items():
         yield from (f"{title}: {_rung(row, best)}" for row in group if place in _places(row))
 
 
@@ -65,7 +92,7 @@ def _places(row: Row) -> list[str]:
 
 
 def _called(row: Row) -> str:
-    """A code's name, with its storage where several were asked for."""
+    """A code's name, with its storage where another one was asked for."""
     return row["encoding"] if row["asked"] == row["storage"] else f"{row['encoding']} in {row['storage']}"
 
 
@@ -85,7 +112,11 @@ def decibels(value: float | None) -> str:
 
 
 def _figures(row: Row) -> str:
-    return f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest(row)}."
+    said = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest(row)}."
+    axes = row.get("angle_axes_deg")
+    if axes is None:
+        return said
+    return f"{said} Floors and walls come back {'exact' if axes < EXACT_DEG else f'up to {degrees(axes)} off'}."
 
 
 def _largest(row: Row) -> str:
@@ -93,18 +124,20 @@ def _largest(row: Row) -> str:
     return f"its largest {degrees(largest(row))}" + (" of those met" if row["angle_sup_deg"] is None else "")
 
 
+def _moved(row: Row) -> list[float]:
+    """How far a mirror's reflection moves, in the mean and at most: by twice the angle that its normal is turned."""
+    return [2 * value for value in (row["angle_mean_deg"], largest(row)) if value is not None]
+
+
 def _seen(row: Row) -> str:
-    """How far reflections move. A mirror turns a ray by twice the angle that its normal is turned."""
-    moved = [2 * value for value in (row["angle_mean_deg"], largest(row)) if value is not None]
+    moved = _moved(row)
     if len(moved) < 2:
         return ""
-    texel = f"a texel of a 1k environment map ({TEXEL_DEG:.2f}°)"
-    if is_enough(row):
-        return f"That is enough: a reflection moves by at most {degrees(moved[1])}, and {texel} is more."
-    texels = " and ".join(f"{value / TEXEL_DEG:.1f}" for value in moved)
+    texels = " and ".join(f"{value / MAP_TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
-    said = f"A mirror shows it: a reflection moves by {degrees(moved[0])} in the mean and up to {degrees(moved[1])}"
-    return f"{said}, which is {texels} texels of a 1k environment map, or {far} cm at {FAR:g} m."
+    said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
+    said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
+    return f"{said} That is enough." if is_enough(row) else said
 
 
 def _length(value: float) -> str:
@@ -117,11 +150,14 @@ def _price(row: Row) -> str:
     parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     parts += f" on {row['dearest_family']}"
     readers = f"{row['readers']} reader{'s' * (row['readers'] != 1)}"
-    whole = f"{row['slots']:g} with {readers}"
-    if doublings(row):
-        more = f"{price(row) / floor(row):.2g} times what hides behind the traffic of the target"
-        return f"It takes {parts}: {whole}, {more}{_table(row)}."
-    return f"It takes {parts}: {whole}, all of which hide behind the traffic of the target{_table(row)}."
+    return f"It takes {parts}, with {readers} {_of_hidden(row)}{_table(row)}."
+
+
+def _of_hidden(row: Row) -> str:
+    """A price against what hides behind the traffic of the target."""
+    if price(row) == floor(row):
+        return f"no more than the {floor(row):g} that hide behind the traffic of the target"
+    return f"{price(row):g}, {price(row) / floor(row):.2g} times what hides behind the traffic of the target"
 
 
 def _table(row: Row) -> str:
@@ -146,9 +182,11 @@ def _images(row: Row) -> str:
     (scene, power), worst = min(found.items(), key=lambda item: item[1])
     scenes = " and ".join(dict.fromkeys(name for name, _ in found))
     effects = f" with {row['effects']}" if row.get("effects") else ""
+    lost = row.get("image_lost_percent")
+    beyond = f" It does not hold {lost:.2g} % of the visible normals, which are left out of it." if lost else ""
     if worst > INDISTINGUISHABLE_DB:
-        return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}."
-    return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}."
+        return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}.{beyond}"
+    return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}.{beyond}"
 
 
 def _mixing(row: Row) -> str:
@@ -158,11 +196,9 @@ def _mixing(row: Row) -> str:
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
     said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     across = row.get("mixed_across")
-    return said + (
-        f"Inside a surface it survives {_uses(row)}, but across an edge not: {across}."
-        if across
-        else f"It survives {_uses(row)}, inside a surface and across an edge."
-    )
+    if across:
+        return f"{said}Inside a surface it survives {_uses(row)}. Across an edge it does not: {across}."
+    return f"{said}It survives {_uses(row)}, inside a surface and across an edge."
 
 
 def _uses(row: Row) -> str:
@@ -190,12 +226,18 @@ def _rung(row: Row, best: Row) -> str:
 def _priced(row: Row, best: Row) -> str:
     if row["slots"] is None:
         return "for an unknown price"
-    ratio, table = price(row) / price(best), " and a table" if row["table"] and not best["table"] else ""
-    if ratio == 1:
+    table = " and a table" if row["table"] and not best["table"] else ""
+    if is_same_price(row, best):
         return f"for the same price{table}"
-    slots = f"for {row['slots']:g} issue slots{table}, {ratio:.2g} times the price"
-    gain = loss_db(best) - loss_db(row)
-    return f"{slots}: {gain / math.log2(ratio):.1f} dB a doubling" if ratio > 1 and gain > 0 else slots
+    if price(row) == floor(row):
+        return f"for {HIDDEN_SLOTS} issue slots a pass, which hide{table}"
+    ratio, gain = price(row) / price(best), loss_db(best) - loss_db(row)
+    said = f"for {price(row):g} issue slots{table}, {ratio:.2g} times the price"
+    if ratio <= 1 or gain <= 0 or is_enough(best):
+        return said
+    rate = gain / math.log2(ratio)
+    tie = f", where {row['worth']:g} are asked: a tie, and the cheaper code is taken" if rate >= row["worth"] else ""
+    return f"{said}: {rate:.1f} dB a doubling{tie}"
 
 
 def _spared(row: Row, best: Row) -> str:
@@ -206,11 +248,9 @@ def _spared(row: Row, best: Row) -> str:
 
 def _elsewhere(row: Row, best: Row) -> str:
     """Another storage of the same bytes that is much better."""
-    count = best["bytes"]
     gain = loss_db(best) - loss_db(row)
     free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
-    where = "packed into the same texel" if row["same_target"] else f"of the same {count} bytes"
-    said = f"In {row['storage']}, {where}, {row['encoding']} is {gain:.0f} dB better"
+    said = f"In {row['storage']}, of the same {best['bytes']} bytes, {row['encoding']} is {gain:.0f} dB better"
     return f"{said} (mean {degrees(row['angle_mean_deg'])}), and {free}."
 
 

@@ -30,6 +30,8 @@ WORTH_DB = 3.0
 READERS = 4
 # A code has a hole where its largest angle is more than so many times the least of those that qualify.
 HOLE = 4.0
+# A texel of an environment map of 1024 x 512, in degrees: it does not show what moves a reflection by less.
+TEXEL_DEG = 360 / 1024
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +74,10 @@ class PickOptions(Reading):
         int, Option("--readers", "Passes that decode: light, reflections, occlusion, denoiser. Encoding counts once.")
     ] = READERS
     worth: Annotated[float, Option("--worth", "The decibels that a code must gain for twice the price.")] = WORTH_DB
+    enough: Annotated[
+        float,
+        Option("--enough", "Degrees that a mirror's reflection may move. Default: a texel of a 1k environment map."),
+    ] = TEXEL_DEG
     accept_holes: Annotated[
         bool, Option("--accept-holes", f"Take codes whose largest angle is over {HOLE:g} times the least.")
     ] = False
@@ -110,8 +116,9 @@ COLUMNS = (
     Column("scene", "The scenes that were rendered.", KEY),
     Column(
         "place",
-        "best: the answer. more exact, most exact, cheaper, fewer bits: the rungs above and below it. against: named "
-        "by --against. elsewhere: of another storage of the same bytes, where it is 6 dB better.",
+        "best: the answer. more exact, most exact, cheaper, fewer bits: the rungs above and below it. across an edge: "
+        "survives what --needs asks for there, too. plain channels: the first that is not packed. against: named by "
+        "--against. elsewhere: of another storage of the same bytes, where it is 6 dB better.",
         HOW,
     ),
     Column("front", "Whether no other code is as good in error, price and bits and better in one.", HOW, shown=False),
@@ -132,14 +139,28 @@ COLUMNS = (
         unit="degrees",
         better="less",
     ),
+    Column(
+        "angle_axes_deg",
+        "Largest angle of axis-aligned normals: floors and walls. Of codes with a place.",
+        unit="degrees",
+        better="less",
+        drops=5,
+    ),
     Column("worst_normal", "The normal that came back farthest off: x, y and z.", Role.RAW, shown=False),
     Column(
         "image_db_*",
         "PSNR of the displayed image of that scene at that specular power, against 32-bit normals, over covered "
-        "pixels. Of codes with a place; with --aim image of all that qualify.",
+        "pixels whose normals the encoding is made for. Of codes with a place; with --aim image of all that qualify.",
         unit="dB",
         better="more",
         drops=6,
+    ),
+    Column(
+        "image_lost_percent",
+        "The share of covered pixels, in the scene with most of them, whose normals the encoding is not made for.",
+        unit="%",
+        better="less",
+        shown=False,
     ),
     Column(
         "slots",
@@ -173,6 +194,7 @@ COLUMNS = (
     Column("aim", "What decides.", HOW),
     Column("readers", "The passes that decode.", HOW),
     Column("worth", "The decibels that a code must gain for twice the price.", HOW, "dB"),
+    Column("enough", "What a mirror's reflection may move by.", HOW, "degrees", shown=False),
     Column("accept_holes", "Whether codes with a hole may be the answer.", HOW, shown=False),
     Column("accept_lengths", "Whether codes whose decodes are not of length 1 may be the answer.", HOW, shown=False),
     Column("most_instructions", "The most issue slots that were allowed, encode and decode once.", HOW),
@@ -182,7 +204,13 @@ COLUMNS = (
     Column("mixed_across", "What it does to the code across an edge, where that is garbage.", HOW),
     Column("against", "Whether the code was named by --against.", HOW, shown=False),
     Column("beside", "Whether it is of another storage of the same bytes.", HOW, shown=False),
-    Column("same_target", "Whether that is packed into the texel that was asked for.", HOW, shown=False),
+    Column("packed", "Whether it is packed into the texel that was asked for.", HOW, shown=False),
+    Column(
+        "code_bits",
+        "The logarithm to base 2 of how many codes it has, where no storage gives it more.",
+        HOW,
+        shown=False,
+    ),
     Column("bytes", "Bytes of the texel that was asked for.", HOW, shown=False),
     Column("count", "How many normals were measured.", HOW),
     shared.CODE_SPACE,

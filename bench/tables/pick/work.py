@@ -33,7 +33,7 @@ from .sentences import sentences
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
-MOST_READERS, MOST_WORTH = 64, 100.0
+MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
 # By the domain that is asked for, the set that is measured.
 SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}
 # What people see of the front.
@@ -93,10 +93,15 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
     """The storages of each question, by what was asked for. Raises UsageError."""
     if options.bytes is None:
-        return {storage.name: [storage] for storage in storages_named(options.storage)}
+        return {storage.name: [storage, *_packings(storage)] for storage in storages_named(options.storage)}
     sizes = sorted({storage.texel_bytes for storage in STORAGES.values()})
     chosen = pick("number of bytes", options.bytes, {str(size): size for size in sizes})
     return {f"{size} bytes": [one for one in STORAGES.values() if one.texel_bytes == size] for size in chosen}
+
+
+def _packings(storage: Storage) -> list[Storage]:
+    """The storages that lie packed in a texel of this one."""
+    return [one for one in STORAGES.values() if one.is_packed and one.target == storage and one != storage]
 
 
 def _names(asked: Mapping[str, Sequence[Storage]]) -> list[str]:
@@ -108,16 +113,14 @@ def _compared(
 ) -> Iterator[tuple[Codec, Row]]:
     """The codecs of a question and what their rows say: those asked for, then those of other storages of as many bytes
     where one storage was asked for."""
-    about: Row = {"asked": name, "bytes": storages[0].texel_bytes, "beside": False, "same_target": False}
-    yield from ((codec, about) for codec in fit if codec.storage in storages)
-    if len(storages) > 1:
-        return
-    (storage,) = storages
-    for other in STORAGES.values():
-        if other.texel_bytes == storage.texel_bytes and other != storage:
-            same = other.target == storage.target
-            codecs = (Codec(encoding, other) for encoding in encodings)
-            yield from ((one, about | {"beside": True, "same_target": same}) for one in codecs if one.fits)
+    size, is_one = storages[0].texel_bytes, storages[0].name == name
+    about: Row = {"asked": name, "bytes": size, "beside": False, "packed": False}
+    for codec in fit:
+        if codec.storage in storages:
+            yield codec, about | {"packed": is_one and codec.storage.name != name}
+    others = [one for one in STORAGES.values() if one.texel_bytes == size and one not in storages] if is_one else []
+    codecs = (Codec(encoding, other) for other in others for encoding in encodings)
+    yield from ((codec, about | {"beside": True}) for codec in codecs if codec.fits)
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
@@ -142,7 +145,9 @@ def _question(options: PickOptions) -> Row:
     aim, family = pick_one("aim", options.aim, {name: name for name in AIMS}), ",".join(dict.fromkeys(chosen))
     uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
     said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
-    said |= {"readers": options.readers, "worth": options.worth}
+    if not 0 <= options.enough <= MOST_ENOUGH:
+        raise UsageError(f"--enough {options.enough:g}: 0 to {MOST_ENOUGH:g} degrees")
+    said |= {"readers": options.readers, "worth": options.worth, "enough": options.enough}
     said |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
     return said | {"mixing": ",".join(uses) if uses else None}
 

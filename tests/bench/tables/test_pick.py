@@ -54,31 +54,34 @@ def loss(row: dict, aim: str) -> float:
 
 
 def paid(row: dict) -> float:
-    return max(row["slots"], 16 * (1 + row["readers"]))
+    return max(row["encode_slots"], 16) + row["readers"] * max(row["decode_slots"], 16)
 
 
 def rank(row: dict) -> tuple:
     """Codes that nobody sees an error of and that cost at most twice what hides, the cheapest first; then by decibels,
     a doubling of the price for `worth` of them."""
     price, largest = paid(row), max(row["angle_max_deg"], row["angle_sup_deg"] or 0)
-    hidden, lost, enough = 16 * (1 + row["readers"]), loss(row, row["aim"]), 2 * largest <= 360 / 1024
+    hidden, lost, enough = 16 * (1 + row["readers"]), loss(row, row["aim"]), 2 * largest <= row["enough"]
     if row["aim"] == "cost":
         return (price, not enough, lost)
     if enough and price <= 2 * hidden:
-        return (0, row["table"], round(2 * math.log2(price / hidden)), row["bits"], round(lost, 1))
+        return (0, row["table"], row["bits"], round(2 * math.log2(price / hidden)), round(lost, 1))
     return (1, round(2 * (lost + row["worth"] * math.log2(price / hidden))), price, lost)
 
 
-def qualifies(row: dict, asked: dict) -> bool:
+def could_be_asked_for(row: dict, asked: dict) -> bool:
     fits = {None: row["lost_percent"] == 0, "sphere": row["domain"] == "sphere"}
     fits |= {"hemisphere": row["domain"] != "view", "view": row["domain"] != "hemisphere"}
+    return fits[asked["needs"]] and (asked["accept_lengths"] or row["length_share"] <= 0.1)
+
+
+def qualifies(row: dict, asked: dict) -> bool:
     most = asked["most_instructions"]
-    is_cheap = most is None or row["slots_once"] <= most
-    is_unit = asked["accept_lengths"] or row["length_share"] <= 0.1
-    return fits[asked["needs"]] and is_cheap and is_unit and loss(row, asked["aim"]) < math.inf
+    return (most is None or row["slots_once"] <= most) and loss(row, asked["aim"]) < math.inf
 
 
 def without_holes(rows: list[dict], asked: dict) -> list[dict]:
+    """Against the least of all that could be asked for, whatever they cost."""
     largest = {row["encoding"]: max(row["angle_max_deg"], row["angle_sup_deg"] or 0) for row in rows}
     most = math.inf if asked["accept_holes"] else 4 * min(largest.values(), default=0)
     return [row for row in rows if largest[row["encoding"]] <= most]
@@ -113,13 +116,14 @@ def test_the_answer_to_300_random_questions_is_that_of_brute_force(rows):
 
 
 def check(group: list[dict], asked: dict) -> None:
-    fit = without_holes([row for row in group if qualifies(row, asked)], asked)
+    fit = without_holes([row for row in group if could_be_asked_for(row, asked)], asked)
+    fit = [row for row in fit if qualifies(row, asked)]
     assert {row["encoding"] for row in group if not row["left_out"]} == {row["encoding"] for row in fit}, asked
     best = [row["encoding"] for row in group if "best" in (row["place"] or "").split(", ")]
     least = min(map(rank, fit), default=None)
     assert len(best) == bool(fit) and all(rank(row) == least for row in fit if row["encoding"] in best), (asked, best)
     for row in fit:
-        figures = {one["encoding"]: (loss(one, asked["aim"]), paid(one), one["bits"]) for one in fit}
+        figures = {one["encoding"]: (round(loss(one, asked["aim"]), 1), paid(one), one["bits"]) for one in fit}
         own = figures[row["encoding"]]
         beaten = [name for name, other in figures.items() if other != own and all(map(le, other, own))]
         assert row["front"] == (not beaten), (asked, row["encoding"], beaten)
@@ -146,8 +150,8 @@ def test_the_sentences_say_the_rows_figures(rows):
         assert answer.startswith(f"{best['storage']}, on sphere: take {best['encoding']}."), answer
         largest, mean = max(best["angle_max_deg"], best["angle_sup_deg"]), best["angle_mean_deg"]
         assert f"mean error is {mean:.3g}°, its largest {largest:.3g}°" in first, first
-        if 2 * largest > 360 / 1024:
-            assert f"{2 * mean * 1024 / 360:.1f} and {2 * largest * 1024 / 360:.1f} texels of a 1k" in first, first
+        assert f"{2 * mean * 1024 / 360:.2g} and {2 * largest * 1024 / 360:.2g} texels of a 1k" in first, first
+        assert f"Floors and walls come back up to {best['angle_axes_deg']:.3g}° off" in first, first
         said = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode on navi21"
         assert said in second and f"{best['bits']} bits" in second, second
         lost = "xy, hemi_octahedral (loss of normals that point away (z < 0): 50 % of these)"
@@ -166,9 +170,14 @@ EXPECTED = {
     "--storage rg16_snorm": ("octahedral", ""),
     "--storage rg16_snorm --aim image": ("octahedral", ""),
     "--storage rg16f": ("octahedral", "In rg16, of the same 4 bytes, octahedral is 21 dB better"),
-    "--storage rgba8": ("best_fit", "In rgb8_12_12, packed into the same texel, octahedral is"),
+    "--storage rgba8": ("octahedral in rgb8_12_12", "In plain channels: best_fit, "),
     "--storage rg8 --domain hemisphere": ("hemi_octahedral", ""),
     "--bytes 2": ("octahedral in rg8", ""),
+    "--bytes 4": ("octahedral in rgb8_12_12", "More exact: octahedral in rg16, 24.1 dB better"),
+    "--storage rg8 --most-instructions 10": (
+        "",
+        "no code qualifies (at most 10 issue slots). - The nearest is octahedral,",
+    ),
 }
 
 
@@ -180,9 +189,8 @@ FIRST, *OTHERS = EXPECTED
 def test_the_answer_is_what_an_expert_expects(run, words):
     code, more = EXPECTED[words]
     status, out, err = run("pick", *words.split(), "--format", "markdown")
-    assert status == 0, err
     first, text = out.splitlines()[0], " ".join(out.split())
-    assert f": take {code}" in first and more in text, text
+    assert status == (not code) and (f": take {code}" in first) == bool(code) and more in text, err + text
 
 
 @pytest.mark.slow
@@ -216,6 +224,7 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         (("--most-instructions", "-1"), "--most-instructions -1: from 0 to 1000000"),
         (("--readers", "65"), "--readers 65: from 0 to 64"),
         (("--worth", "0"), "--worth 0: above 0 to 100 decibels"),
+        (("--enough", "-1"), "--enough -1: 0 to 360 degrees"),
         (("--bytes", "3"), "unknown number of bytes '3'; known: all, 2, 4, 8, 16"),
         (("--encoding", "xyz", "--storage", "rg8"), "xyz: 3 components, but RG8 has 2 channels"),
     ],
@@ -239,13 +248,13 @@ def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch,
 
     words = ("pick", "--encoding", "octahedral,xy_sign", "--storage", "rg8", "--count", "4096")
     first = run(*words)[1]
-    assert measured[:2] == ["octahedral/rg8", "xy_sign/rg8"] and measured[2:] == [
-        "octahedral/rg8_snorm",
-        "xy_sign/rg8_snorm",
+    once = len(measured)
+    assert measured[:4] == [
+        f"{name}/{storage}" for storage in ("rg8", "rg8_snorm") for name in ("octahedral", "xy_sign")
     ]
-    assert run(*words)[1] == first and len(measured) == 4
+    assert run(*words)[1] == first and len(measured) == once
     run(*words[:-1], "8192")
-    assert len(measured) == 8 and cache.folder().is_relative_to(tmp_path)
+    assert len(measured) == once + 4 and cache.folder().is_relative_to(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["octahedral/rg8", "per_pixel_view/rg8", "octahedral_precise/rgb10a2", "xyz/rgb10a2"])
