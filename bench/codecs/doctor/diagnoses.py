@@ -16,7 +16,7 @@ from .between import MOST, SAME_DEG, axes_of, step_between
 from .domains import HALVES, HEMISPHERE, SPHERE, Domain, asked, guessed
 from .halves import Sides, lost, unread, unused
 from .likeness import likeness
-from .probe import Probe, Trip, directions, trip_of
+from .probe import Probe, Trip, circles, directions, trip_of
 
 # This near directions come back nearly: a scale that is a few hundredths off.
 NEARLY_DEG = 10.0
@@ -43,7 +43,7 @@ class Diagnosis:
 
 def bad(probe: Probe, domain: Domain) -> np.ndarray:
     """The directions of a domain that come back elsewhere, (count, 3): what a picture of the sphere is marked with."""
-    held = domain.held(trip_of(probe, directions()))
+    held = domain.held(trip_of(probe, np.concatenate([directions(), circles()])))
     return held.n[held.angles() > exact.unusual(held)]
 
 
@@ -101,8 +101,10 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
     """Of directions that come back."""
-    found = nearly.mistakes(held, probe) if np.median(held.angles()) > EXACT_DEG else ()
-    return [*found, *exact.seam(held, probe), *exact.poles(held), *exact.lengths(held)]
+    found = list(nearly.mistakes(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
+    # What is scaled or shifted is far off where the map is steep, which says nothing more.
+    seams = [] if found else [*exact.seam(held, probe), *exact.poles(held)]
+    return [*found, *seams, *exact.lengths(held)]
 
 
 def _half(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:

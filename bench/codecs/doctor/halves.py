@@ -26,8 +26,8 @@ RINGS, SECTORS = 16, 48
 ACROSS = {2: 128, 3: 32}
 # How much of the square a code must use: a disc is 0.785 of it, the diamond of a map without its fold 0.5.
 LEAST_USED = 0.6
-# Cells across the square, which about 16 directions fall into each.
-CELLS = 16
+# Cells across the square, which about 16 directions fall into each, and the share of them that lies on a rim at most.
+CELLS, RIM_OF_CELLS = 16, 0.15
 
 
 def square(size: int) -> np.ndarray:
@@ -90,11 +90,11 @@ def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
 
 def unused(trip: Trip, probe: Probe) -> Iterator[str]:
     """The share of the square that no direction is given, of codes of two numbers that come back."""
-    if probe.size != 2:
+    cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
+    # Cells at the rim count whole. Where most are used nothing is wasted, and encode is not asked for more.
+    if probe.size != 2 or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:
         return
     codes = square(2)
     own = np.abs(codes - probe.encode(unit(probe.decode(codes)))).max(axis=1) < SAME_CODE
-    cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
-    # Codes that are counts of something come back as others; their cells tell that they are all used.
-    if own.mean() < LEAST_USED and len(cells) / CELLS**2 < LEAST_USED + 0.15:
+    if own.mean() < LEAST_USED:
         yield f"codes use {100 * own.mean():.0f} % of the square that the storage spends bits on"

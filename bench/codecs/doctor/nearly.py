@@ -17,11 +17,13 @@ from .probe import Probe, Trip, unit
 # Of a finite difference; of float32's digits it leaves half.
 STEP = 1e-3
 # How many steps of Newton's method.
-ROUNDS = 2
+ROUNDS = 3
 # Of the scales that are tried: the farthest from 1, how many, and on how many directions.
 FARTHEST, SCALES, FEW = 4.0, 33, 256
 # Of a line: how often it is drawn, of what share of the nearest, through how many, and over which range at least.
 FITTINGS, KEPT, LEAST_COUNT, LEAST_SPREAD = 3, 0.9, 16, 0.1
+# Scales this near are not told apart; and how near to a fraction, of its distance from 1, a scale is it.
+UNTOLD, OF_A_FRACTION = 1e-7, 0.003
 # By how much a mistake that is named makes the error smaller at least.
 FEWER = 8.0
 # The sizes of steps that codes may be rounded to.
@@ -178,11 +180,12 @@ def _scale_said(scale: np.ndarray) -> str:
 
 def _fraction(scale: float) -> str:
     """A scale as a fraction of the integers that stand for 1, where it is one: 254/255."""
-    for steps in (one for bits in BITS for one in (2**bits - 1, 2**bits, 2**bits - 2, 2 ** (bits - 1) - 1)):
-        for shown, value in ((f"{steps - 1}/{steps}", 1 - 1 / steps), (f"{steps}/{steps - 1}", steps / (steps - 1))):
-            if abs(scale - value) < 0.003 * abs(value - 1) + 1e-8:
-                return shown
-    return f"{scale:.6g}"
+    fractions = {}
+    for steps in (one for bits in BITS for one in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
+        fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
+    # Of two that float32 does not tell apart the first, whose integers stand for 1.
+    said, value = min(fractions.items(), key=lambda one: round(abs(one[1] - scale) / UNTOLD))
+    return said if abs(value - scale) < OF_A_FRACTION * abs(value - 1) else f"{scale:.5g}"
 
 
 def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:

@@ -20,6 +20,8 @@ from ...metrics.angles import angles_deg
 # The view-space position that every direction is seen at.
 VIEW = (0.1, -0.2, -1.0)
 RANDOM = 4096
+# How many directions lie on a circle.
+AROUND = 96
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,14 @@ def directions() -> np.ndarray:
     diagonals = [d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(d)]
     random = np.random.default_rng(0).normal(size=(RANDOM, 3))
     return unit(np.concatenate([axes, diagonals, random])).astype(np.float32)
+
+
+def circles() -> np.ndarray:
+    """Directions in which a number is exactly 0, all around: float32 of shape (count, 3)."""
+    turn = np.arange(AROUND) * (2 * np.pi / AROUND)
+    return np.concatenate(
+        [np.insert(np.stack([np.cos(turn), np.sin(turn)], axis=1), axis, 0.0, axis=1) for axis in range(3)]
+    ).astype(np.float32)
 
 
 def unit(v: np.ndarray) -> np.ndarray:
