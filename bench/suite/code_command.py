@@ -6,6 +6,7 @@ import re
 import shlex
 import tempfile
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -88,7 +89,8 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
     status = 0
     # Measured once, and only where something is written.
     said = cache(partial(figures, codec))
-    made = [(code, verified(code)) for code in _all_made([codec], languages, prefix)]
+    own = replace(codec, encoding=codec.encoding.own or codec.encoding)
+    made = [(code, verified(code)) for code in _all_made([own], languages, prefix)]
     for code, row in made:
         language = code.language
         if why := _why_not(code, row, made):
@@ -99,7 +101,7 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
             tell(f"{codec.name} in {language}: {row['says']}")
         if code.interface.tables and output is None:
             raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
-        _save(code, head(code, _command(codec, language, prefix), row["says"], said()), output)
+        _save(code, head(code, codec, _command(codec, language, prefix), row["says"], said()), output)
     return status
 
 

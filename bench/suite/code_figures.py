@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import AXES, Encoding
 from ..code.emit import LANGUAGES
 from ..code.files import Code
 from ..code.verify import is_catalogues
@@ -42,16 +43,17 @@ ADVICE: Mapping[str, str] = MappingProxyType(
 )
 
 
-def head(code: Code, command: str, verified: str, said: Sequence[str]) -> list[str]:
+def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[str]) -> list[str]:
     """The paragraphs above a file's functions.
 
     Args:
         code: what the file holds.
+        codec: what was measured; of a code for another half than z >= 0 in other axes than the file's.
         command: what made it.
         verified: how its results compare with the catalogue's.
         said: its codec's figures, see `figures`.
     """
-    codec, encoding = code.codec, code.codec.encoding
+    encoding = codec.encoding
     compared = (
         verified.replace("texels are equal", "texels are the catalogue's") if is_catalogues(encoding) else verified
     )
@@ -65,14 +67,22 @@ def head(code: Code, command: str, verified: str, said: Sequence[str]) -> list[s
         f"{code.prefix}_from_target. {ADVICE[code.language]}",
         "",
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
-        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. "
-        f"Normals: {HOLDS[encoding.domain]}.",
+        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. Normals: {_held(encoding)}.",
         *said,
         *tables,
         f"Verified: {compared}.",
         f"Made by normalbench {version('normalbench')}: {command}",
         _licence(codec),
     ]
+
+
+def _held(encoding: Encoding) -> str:
+    """The normals that a file's functions take."""
+    if encoding.own is None:
+        return HOLDS[encoding.domain]
+    # The component that the turn makes a table's z.
+    half = AXES[encoding.axis][1][-1]
+    return f"unit vectors with {half} {'>=' if encoding.sign > 0 else '<='} 0"
 
 
 def _licence(codec: Codec) -> str:

@@ -86,6 +86,7 @@ class Encoding:
         source: the user's file that its GLSL was translated from; None where the GLSL was written.
         before: the codec that normals have been through when they are encoded; None where it is given them as they are.
         is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
+        own: the same in its author's axes, of a code for another half than z >= 0, which tables turn.
     """
 
     name: str
@@ -113,6 +114,7 @@ class Encoding:
     source: Path | None = None
     before: Any = None
     is_unit: bool = False
+    own: Encoding | None = None
 
     @property
     def twin(self) -> Path:

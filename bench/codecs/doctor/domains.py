@@ -68,7 +68,7 @@ class Domain:
         made = replace(encoding, domain=self.name or SPHERE.name)
         # Where z becomes its y, components move one place back: by the turn whose pole is x.
         turn = {0: "y", 1: "x", 2: "z"}[self.axis]
-        return made.turned(turn, self.side) if self.is_turned else made
+        return replace(made.turned(turn, self.side), own=made) if self.is_turned else made
 
 
 # How far from the rim of a hemisphere its other half begins.

@@ -129,6 +129,18 @@ def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
     assert means["z >= 0"] == pytest.approx(0.239, abs=0.003)
 
 
+@pytest.mark.parametrize("half", ["y >= 0", "z <= 0"])
+def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
+    """What is written for an engine has the axes of the engine's file, though tables turn it."""
+    (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+    status, out, _ = run("code", "dir.glsl", "--storage", "rg8", "--to", "glsl")
+    assert status == 0 and f"Normals: unit vectors with {half}." in out
+    (tmp_path / "written.glsl").write_text(out)
+    found = first_look(tmp_path / "written.glsl")
+    axis, side = found.get("half", (2, 1))
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and found["wrong"] == []
+
+
 def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
     (tmp_path / "dir.glsl").write_text(design("xy", "z >= 0"))
     assert run("doctor", "dir.glsl")[0] == run("doctor", "dir.glsl", "--domain", "hemisphere")[0] == 0
