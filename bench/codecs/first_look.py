@@ -38,7 +38,7 @@ from ..output.errors import MissingError, UsageError
 from .doctor import folds
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import Domain, guessed
-from .doctor.exact import SAME_DEG, is_unit
+from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit
 from .doctor.likeness import likeness
 from .doctor.probe import VIEW, Probe, Trip, directions, probe_of, trip_of
 from .names import check_twin
@@ -87,10 +87,12 @@ def _is_unit(probe: Probe) -> bool:
     codes = probe.encode(n)
     if is_unit(codes):
         return True
-    trip = Trip(n, np.broadcast_to(np.array(VIEW, np.float32), n.shape), codes, probe.decode(codes))
+    # As an unsigned storage clips them.
+    back = probe.decode(np.clip(codes, 0, 1))
+    trip = Trip(n, np.broadcast_to(np.array(VIEW, np.float32), n.shape), codes, back)
     with np.errstate(invalid="ignore"):
         domain = guessed(trip, SAME_DEG)
-    return bool(domain.name) and is_unit(domain.held(trip).codes)
+    return bool(domain.name) and is_unit(domain.held(trip).codes, OF_A_HALF)
 
 
 def _second_look(path: Path, gl: Device, encoding: Encoding) -> dict[str, Any]:
@@ -132,7 +134,7 @@ def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
 
 
 def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
-    return {"like": likeness(gl, probe, domain).shared, "bad": bad(probe, domain)[:MOST_BAD].tolist()}
+    return {"like": likeness(gl, probe, domain).shared(domain.name), "bad": bad(probe, domain)[:MOST_BAD].tolist()}
 
 
 def twin_look(path: Path) -> dict[str, Any]:

@@ -176,7 +176,7 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
     if scaled := list(nearly.mistakes(held, probe, nearly.start(held, probe))):
         return scaled[0]
     like = likeness(gl, probe, likely)
-    if like.encoder and like.decoder and not like.shared:
+    if like.encoder and like.decoder and not like.shared():
         return f"encode is that of {like.encoder[0]}, decode that of {like.decoder[0]}"
     if like.encoder and not like.decoder:
         return f"encode is that of {like.encoder[0]}, whose decode makes a pair with it; decode is of no encoding known"

@@ -21,6 +21,8 @@ USED, BEYOND = 0.8, 1e-3
 # How much of [0, 1] the codes of some thousand directions fill at least, how far half a step or a wrong scale leads
 # beyond, the share that roundings next to a pole may lead farther, and how far.
 NEARLY_FULL, ROUNDED, NEXT_TO_A_POLE, FARTHER = 0.9, 5e-3, 0.01, 0.1
+# And those of a half, which a code with room for more gives less: they lie around the middle of [0, 1].
+OF_A_HALF = 0.5
 # How far a decode's length may be from 1.
 LENGTH = 0.01
 # Of a direction's distance from a pole: how far off it may come back. Beside the pole by this angle.
@@ -32,15 +34,15 @@ BESIDE, TRIES = 1e-4, 4
 CLIPPED = "storages clip what is beyond [-1, 1]"
 
 
-def is_unit(codes: np.ndarray) -> bool:
-    """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills it.
+def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
+    """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills a share of it.
 
     Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
     """
     low, high = codes.min(axis=0), codes.max(axis=0)
     beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
     is_in = (beyond.mean(axis=0) < NEXT_TO_A_POLE) & (low > -FARTHER) & (high < 1 + FARTHER)
-    fills = (high - low > NEARLY_FULL) | (high == low)
+    fills = (high - low > share) | (high == low)
     return bool(is_in.all() and fills.all() and (high > low).any())
 
 

@@ -12,7 +12,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.gl.device import Device
 from ...metrics.angles import angles_deg
 from .between import NOTHING, RANGES, SAME_DEG, TURNS, Step, decoded_after
-from .domains import Domain
+from .domains import SPHERE, Domain
 from .folds import frames
 from .probe import Probe, directions, probe_of, trip_of
 
@@ -33,12 +33,10 @@ class Likeness:
     encoder: tuple[str, ...]
     decoder: tuple[str, ...]
 
-    @property
-    def shared(self) -> str:
-        """The encoding that both are, or that the one is where the other is none; empty where there is none."""
+    def shared(self, domain: str = "") -> str:
+        """The encoding that both are, of a domain if one is given; empty where there is none."""
         both = [name for name in self.encoder if name in self.decoder]
-        either = self.encoder or self.decoder if not (self.encoder and self.decoder) else ()
-        return next(iter(both or either), "")
+        return next((name for name in both if domain in ("", ENCODINGS[name].domain)), "")
 
 
 def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
@@ -47,15 +45,17 @@ def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
     matrices = np.stack([axes.matrix for axes in frames()[:AXES]])
     # Of shape (axes, count, 3): each direction in each axes.
     turned = np.einsum("aij,nj->ani", matrices, n).astype(np.float32)
-    codes = {e.name: _codes_of(gl, e, turned) for e in ENCODINGS.values() if _is_comparable(e, probe.size)}
+    comparable = [e for e in ENCODINGS.values() if _is_comparable(e, probe.size, domain)]
+    codes = {e.name: _codes_of(gl, e, turned) for e in comparable}
     own = probe.encode(n)
     encoder = tuple(name for name, its in codes.items() if _is_encoder(own, its, turned, ENCODINGS[name]))
     return Likeness(encoder, _decoders(probe, codes, turned))
 
 
-def _is_comparable(encoding: Encoding, size: int) -> bool:
-    """Whether an encoding has so many numbers, and a map of its own."""
-    return encoding.components + encoding.sign_bits == size and not encoding.is_precise
+def _is_comparable(encoding: Encoding, size: int, domain: Domain) -> bool:
+    """Whether an encoding has so many numbers and a map of its own, and holds a domain."""
+    is_alike = encoding.components + encoding.sign_bits == size and not encoding.is_precise
+    return is_alike and (encoding.domain == SPHERE.name or domain.name != SPHERE.name)
 
 
 def _codes_of(gl: Device, encoding: Encoding, turned: np.ndarray) -> np.ndarray:
@@ -89,9 +89,11 @@ def _decoders(probe: Probe, codes: Mapping[str, np.ndarray], turned: np.ndarray)
     changes = _changes(probe.size)
     made = []
     for name, its in codes.items():
-        back = decoded_after(probe, its[0], changes)
         held = _held(ENCODINGS[name], turned)
-        if any(_is_back(one, turned, held[0]) for one in back):
+        # In axes of which the encoding holds the directions.
+        at = int(np.argmax(held.sum(axis=1)))
+        back = decoded_after(probe, its[at], changes)
+        if held[at].any() and any(_is_back(one, turned, held[at]) for one in back):
             made.append(name)
     return tuple(made)
 

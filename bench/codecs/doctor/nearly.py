@@ -22,6 +22,8 @@ ROUNDS = 3
 FARTHEST, SCALES, FEW = 4.0, 33, 256
 # Of a line: how often it is drawn, of what share of the nearest, through how many, and over which range at least.
 FITTINGS, KEPT, LEAST_COUNT, LEAST_SPREAD = 3, 0.9, 16, 0.1
+# Of its distance from 1: how much scales of numbers may differ that are one.
+ALIKE = 0.02
 # Scales this near are not told apart; and how near to a fraction, of its distance from 1, a scale is it.
 UNTOLD, OF_A_FRACTION = 1e-7, 0.003
 # By how much a mistake that is named makes the error smaller at least.
@@ -158,7 +160,7 @@ def _said(fits: list[Fit], trip: Trip) -> Iterator[str]:
         size = "large" if shift.mean() > 0 else "small"
         yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added to what is rounded later?"
     else:
-        yield f"encode gives {_scale_said(scale)} the code that decode takes: {shown}"
+        yield f"encode gives {_scale_said(scale, shift)} the code that decode takes: {shown}"
 
 
 def _half_step(shift: np.ndarray, scale: np.ndarray) -> int:
@@ -172,10 +174,19 @@ def _half_step(shift: np.ndarray, scale: np.ndarray) -> int:
     return 0
 
 
-def _scale_said(scale: np.ndarray) -> str:
-    if np.ptp(scale) > 0.02 * np.abs(scale - 1).max():
-        return " and ".join(f"{one:.6g} times number {at + 1}" for at, one in enumerate(scale)) + " of"
-    return f"{_fraction(float(scale.mean()))} times"
+def _scale_said(scale: np.ndarray, shift: np.ndarray) -> str:
+    """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
+    if np.ptp(scale) <= ALIKE * np.abs(scale - 1).max():
+        return f"{_fraction(float(scale.mean()))} times"
+    off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
+    said = [f"{scale[at]:.3g} times number {at + 1}{_shift_said(scale[at], shift[at])}" for at in np.flatnonzero(off)]
+    return f"{' and '.join(said)} of"
+
+
+def _shift_said(scale: float, shift: float) -> str:
+    """A shift in words; empty where there is none, or where in [0, 1] there is none."""
+    is_told = min(abs(shift), abs(shift - (scale - 1))) > ALIKE * abs(scale - 1)
+    return f" {'plus' if shift > 0 else 'minus'} {abs(shift):.3g}" if is_told else ""
 
 
 def _fraction(scale: float) -> str:
@@ -211,8 +222,8 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
     # One step too many or too few from end to end.
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
     if (np.abs(np.abs(steps) - 1) < 0.2).all() and np.ptp(np.sign(steps)) == 0:
-        used, right = (lattice.steps - 1, lattice.steps) if steps.mean() > 0 else (lattice.steps, lattice.steps - 1)
-        yield f"encode gives {used}/{right} times the code that decode takes: {used} steps of {right}"
+        used = lattice.steps - 1 if steps.mean() > 0 else lattice.steps + 1
+        yield f"encode gives {used}/{lattice.steps} times the code that decode takes: it rounds to {used} steps"
 
 
 def _slope(x: np.ndarray, off: np.ndarray) -> float:

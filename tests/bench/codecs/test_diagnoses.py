@@ -64,6 +64,74 @@ vec3 mine_decode(vec2 e, vec3 view) { float d = 1.0 + dot(e, e); return vec3(2.0
 """
 
 
+# What a code is, its encode of n, and its decode of e.
+OF_THE_SPHERE = {
+    "three in [0, 1]": ("vec3", "return n * 0.5 + 0.5;", "return e * 2.0 - 1.0;"),
+    "three rounded to 5 bits": (
+        "vec3",
+        "return round((n * 0.5 + 0.5) * 31.0) / 31.0;",
+        "return normalize(e * 2.0 - 1.0);",
+    ),
+    "two angles in [0, 1]": (
+        "vec2",
+        f"return vec2(atan(n.y, n.x) / (2.0 * {PI}) + 0.5, acos(clamp(n.z, -1.0, 1.0)) / {PI});",
+        f"float a = (e.x - 0.5) * 2.0 * {PI}, t = e.y * {PI}; return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+    ),
+    # P. Lagarde's acos, a hundredth off.
+    "an approximated acos": (
+        "vec2",
+        f"float x = abs(n.z), r = (-0.156583 * x + 1.570796) * sqrt(1.0 - x); r = n.z >= 0.0 ? r : {PI} - r; "
+        f"return vec2(atan(n.y, n.x) / {PI}, r / {PI} * 2.0 - 1.0);",
+        f"float a = e.x * {PI}, t = (e.y * 0.5 + 0.5) * {PI}; return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+    ),
+    "two paraboloids": (
+        "vec3",
+        "return vec3(n.xy / (1.0 + abs(n.z)), n.z < 0.0 ? -1.0 : 1.0);",
+        "float d = dot(e.xy, e.xy); return vec3(2.0 * e.xy, (1.0 - d) * (e.z < 0.0 ? -1.0 : 1.0)) / (1.0 + d);",
+    ),
+    "two and a sign": (
+        "vec3",
+        "return vec3(n.xy, n.z < 0.0 ? -1.0 : 1.0);",
+        "return vec3(e.xy, sqrt(max(0.0, 1.0 - dot(e.xy, e.xy))) * e.z);",
+    ),
+    "an octant and two": (
+        "vec3",
+        "vec3 a = abs(n) / (abs(n.x) + abs(n.y) + abs(n.z)); "
+        "return vec3(a.xy, ((n.x < 0.0 ? 1.0 : 0.0) + (n.y < 0.0 ? 2.0 : 0.0) + (n.z < 0.0 ? 4.0 : 0.0)) / 7.0);",
+        "float o = floor(e.z * 7.0 + 0.5); vec3 a = vec3(e.xy, 1.0 - e.x - e.y); "
+        "return normalize(a * vec3(mod(o, 2.0) >= 1.0 ? -1 : 1, mod(o, 4.0) >= 2.0 ? -1 : 1, o >= 4.0 ? -1 : 1));",
+    ),
+    "cryengine": (
+        "vec2",
+        "return normalize(n.xy + vec2(1e-20)) * sqrt(n.z * 0.5 + 0.5);",
+        "float z = dot(e, e) * 2.0 - 1.0; return vec3(normalize(e + vec2(1e-20)) * sqrt(max(0.0, 1.0 - z * z)), z);",
+    ),
+}
+OF_A_HALF = {
+    "two of three in [0, 1]": (
+        "vec2",
+        "return n.xy * 0.5 + 0.5;",
+        "e = e * 2.0 - 1.0; return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))));",
+    ),
+    # With room for more than a half: what the half is given lies around the middle of [0, 1].
+    "stereographic in [0, 1]": (
+        "vec2",
+        "return n.xy / (n.z + 1.0 + 1e-6) / 1.7777 * 0.5 + 0.5;",
+        "vec3 m = vec3((e * 2.0 - 1.0) * 1.7777, 1.0); float g = 2.0 / dot(m, m); return vec3(g * m.xy, g - 1.0);",
+    ),
+    "an equal-area disc of |z|": (
+        "vec2",
+        "return n.xy * inversesqrt(1.0 + abs(n.z));",
+        "float f = dot(e, e); return vec3(e * sqrt(max(0.0, 2.0 - f)), 1.0 - f);",
+    ),
+}
+
+
+def both(kind: str, encode: str, decode: str) -> str:
+    """Two functions of a code of a kind, by their bodies."""
+    return f"{kind} mine_encode(vec3 n) {{ {encode} }}\nvec3 mine_decode({kind} e) {{ {decode} }}\n"
+
+
 def octahedral(code="p", before="", result="normalize(n)") -> str:
     return (ENCODE + DECODE).replace("CODE", code).replace("BEFORE", before).replace("RESULT", result)
 
@@ -91,7 +159,7 @@ WRONG = {
     ),
     "a scale on one side": (
         HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1),
-        "and 0.98 times number 2 of the code",
+        "encode gives 0.98 times number 2 of the code",
     ),
     "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
     "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
@@ -118,6 +186,35 @@ WRONG = {
         "a seam: 84 of 4338 directions that were tried come back more than 1 degree off",
     ),
     "a number of nothing": (three(octahedral()), "number 3 of the code carries nothing: it is always 0"),
+    "an angle of half a turn": (
+        both(
+            "vec2",
+            f"return vec2(atan(n.y, n.x) / {PI}, acos(clamp(n.z, -1.0, 1.0)) / {PI} * 2.0 - 1.0);",
+            f"float a = e.x * {PI}, t = (e.y + 1.0) * {PI} / 4.0; "
+            "return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+        ),
+        "encode gives 0.5 times number 2 of the code that decode takes",
+    ),
+    "atan of one argument": (
+        both(
+            "vec2",
+            f"return vec2(atan(n.y / n.x) / {PI}, n.z);",
+            f"float a = e.x * {PI}, s = sqrt(max(0.0, 1.0 - e.y * e.y)); return vec3(cos(a) * s, sin(a) * s, e.y);",
+        ),
+        "encode loses directions with x < 0, which come back with x and y reversed",
+    ),
+    "a range of one number": (
+        octahedral("vec2(p.x * 0.5 + 0.5, p.y)"),
+        "encode gives 0.5 times number 1 plus 0.5 of the code that decode takes",
+    ),
+    "half of [0, 1]": (
+        both("vec3", "return n * 0.5 + 0.5;", "return normalize(e);"),
+        "c * 2 - 1 between the two makes one",
+    ),
+    "a step too many": (
+        octahedral("floor((p * 0.5 + 0.5) * 256.0) / 255.0 * 2.0 - 1.0"),
+        "encode gives 256/255 times the code that decode takes: it rounds to 256 steps",
+    ),
     "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "the pole +z loses its neighbourhood: directions 0.057"),
 }
 RIGHT = {
@@ -131,6 +228,8 @@ RIGHT = {
     "half an octahedron": (HALF, "hemisphere"),
     "an equal-area disc": (DISC, "hemisphere"),
     "stereographic": (STEREO, "hemisphere"),
+    **{name: (both(*parts), "sphere") for name, parts in OF_THE_SPHERE.items()},
+    **{name: (both(*parts), "hemisphere") for name, parts in OF_A_HALF.items()},
 }
 
 
@@ -153,7 +252,8 @@ def test_what_is_wrong_is_named_first(tmp_path, what):
 @pytest.mark.parametrize("what", RIGHT)
 def test_of_a_right_encoder_nothing_is_said(tmp_path, what):
     text, domain = RIGHT[what]
-    assert looked_at(tmp_path, text) == {"domain": domain, "wrong": []}
+    found = looked_at(tmp_path, text)
+    assert (found["domain"], found["wrong"]) == (domain, []) and "half" not in found
 
 
 @pytest.mark.parametrize("name", ENCODINGS)
