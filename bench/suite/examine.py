@@ -57,9 +57,10 @@ def examine_encoding(
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
     worse = _compared(found, codec) if found.is_measurable and not codec.misfit else []
-    wrong = [*found.wrong, *worse]
+    # What is wasted is meant where the domain is; it is said all the same.
+    wrong, notes = ([*found.wrong], [*worse, *found.notes]) if domain else ([*found.wrong, *worse], found.notes)
     about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found)}
-    write([about | {"finding": line} for line in [*wrong, *found.notes] or ["nothing is likely wrong"]], format, output)
+    write([about | {"finding": line} for line in [*wrong, *notes] or ["nothing is likely wrong"]], format, output)
     if plot and found.is_measurable:
         save_plot(plot, _picture(codec, found))
         tell(f"the error over the sphere is in {plot}")

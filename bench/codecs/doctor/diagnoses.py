@@ -114,12 +114,13 @@ def _half(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
     if not sides.encoder_knows and not sides.decoder_reaches:
         return
     if mistakes := folds.mistakes(probe):
-        yield from (f"{said}: directions with {half.lost_text} are lost, {gone.worst}" for said in mistakes)
+        which = f"{sides.share}directions with {half.lost_text}"
+        yield from (f"{said}: {which} are lost, {gone.worst}" for said in mistakes)
     elif line := lost(sides, half):
         why = "; ".join([*unread(probe, trip.codes), line])
         yield f"{why}; {gone.worst}"
     else:
-        yield _elsewhere(half, gone)
+        yield _elsewhere(half, half.lost(trip))
 
 
 def _elsewhere(half: Domain, gone: Trip) -> str:

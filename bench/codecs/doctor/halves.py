@@ -20,6 +20,8 @@ from .probe import Probe, Trip, unit
 SAME_CODE = 4e-3
 # Of the directions of a half that have codes of their own, and of a half that is reached: which is most of it.
 MOST_OF_IT = 0.5
+# Of a half that is lost whole, but for what lies on its rim.
+NEARLY_ALL = 0.95
 # Rings of equal area of a half, and sectors of each.
 RINGS, SECTORS = 16, 48
 # Points across a square of codes, and across a cube.
@@ -41,6 +43,7 @@ class Sides:
 
     Attributes:
         gone: these directions; those of the other half that come back all the same are none.
+        share: in words, how many of the other half they are, where they are not nearly all.
         encoder_knows: whether they have codes of their own.
         decoder_reaches: whether codes of the square decode to most of them.
     """
@@ -48,11 +51,13 @@ class Sides:
     def __init__(self, trip: Trip, probe: Probe, half: Domain):
         lost = half.lost(trip)
         self.gone = lost.of(lost.angles() > SAME_DEG)
+        count, among = len(self.gone.n), len(lost.n)
+        self.share = f"{count} of {among} " if count < NEARLY_ALL * among else ""
         codes, back = np.clip(self.gone.codes, -1, 1), probe.encode(unit(self.gone.decoded))
         own = (np.abs(codes - np.clip(back, -1, 1)) > SAME_CODE).any(axis=1)
-        self.encoder_knows = bool(own.mean() > MOST_OF_IT)
+        self.encoder_knows = bool(own.sum() > MOST_OF_IT * count)
         reached = _cells(unit(probe.decode(square(probe.size))), half)
-        self.decoder_reaches = bool(np.isin(_cells(self.gone.n, half), reached).mean() > MOST_OF_IT)
+        self.decoder_reaches = bool(np.isin(_cells(self.gone.n, half), reached).sum() > MOST_OF_IT * count)
 
 
 def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
@@ -67,7 +72,7 @@ def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
 def lost(sides: Sides, half: Domain) -> str:
     """Which function loses the half that a hemisphere lacks, in a line; empty where both have it, or neither."""
     axes = axes_of(sides.gone)
-    which = f"directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
+    which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:
         return f"decode loses {which}: encode gives them codes of their own, and no code decodes to most of them"
     if sides.decoder_reaches and not sides.encoder_knows:

@@ -1,6 +1,7 @@
 """A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
 
 import json
+import re
 
 import pytest
 
@@ -146,6 +147,22 @@ def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
     assert run("doctor", "dir.glsl")[0] == run("doctor", "dir.glsl", "--domain", "hemisphere")[0] == 0
     status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
     assert status == 1 and "directions with z <= 0 come back with z reversed" in out
+
+
+def test_directions_that_are_lost_are_counted(run, tmp_path):
+    """Most of a half comes back as it was: how many do not, and how far at most, not what the median direction does."""
+    text = NO_FOLD.replace("return n.xy; }", "return n.z >= 0.0 ? n.xy : fold(n.xy); }")
+    wrong = text.replace("return normalize(n);", "if (n.z < -0.6) n.x += 0.3 * sign(n.x); return normalize(n);")
+    assert wrong != text
+    (tmp_path / "dir.glsl").write_text(wrong)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    (said, *_) = [row["finding"] for row in json.loads(out)]
+    found = re.fullmatch(
+        r"of directions with z < 0 (\d+) of (\d+) come back more than 1 degree off, up to ([\d.]+): .*", said
+    )
+    assert status == 1 and found, said
+    count, among, largest = map(float, found.groups())
+    assert 0.1 < count / among < 0.9 and 15 < largest < 40
 
 
 def test_a_square_that_is_half_used_is_a_finding(run, tmp_path):

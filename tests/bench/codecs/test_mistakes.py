@@ -4,6 +4,7 @@ Each program is a right text with one edit; see `mistakes`. What is measured is 
 that a mistake which changes no result, as `>` for `>=` in a fold, is none.
 """
 
+import json
 import re
 from pathlib import Path
 
@@ -62,6 +63,17 @@ def check(folder: Path, text: str, mistake: str, bits: int) -> None:
 @pytest.mark.parametrize("text, mistake, bits", QUICK)
 def test_a_mistake_is_named(tmp_path, text, mistake, bits):
     check(tmp_path, text, mistake, bits)
+
+
+@pytest.mark.parametrize("mistake", ["cut off", "half-step bias", "254 for 255"])
+@pytest.mark.parametrize("storage, bits", [("rg8", 8), ("rgb10a2", 10), ("rg16", 16)])
+def test_doctor_names_it_and_says_what_it_costs_in_a_storage(run, tmp_path, storage, bits, mistake):
+    (tmp_path / "mine.glsl").write_text(program("in [0, 1]", mistake, bits))
+    status, out, _ = run("doctor", str(tmp_path / "mine.glsl"), "--storage", storage, "--format", "json")
+    first, *rest = [row["finding"] for row in json.loads(out)]
+    assert status == 1 and re.search(said(mistake, bits), first), first
+    worse = [re.fullmatch(rf"in {storage} this is octahedral, (\d+) % worse: .*", line) for line in rest]
+    assert [40 < int(found[1]) < 150 for found in worse if found] == [True], rest
 
 
 @pytest.mark.nightly("bench/codecs/test_mistakes.py::test_a_mistake_is_named")
