@@ -125,7 +125,12 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
             ),
         ),
         "> for >=": Mistake(
-            "", _edit((">= 0.0", "> 0.0"), ("step(0.0, p) * 2.0 - 1.0", "1.0 - 2.0 * step(p, vec2(0.0))"))
+            "",
+            _edit(
+                (">= 0.0", "> 0.0"),
+                ("step(0.0, p) * 2.0 - 1.0", "1.0 - 2.0 * step(p, vec2(0.0))"),
+                (">= a.", "> a."),
+            ),
         ),
         ".xy for .yx": Mistake("its fold has .xy where .yx belongs", _edit(("abs(p.yx)", "abs(p.xy)"))),
         ".xy for .yx in decode": Mistake("its unfold has .xy where .yx belongs", _edit(("abs(e.yx)", "abs(e.xy)"))),
@@ -133,7 +138,9 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
         "abs missing in the sum": Mistake(
             r"abs\(\) is missing in \|x\| \+ \|y\| \+ \|z\|",
             _edit(
-                ("abs(n.x) + abs(n.y) + abs(n.z)", "abs(n.x) + n.y + abs(n.z)"), ("a.x + a.y + a.z", "a.x + n.y + a.z")
+                ("abs(n.x) + abs(n.y) + abs(n.z)", "abs(n.x) + n.y + abs(n.z)"),
+                ("a.x + a.y + a.z", "a.x + n.y + a.z"),
+                ("vec3 a = abs(n);\n    bool", "vec3 a = n;\n    bool"),
             ),
         ),
         "abs missing in decode": Mistake(

@@ -24,6 +24,8 @@ FARTHEST, SCALES, FEW = 4.0, 33, 256
 FITTINGS, KEPT, LEAST_COUNT, LEAST_SPREAD = 3, 0.9, 16, 0.1
 # Of its distance from 1: how much scales of numbers may differ that are one.
 ALIKE = 0.02
+# Of a shift: how much those of numbers may differ that are one, and of half a step, how near it must be to it.
+ALIKE_SHIFTS, NEAR_A_HALF = 0.1, 0.02
 # Scales this near are not told apart; and how near to a fraction, of its distance from 1, a scale is it.
 UNTOLD, OF_A_FRACTION = 1e-7, 0.003
 # By how much a mistake that is named makes the error smaller at least.
@@ -36,8 +38,9 @@ HALF_STEP, WHOLE = 0.08, 0.02
 
 @dataclass(frozen=True)
 class Fit:
-    """What the decoder wants in place of number c of a code: scale c + shift."""
+    """What the decoder wants in place of a number c of a code, counted from 1: scale c + shift."""
 
+    number: int
     scale: float
     shift: float
 
@@ -116,16 +119,17 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
     return made - (codes - at)
 
 
-def _line(x: np.ndarray, y: np.ndarray, scale: float) -> Fit:
+def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, scale: float) -> Fit:
     """A line through most of the wanted numbers, by least squares on what lies nearest, again and again."""
+    x, y = given[:, at], wanted_codes[:, at]
     kept, shift = np.isfinite(y) & (np.abs(y - scale * x) < 0.5), 0.0
     for _ in range(FITTINGS):
         if kept.sum() < LEAST_COUNT or np.ptp(x[kept]) < LEAST_SPREAD:
-            return Fit(1.0, 0.0)
+            return Fit(at + 1, 1.0, 0.0)
         scale, shift = np.polyfit(x[kept], y[kept], 1)
         off = np.abs(scale * x + shift - y)
         kept = kept & (off <= np.quantile(off[kept], KEPT))
-    return Fit(float(scale), float(shift))
+    return Fit(at + 1, float(scale), float(shift))
 
 
 def mistakes(trip: Trip, probe: Probe, scale: float = 1.0) -> Iterator[str]:
@@ -142,13 +146,12 @@ def mistakes(trip: Trip, probe: Probe, scale: float = 1.0) -> Iterator[str]:
     if lattice:
         yield from _of_lattice(x[:, moving], y[:, moving], lattice)
         return
-    fits = [_line(x[:, at], y[:, at], scale) for at in range(probe.size)]
-    better = trip.codes.copy()
-    for at in moving:
-        better[:, at] = x[:, at] * fits[at].scale + fits[at].shift
+    fits, better = [_fit(at, x, y, scale) for at in moving], trip.codes.copy()
+    for at, fit in zip(moving, fits, strict=True):
+        better[:, at] = x[:, at] * fit.scale + fit.shift
     after = Trip(trip.n, trip.view, better, probe.decode(better)).angles()
     if FEWER * np.median(after) < np.median(trip.angles()):
-        yield from _said([fits[at] for at in moving], trip)
+        yield from _said(fits, trip)
 
 
 def _said(fits: list[Fit], trip: Trip) -> Iterator[str]:
@@ -156,30 +159,36 @@ def _said(fits: list[Fit], trip: Trip) -> Iterator[str]:
     scale = np.array([1 / fit.scale for fit in fits])
     # Where c is 0, and where it is at its ends: a shift in [0, 1] is one of the scale, too.
     shift = np.array([-fit.shift / fit.scale for fit in fits])
-    if bits := _half_step(shift, scale):
+    if not _is_shift(scale, shift):
+        yield f"encode gives {_scale_said(fits, scale, shift)} the code that decode takes: {shown}"
+    elif bits := _half_step(float(shift.mean())):
         size = "large" if shift.mean() > 0 else "small"
         yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added to what is rounded later?"
     else:
-        yield f"encode gives {_scale_said(scale, shift)} the code that decode takes: {shown}"
+        yield f"encode gives the code that decode takes, plus {shift.mean():.3g}: {shown}"
 
 
-def _half_step(shift: np.ndarray, scale: np.ndarray) -> int:
+def _is_shift(scale: np.ndarray, shift: np.ndarray) -> bool:
+    """Whether all numbers are shifted by the same, and not scaled."""
+    most = ALIKE_SHIFTS * np.abs(shift).max()
+    return bool(np.ptp(shift) < most and np.abs(scale - 1).max() < most)
+
+
+def _half_step(shift: float) -> int:
     """The bits whose half step codes are shifted by; 0 where it is none."""
-    if np.ptp(shift) > 0.1 * np.abs(shift).max() or np.abs(scale - 1).max() > 0.1 * np.abs(shift).max():
-        return 0
-    for bits in BITS:
-        for steps in (2**bits - 1, 2**bits):
-            if abs(abs(shift.mean()) * steps - 1) < 0.02:
-                return bits
-    return 0
+    halves = ((bits, abs(shift) * steps) for bits in BITS for steps in (2**bits - 1, 2**bits))
+    return next((bits for bits, share in halves if abs(share - 1) < NEAR_A_HALF), 0)
 
 
-def _scale_said(scale: np.ndarray, shift: np.ndarray) -> str:
+def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray) -> str:
     """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
     if np.ptp(scale) <= ALIKE * np.abs(scale - 1).max():
         return f"{_fraction(float(scale.mean()))} times"
     off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
-    said = [f"{scale[at]:.3g} times number {at + 1}{_shift_said(scale[at], shift[at])}" for at in np.flatnonzero(off)]
+    said = [
+        f"{scale[at]:.3g} times number {fits[at].number}{_shift_said(scale[at], shift[at])}"
+        for at in np.flatnonzero(off)
+    ]
     return f"{' and '.join(said)} of"
 
 

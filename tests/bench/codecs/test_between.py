@@ -111,6 +111,11 @@ def test_signed_codes_cut_off_toward_0_are_named(tmp_path):
     assert "codes are cut off toward 0 to 8 bits, not rounded" in first
 
 
+def test_a_shift_that_is_no_half_step_is_said_as_it_is(tmp_path):
+    (first, *_) = findings(tmp_path, with_code("c * 0.9 + 0.03").replace("vec2 e) {", "vec2 e) { e = e / 0.9;"))
+    assert "encode gives the code that decode takes, plus 0.03" in first
+
+
 @pytest.mark.parametrize("scale, said", [(0.9, "0.9 times"), (0.99, "0.99 times"), (1 / 1.5, "0.66667 times")])
 def test_a_scale_is_named(tmp_path, scale, said):
     found = findings(tmp_path, with_code(f"c * {scale}"))
