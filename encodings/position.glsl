@@ -8,6 +8,14 @@ vec3 position_from_window_depth(vec2 place, float depth, vec2 clip, mat4 clip_to
     return p.xyz / p.w;
 }
 
+// From a depth buffer's depth by the two terms of the projection, as many engines compute it: clip-space z is
+// terms.x z + terms.y, with w = -z.
+vec3 position_from_projection_terms(vec2 place, float depth, vec2 clip, vec2 terms, vec2 rays) {
+    // ndc = (a z + b) / -z, so -z = b / (ndc + a)
+    float linear_depth = terms.y / (clip.x * depth + clip.y + terms.x);
+    return vec3(place * rays, -1.0) * linear_depth;
+}
+
 // From a linear depth, which is planar (-z): the eye's ray times the depth.
 vec3 position_from_linear_depth(vec2 place, float depth, vec2 rays) {
     // position = (place rays, -1) depth

@@ -1,6 +1,6 @@
-"""View-space positions from stored depths: by the inverse projection, and by the eye's ray.
+"""View-space positions from stored depths: by the inverse projection, by its two terms, and by the eye's ray.
 
-Both take the place on the screen, from -1 to 1 to the right and up. The GLSL twin of this file is `position.glsl`.
+All take the place on the screen, from -1 to 1 to the right and up. The GLSL twin of this file is `position.glsl`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,17 @@ from .vec import Vec2, Vec3, jnp
 
 
 class Seen(NamedTuple):
-    """What a shader knows of a camera and a projection, in float32: scalars, and `clip_to_view` of shape (4, 4)."""
+    """What a shader knows of a camera and a projection, in float32: scalars, and `clip_to_view` of shape (4, 4).
+
+    `terms` are the two of the projection's row for z: clip-space z is terms.x z + terms.y.
+    """
 
     near: Any
     far: Any
     rays: Vec2
     clip: Vec2
     clip_to_view: Any
+    terms: Vec2
 
 
 @dataclass(frozen=True)
@@ -69,11 +73,16 @@ class Camera:
         matrix[2, 2:] = projection.row(self.near, self.far)
         return np.linalg.inv(matrix)
 
+    def terms(self, projection: Projection | None) -> tuple[float, float]:
+        """The two terms of a projection's row for z, a and b; of none 0 and 1."""
+        return projection.row(self.near, self.far) if projection else (0.0, 1.0)
+
     def seen(self, projection: Projection | None) -> Seen:
         """The camera as a shader knows it."""
         near, far, *rays = map(jnp.float32, (self.near, self.far, *self.rays))
         clip = Vec2(*map(jnp.float32, projection.clip if projection else (1.0, 0.0)))
-        return Seen(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32))
+        terms = Vec2(*map(jnp.float32, self.terms(projection)))
+        return Seen(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32), terms)
 
 
 def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> Vec3:
@@ -88,6 +97,18 @@ def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> 
     m, z = clip_to_view, clip.x * depth + clip.y
     p = [m[i, 0] * place.x + m[i, 1] * place.y + m[i, 2] * z + m[i, 3] for i in range(4)]
     return Vec3(*p[:3]) / p[3]
+
+
+def position_from_projection_terms(place: Vec2, depth, clip: Vec2, terms: Vec2, rays: Vec2) -> Vec3:
+    """The position of a depth buffer's depth by the two terms of the projection, as many engines compute it.
+
+    Args:
+        place, depth, clip: as in `position_from_window_depth`.
+        terms: a, b: clip-space z is a z + b, with w = -z.
+        rays: where the ray through the screen's upper right corner is at depth 1.
+    """
+    # ndc = (a z + b) / -z, so -z = b / (ndc + a)
+    return position_from_linear_depth(place, terms.y / (clip.x * depth + clip.y + terms.x), rays)
 
 
 def position_from_linear_depth(place: Vec2, depth, rays: Vec2) -> Vec3:

@@ -512,7 +512,7 @@ def depth(
     Args:
         depth: Depth codes, comma-separated, or all; `normalbench list` shows them.
         storage: Depth storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
-        rebuild: inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual.
+        rebuild: inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.
         near: Near planes, comma-separated.
         far: Far planes, comma-separated.
         distance: Distances, comma-separated. Default: every power of ten.

@@ -9,14 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from ..position import Camera, Seen, position_from_linear_depth, position_from_window_depth
+from ..position import (
+    Camera,
+    Seen,
+    position_from_linear_depth,
+    position_from_projection_terms,
+    position_from_window_depth,
+)
 from ..storages.depth_storage import DepthStorage, store_depth
 from ..vec import Vec2, Vec3, depth_or_far, jnp
 from .depth_encoding import ULP, DepthEncoding
 
 # What float32 arithmetic adds beside encoder and decoder, in units in the last place: one to the number where it is
 # scaled to an integer and back; three to a position (two products and the rays' own rounding; or a division and two
-# products). Where the inverse projection stands for the decoder it rounds the number's two factors as the decoder does.
+# products). Where the inverse projection or its two terms stand for the decoder, they round the number's two factors as
+# the decoder does.
 SCALING_ULPS, POSITION_ULPS = 1, 3
 
 
@@ -128,6 +135,11 @@ def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
 
+def by_projection_terms(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+    """Positions of stored numbers by the two terms of the projection; the encoding has a projection."""
+    return position_from_projection_terms(place, number, seen.clip, seen.terms, seen.rays)
+
+
 def by_eye_ray(codec: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
     """Positions of stored numbers by the decoder and the eye's ray."""
     return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
@@ -140,12 +152,18 @@ class Rebuild:
     Attributes:
         position: (codec, number, place, seen) -> view-space position.
         by_projection: whether it takes the number for a depth buffer's, which only some encodings' are.
+        way: its number in GLSL.
     """
 
     position: Callable[[DepthCodec, Any, Vec2, Seen], Vec3]
     by_projection: bool
+    way: int
 
 
 REBUILDS: Mapping[str, Rebuild] = MappingProxyType(
-    {"inverse_projection": Rebuild(by_inverse_projection, True), "eye_ray": Rebuild(by_eye_ray, False)}
+    {
+        "inverse_projection": Rebuild(by_inverse_projection, True, 0),
+        "projection_terms": Rebuild(by_projection_terms, True, 1),
+        "eye_ray": Rebuild(by_eye_ray, False, 2),
+    }
 )

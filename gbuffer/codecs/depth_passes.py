@@ -83,14 +83,14 @@ class DepthPasses(Passes):
         shaders, names = ("depth_encode.frag", "depth_decode.frag"), {"DEPTH_ENCODING": codec.encoding.glsl}
         super().__init__(device, shaders, defines, names, {"texels": codec.storage.format})
 
-    def round_trip(self, points: np.ndarray, camera: Camera, by_inverse_projection: bool) -> Rebuilt:
+    def round_trip(self, points: np.ndarray, camera: Camera, way: int) -> Rebuilt:
         """Points on the screen through the storage.
 
         Args:
             points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
-            by_inverse_projection: the way to the position; only where the number is a depth buffer's.
+            way: to the position, a Rebuild's; one by the projection only where the number is a depth buffer's.
         """
-        given = _seen(camera, self._codec.encoding) | {"by_inverse_projection": by_inverse_projection}
+        given = _seen(camera, self._codec.encoding) | {"way": way}
         for program in (self._encode.program, self._decode.program):
             set_uniforms(program, given)
         positions, stored = self._through([FORMATS["rgba32f"], RG32F], points=points)
@@ -107,6 +107,7 @@ def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
         "rays": camera.rays,
         "range": (camera.near, camera.far),
         "clip": projection.clip if projection else (1.0, 0.0),
+        "terms": camera.terms(projection),
         "clip_to_view": tuple(camera.clip_to_view(projection).T.ravel()),
     }
 
@@ -167,10 +168,10 @@ def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points
         points: place on the screen, depth, number; float32 of shape (count, 4).
 
     Returns:
-        numbers and depths, (count, 2); positions of the numbers by the inverse projection, and of the depths by the
-        eye's ray, (count, 3).
+        numbers and depths, (count, 2); positions of the numbers by the inverse projection and by its two terms, and of
+        the depths by the eye's ray, (count, 3).
     """
     defines, names = depth_defines(encoding), {"DEPTH_ENCODING": encoding.glsl}
     seen = _seen(camera, encoding)
-    values, projected, along_rays = exact(device, "depth_parity.comp", defines, names, [points], 3, **seen)
-    return values[:, :2], projected[:, :3], along_rays[:, :3]
+    values, *positions = exact(device, "depth_parity.comp", defines, names, [points], 4, **seen)
+    return values[:, :2], *(found[:, :3] for found in positions)

@@ -48,8 +48,8 @@ def best_first(lines: list[Line]) -> None:
 def glsl_agrees(lines: list[Line]) -> None:
     """By GLSL a division may be another one: an eighth."""
     for line in lines:
-        shown = [float(writing.two_digits(figure)) for figure in line[2:6]]
-        assert shown == [pytest.approx(figure, rel=0.125) for figure in line[6:]], line
+        shown = [float(writing.two_digits(figure)) for figure in line[3:7]]
+        assert shown == [pytest.approx(figure, rel=0.125) for figure in line[7:]], line
 
 
 def fifteen_times(lines: list[Line]) -> None:
@@ -237,10 +237,11 @@ ALL = (
     ),
     Table(
         marker="normalbench depth",
-        rows=("depth --near 0.1 --far 1000 --distance 1,10,100,1000",),
+        rows=("depth --near 0.1 --far 1000 --distance 1,10,100,1000 --rebuild all",),
         columns=(
             key("code", "depth"),
             key("storage", "storage"),
+            key("rebuilt", "rebuilt"),
             *(
                 Column(
                     f"at {distance}" if backend == "jax" else "",
@@ -255,8 +256,12 @@ ALL = (
         ),
         needs=("gl",),
         takes=lambda row: row["distance"],
-        lines="linear packed16,linear packed24,linear r16f,linear_sign packed16,logarithmic packed16,window depth16,"
-        "window depth24,window depth32f,reversed_window depth24,reversed_window depth32f",
+        lines="linear packed16 eye_ray,linear packed24 eye_ray,linear r16f eye_ray,linear_sign packed16 eye_ray,"
+        "logarithmic packed16 eye_ray,window depth16 inverse_projection,window depth16 projection_terms,"
+        "window depth24 inverse_projection,window depth24 projection_terms,window depth24 eye_ray,"
+        "window depth32f inverse_projection,window depth32f projection_terms,"
+        "reversed_window depth24 inverse_projection,reversed_window depth24 projection_terms,"
+        "reversed_window depth32f inverse_projection,reversed_window depth32f projection_terms",
         holds=glsl_agrees,
     ),
     Table(

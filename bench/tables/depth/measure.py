@@ -102,8 +102,13 @@ class Case:
 
 
 def ways(codec: DepthCodec) -> list[str]:
-    """How positions can be rebuilt from a codec's numbers, the usual way first."""
+    """How positions can be rebuilt from a codec's numbers."""
     return [name for name, way in REBUILDS.items() if codec.is_window or not way.by_projection]
+
+
+def usual_ways(codec: DepthCodec) -> list[str]:
+    """How renderers rebuild positions from such numbers: by the projection, where the number is a depth buffer's."""
+    return [name for name, way in REBUILDS.items() if way.by_projection == codec.is_window]
 
 
 def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
@@ -135,8 +140,7 @@ def _by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuil
     pixels = np.ones((height * WIDTH, 3), np.float32)
     pixels[:count] = np.concatenate([places, signed[:, None]], axis=1)
     with DepthPasses(gl, case.codec) as passes:
-        by_projection = REBUILDS[case.rebuilt].by_projection
-        got = passes.round_trip(pixels.reshape(height, WIDTH, 3), case.camera, by_projection)
+        got = passes.round_trip(pixels.reshape(height, WIDTH, 3), case.camera, REBUILDS[case.rebuilt].way)
         how = {"device": gl.renderer, "rounded_by": passes.rounded_by}
     flat = Rebuilt(got.positions.reshape(-1, 3)[:count], got.numbers.ravel()[:count], got.depths.ravel()[:count])
     return flat, how

@@ -20,7 +20,10 @@ class DepthOptions:
     storage: Annotated[str | None, Option("--storage", f"Depth storages, {Names}. Default: each code's usual.")] = None
     rebuild: Annotated[
         str | None,
-        Option("--rebuild", "inverse_projection, eye_ray; comma-separated, or all. Default: each code's usual."),
+        Option(
+            "--rebuild",
+            "inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.",
+        ),
     ] = None
     near: Annotated[str, Option("--near", "Near planes, comma-separated.")] = "0.1,1"
     far: Annotated[str, Option("--far", "Far planes, comma-separated.")] = "1000"
@@ -45,7 +48,13 @@ COLUMNS = (
     Column("depth", "How a distance becomes a number.", KEY),
     Column("storage", "The format that the number is stored in.", KEY),
     Column("bits", "Bits of the stored depth.", drops=4),
-    Column("rebuilt", "How the position is found: along the eye's ray, or by the inverse projection.", KEY, drops=6),
+    Column(
+        "rebuilt",
+        "How the position is found. inverse_projection: by the inverse matrix in float32; projection_terms: by the "
+        "projection's two terms, z = B / (ndc + A), and the eye's ray; eye_ray: by the code's decoder and that ray.",
+        KEY,
+        drops=6,
+    ),
     Column("backend", "jax emulates the storage; glsl goes through the real target or depth buffer.", KEY),
     Column("near", "The near plane.", KEY),
     Column("far", "The far plane.", KEY, drops=7),

@@ -84,10 +84,11 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
                 complaints.append(f"{codec.name}: {codec.misfit}")
                 continue
             known = measure.ways(codec)
-            chosen = known[:1] if asked is None else [way for way in asked if way in known]
+            chosen = measure.usual_ways(codec) if asked is None else [way for way in asked if way in known]
             made += [(codec, way) for way in chosen]
             if not chosen:
-                complaints.append(f"{codec.name}: inverse_projection works only for codes stored in a depth buffer")
+                ways = ", ".join(asked or ())
+                complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
     return what_is_left(made, complaints)
 
 
@@ -152,7 +153,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         lines: dict[tuple[Any, ...], Row] = {}
         for row in rows:
             if _is_at(row, near, far) and row["backend"] == rows[0]["backend"]:
-                line = {"depth": row["depth"], "storage": row["storage"]}
+                line = {name: row[name] for name in ("depth", "storage", "rebuilt")}
                 at = lines.setdefault((row["depth"], row["storage"], row["rebuilt"]), line)
                 at[f"at_{row['distance']:g}"] = row["error_max"]
         if lines:

@@ -37,7 +37,10 @@ SHARED_EXPONENT = (_light("largest number of RGB9E5", "rgb9e5", 65408.0, "shared
 # Depth
 
 FAR = 1e7
-OWN_LOGARITHM = "his code is log(C x + 1), ours log(x / near) with near = 1 / C; they differ where C x is not large"
+OWN_LOGARITHM = (
+    "his code is log(C x + 1), ours log(x / near) with near = 1 / C; they differ where C x is not large, and all that "
+    "is nearer than 1 / C has one code of ours"
+)
 
 
 def _kemen(c: float, at: float, value: float, digits: int) -> Figure:
@@ -47,12 +50,19 @@ def _kemen(c: float, at: float, value: float, digits: int) -> Figure:
 
 
 KEMEN = (
+    _kemen(1, 1e0, 0.0000019, 7),
+    _kemen(1, 1e1, 0.000011, 6),
     _kemen(1, 1e2, 0.000097, 6),
     _kemen(1, 1e3, 0.001, 3),
     _kemen(1, 1e4, 0.01, 2),
     _kemen(1, 1e5, 0.096, 3),
     _kemen(1, 1e6, 0.96, 2),
     _kemen(1, 1e7, 9.6, 1),
+    _kemen(0.001, 1e0, 0.0005, 4),
+    _kemen(0.001, 1e1, 0.0005, 4),
+    _kemen(0.001, 1e2, 0.0006, 4),
+    _kemen(0.001, 1e3, 0.001, 3),
+    _kemen(0.001, 1e4, 0.006, 3),
     _kemen(0.001, 1e5, 0.055, 3),
     _kemen(0.001, 1e6, 0.549, 3),
     _kemen(0.001, 1e7, 5.49, 2),

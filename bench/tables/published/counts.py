@@ -157,7 +157,12 @@ def most_light(light_buffer: str) -> float:
 
 
 def depth_step(encoding: str, near: float, far: float, codes: int, at: float) -> float:
-    """How far apart the depths of neighbouring codes are at a depth, in its unit, in exact arithmetic."""
+    """How far apart the depths of neighbouring codes are at a depth, in its unit, in exact arithmetic.
+
+    What is nearer than the near plane has one code: there it is the whole of that distance.
+    """
+    if at < near:
+        return near
     with jax.enable_x64(True):
         chosen = DEPTH_ENCODINGS[encoding]
         numbers = chosen.encode(jnp.asarray([at], jnp.float64), near, far) + jnp.asarray([0.0, 1.0 / (codes - 1)])

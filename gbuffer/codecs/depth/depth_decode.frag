@@ -10,7 +10,8 @@ uniform vec2 range;        // near, far
 uniform vec2 rays;         // the screen's upper right corner at depth 1
 uniform vec2 clip;
 uniform mat4 clip_to_view;
-uniform bool by_inverse_projection;
+uniform vec2 terms;        // of the projection's row for z
+uniform int way;           // 0 by the inverse projection, 1 by its two terms, 2 by the eye's ray
 layout(location = 0) out vec4 position;
 layout(location = 1) out vec2 stored;  // number, depth
 
@@ -30,6 +31,7 @@ void main() {
     float number = stored_number(texelFetch(texels, pixel, 0)), depth = depth_of_number(number, range, OPEN != 0);
     stored = vec2(number, depth);
     position.w = 0.0;
-    position.xyz = by_inverse_projection ? position_from_window_depth(place, number, clip, clip_to_view)
-                                         : position_from_linear_depth(place, abs(depth), rays);
+    position.xyz = way == 0   ? position_from_window_depth(place, number, clip, clip_to_view)
+                   : way == 1 ? position_from_projection_terms(place, number, clip, terms, rays)
+                              : position_from_linear_depth(place, abs(depth), rays);
 }

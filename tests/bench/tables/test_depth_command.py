@@ -32,9 +32,11 @@ def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--distance", "5,50")
     rows = json.loads(run(*QUICK[:-2], "--distance", "5,50", "--format", "json")[1])
     assert status == 0
-    line = next(line for line in out.splitlines() if line.split()[:2] == ["window", "depth16"] and "glsl" in line)
-    wanted = [row for row in rows if (row["depth"], row["storage"], row["backend"]) == ("window", "depth16", "glsl")]
-    assert all(f"{row['error_max']:#.4g}" in line or f"{row['error_max']:.2e}" in line for row in wanted), line
+    for way in ("inverse_projection", "projection_terms"):
+        name = ["window", "depth16", way, "glsl"]
+        (line,) = (line for line in out.splitlines() if [word for word in line.split()[:5] if word != "16"] == name)
+        wanted = [row for row in rows if [row[c] for c in ("depth", "storage", "rebuilt", "backend")] == name]
+        assert all(f"{row['error_max']:#.4g}" in line or f"{row['error_max']:.2e}" in line for row in wanted), line
 
 
 @pytest.mark.usefixtures("rows_are_kept")
@@ -52,13 +54,30 @@ def test_every_way_is_measured_where_there_is_one(run):
     status, out, err = run(*QUICK, "--rebuild", "all", "--storage", "depth24", "--format", "json")
     assert status == 0 and err == ""
     found = {(row["depth"], row["rebuilt"]) for row in json.loads(out)}
-    assert found == {("linear", "eye_ray"), ("window", "inverse_projection"), ("window", "eye_ray")}
+    by_window = {("window", way) for way in ("inverse_projection", "projection_terms", "eye_ray")}
+    assert found == {("linear", "eye_ray")} | by_window
+
+
+@pytest.mark.usefixtures("rows_are_kept")
+def test_both_ways_that_engines_take_are_rows(run):
+    """Of z/w in 24 bits at 100: by the matrix, by the two terms and by the decoder, which adds next to nothing, so that
+    its error is that of the texel."""
+    words = ["depth", "--depth", "window,linear", "--storage", "depth24,packed16", "--near", "0.1", "--distance", "100"]
+    rows = json.loads(run(*words, "--backend", "jax", "--format", "json")[1])
+    found = {(row["depth"], row["storage"], row["rebuilt"]): row for row in rows if row["distance"]}
+    ways = ["inverse_projection", "projection_terms"]
+    assert [way for depth, storage, way in found if (depth, storage) == ("window", "depth24")] == ways
+    assert {way for depth, _, way in found if depth == "linear"} == {"eye_ray"}
+    by_matrix, by_terms = (found["window", "depth24", way] for way in ways)
+    assert by_matrix["error_max"] == pytest.approx(0.019, abs=5e-4)
+    assert by_terms["error_max"] == pytest.approx(0.0212, abs=5e-4)
+    assert by_matrix["half_step"] == by_terms["half_step"] == pytest.approx(0.0052, abs=1e-4)
 
 
 BAD = {
     "a depth": (["--depth", "lineal"], ["'lineal'", "linear", "reversed_window"]),
     "a storage": (["--storage", "depth8"], ["'depth8'", "packed16", "depth32f"]),
-    "a way": (["--rebuild", "guess"], ["'guess'", "inverse_projection", "eye_ray"]),
+    "a way": (["--rebuild", "guess"], ["'guess'", "inverse_projection", "projection_terms", "eye_ray"]),
     "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
     "near zero": (["--near", "0"], ["--near 0", "1e-06"]),
     "near below": (["--near", "-1"], ["--near -1"]),
@@ -132,9 +151,8 @@ def test_the_plot_is_drawn(run, tmp_path):
         assert status == 0, err
         assert (tmp_path / name).read_bytes().startswith(head)
     svg = (tmp_path / "plot.svg").read_text()
-    assert all(f"<!-- {label} -->" in svg for label in ("linear packed16", "window depth32f", "near 1, far 100")), svg[
-        :500
-    ]
+    labels = ("linear packed16 eye ray", "window depth32f projection terms", "near 1, far 100")
+    assert all(f"<!-- {label} -->" in svg for label in labels), svg[:500]
 
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):

@@ -9,9 +9,14 @@ import numpy as np
 from neighbours import around
 
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS
-from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from normalbench.encodings.codecs.depth_encoding import DepthEncoding
-from normalbench.encodings.position import Camera, position_from_linear_depth, position_from_window_depth
+from normalbench.encodings.position import (
+    Camera,
+    position_from_linear_depth,
+    position_from_projection_terms,
+    position_from_window_depth,
+)
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.vec import Vec2, depth_or_far
 from normalbench.gbuffer.codecs.depth_passes import DepthPasses, exact_values
@@ -21,9 +26,10 @@ from .comparison import ULP, Comparison, Parity, planes, rows
 CODECS = [DepthCodec(encoding, storage) for encoding in DEPTH_ENCODINGS.values() for storage in DEPTH_STORAGES.values()]
 CODECS = [codec for codec in CODECS if codec.fits]
 CAMERAS = [Camera(0.1, 1000.0, 60.0, 16 / 9), Camera(1.0, 10.0, 30.0, 1.0), Camera(1e-3, 1e6, 120.0, 2.0)]
+EYE_RAY = REBUILDS["eye_ray"].way
 # At a far plane of 1 a linear depth is its own number.
 UNIT = Camera(0.1, 1.0, 60.0, 1.0)
-POSITION_ULPS = (3, 1)
+POSITION_ULPS = (3, 3, 1)
 
 
 class Case(NamedTuple):
@@ -108,19 +114,22 @@ def positions_by_jax(case: Case, points: np.ndarray) -> list[np.ndarray]:
     seen, place = case.camera.seen(case.encoding.projection), planes(Vec2, points[:, :2])
     found = (
         position_from_window_depth(place, jnp.asarray(points[:, 3]), seen.clip, seen.clip_to_view),
+        position_from_projection_terms(place, jnp.asarray(points[:, 3]), seen.clip, seen.terms, seen.rays),
         position_from_linear_depth(place, jnp.asarray(points[:, 2]), seen.rays),
     )
     return [rows(position) for position in found]
 
 
 def positions_compared(case: Case, points: np.ndarray, by_gl) -> list[Comparison]:
-    """Positions by the inverse projection and by the ray, in units in the last place of the position, and for the
-    projection times how far its sum cancels."""
+    """Positions by the inverse projection, its two terms and the ray, in units in the last place of the position, and
+    for the projection times how far its sum cancels."""
     encoding, camera = case
     row, (scale, offset) = camera.clip_to_view(encoding.projection)[3], encoding.projection.clip
-    terms = [row[2] * (scale * points[:, 3].astype(np.float64) + offset), np.full(len(points), row[3])]
-    cancels = [sum(map(abs, terms)) / np.maximum(abs(sum(terms)), 1e-300), np.ones(len(points))]
-    ways = zip(("inverse projection", "eye ray"), positions_by_jax(case, points), by_gl, cancels, strict=True)
+    ndc = scale * points[:, 3].astype(np.float64) + offset
+    sums = [(row[2] * ndc, np.full(len(ndc), row[3])), (ndc, np.full(len(ndc), camera.terms(encoding.projection)[0]))]
+    cancels = [(abs(a) + abs(b)) / np.maximum(abs(a + b), 1e-300) for a, b in sums] + [np.ones(len(ndc))]
+    names = ("inverse projection", "projection terms", "eye ray")
+    ways = zip(names, positions_by_jax(case, points), by_gl, cancels, strict=True)
     found = []
     for (what, ours, theirs, times), allowed in zip(ways, POSITION_ULPS, strict=True):
         with np.errstate(invalid="ignore"):
@@ -152,7 +161,7 @@ def numbers_by_gl(gl, codec: DepthCodec, camera: Camera, depths: np.ndarray, wid
     points = np.zeros((-(-len(depths) // width) * width, 3), np.float32)
     points[: len(depths), 2] = depths
     with DepthPasses(gl, codec) as passes:
-        return passes.round_trip(points.reshape(-1, width, 3), camera, False).numbers.ravel()[: len(depths)].copy()
+        return passes.round_trip(points.reshape(-1, width, 3), camera, EYE_RAY).numbers.ravel()[: len(depths)].copy()
 
 
 def numbers_by_jax(codec: DepthCodec, camera: Camera, depths: np.ndarray) -> np.ndarray:
@@ -207,6 +216,7 @@ PARITY = Parity(
             "linear_decode_depth(float far, float near, float number)",
             "linear_sign_decode_depth(float far, float near, float number)",
             "position_from_linear_depth(vec2 rays, float depth, vec2 place)",
+            "position_from_projection_terms(vec2 rays, float depth, vec2 clip, vec2 terms, vec2 place)",
         }
     ),
 )
