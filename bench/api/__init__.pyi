@@ -211,6 +211,7 @@ def mix(
     samples: int = ...,
     power: float = ...,
     count: int = ...,
+    worst_case: bool = ...,
     seed: int = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
@@ -240,6 +241,7 @@ def mix(
         samples: Samples per pixel that are resolved; the device may give more.
         power: The specular power that Toksvig's formula starts from.
         count: Mixes of each set and angle.
+        worst_case: The worst mix of each operation, by search; seconds a codec.
         seed: The random seed of uniform sets, points and scenes.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.

@@ -97,7 +97,9 @@ def list_command(
 
 @app.command()
 def doctor(
-    file: Annotated[Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")
+    ] = None,
     plot: Annotated[
         Path | None,
         typer.Option("--plot", help="Draw the encoding's error over the sphere into this file, bad directions marked."),

@@ -31,9 +31,17 @@ class Figures:
         self._normals, self._held = mixes.patches.normals, mixes.patches.held_by(domain)
         self._alone = angles_between(texels[:, self._held], self._normals[:, self._held])
 
+    def errors(self, operation: str) -> np.ndarray:
+        """How far each mix is off in degrees, (patches,); -1 where the encoding cannot hold it."""
+        found = angles_between(self._mixed[operation], right_of(self._mixes, operation).normals)
+        return np.where(self._held_by(operation), found, -1.0)
+
+    def _held_by(self, operation: str) -> np.ndarray:
+        return self._held & self._mixes.held_by(operation, self._domain)
+
     def of(self, operation: str) -> Row:
         """The figures of an operation; the reason where the encoding can hold none of its mixes."""
-        held = self._held & self._mixes.held_by(operation, self._domain)
+        held = self._held_by(operation)
         if not held.any():
             return {"skipped": outside(self._mixes.patches.name, self._domain)}
         right, mixed = right_of(self._mixes, operation), self._mixed[operation][held]
@@ -53,6 +61,7 @@ class Figures:
             "geometry_max_deg": float(geometry.max()),
             "reach_max_deg": float(reach.max()),
             "garbage_percent": percent(garbage),
+            "garbage_error_percent": error_of_percent(garbage),
         }
         at = int(errors.argmax())
         row |= _worst(right.used[:, held][:, at], right.normals[held][at], mixed[at])
@@ -90,6 +99,15 @@ def _lengths(v: np.ndarray) -> np.ndarray:
 def outside(name: str, domain: str) -> str:
     """Why a set has nothing for an encoding."""
     return f"no patch of {name} lies whole in the normals that the encoding is made for ({domain})"
+
+
+def error_of_percent(which: np.ndarray) -> float:
+    """The standard error of a share, in percent, by the rule of succession: it is not 0 where nothing was met.
+
+    With k of n it is that of a share of (k + 1) / (n + 2), whose uncertainty is a beta distribution's.
+    """
+    count, share = which.size, (np.count_nonzero(which) + 1) / (which.size + 2)
+    return 100.0 * float(np.sqrt(share * (1 - share) / (count + 3)))
 
 
 def percent(which: np.ndarray) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -24,6 +24,7 @@ from .patches import TEXELS, Mixes
 from .programs import Programs
 from .reference import angles_between
 from .table import AGREE_DEG, TABLE
+from .worst import climbed
 
 Row = dict[str, Any]
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
@@ -43,6 +44,7 @@ class Case:
         codec, mixes, backend, operations: what is measured.
         power: what Toksvig's formula starts from.
         domain: the normals that are mixed, where they are fewer than the encoding holds.
+        worst_case: whether the worst mix is searched for.
     """
 
     codec: Codec
@@ -51,6 +53,7 @@ class Case:
     operations: tuple[str, ...]
     power: float
     domain: str = ""
+    worst_case: bool = False
 
     @property
     def name(self) -> str:
@@ -188,7 +191,8 @@ def _way(made: Modelled, operation: str, given: Given, found: Decoded, count: in
     return {"mixed_by": str(best) if agreed >= EXPLAINED else own, "agree_percent": agreed}
 
 
-BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType({"jax": _by_jax, "glsl": _by_glsl})
+BY_THE_MODEL = "jax"
+BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType({BY_THE_MODEL: _by_jax, "glsl": _by_glsl})
 
 
 def measure(case: Case) -> list[Row]:
@@ -204,8 +208,27 @@ def measure(case: Case) -> list[Row]:
         return [described | {"operation": name, "skipped": str(error)} for name in case.operations]
     figures = Figures(case.mixes, domain, case.power, found.texels, found.mixed)
     return [
-        described | {"operation": name} | figures.of(name) | found.how[name] | found.said for name in case.operations
+        described | {"operation": name} | figures.of(name) | _worst(case, figures, name) | found.how[name] | found.said
+        for name in case.operations
     ]
+
+
+def _worst(case: Case, figures: Figures, operation: str) -> Row:
+    """The worst mix of codes, searched for by the model, where that is asked for; its angle and its normals."""
+    is_searched = case.worst_case and operation in BY_MODEL and case.backend == BY_THE_MODEL
+    errors = figures.errors(operation) if is_searched else np.array([-1.0])
+    if errors.max() < 0:
+        return {}
+    domain = case.domain or case.codec.encoding.domain
+
+    def figures_of(mixes: Mixes) -> Figures:
+        result = _by_jax(replace(case, mixes=mixes, operations=(operation,)))
+        return Figures(mixes, domain, case.power, result.texels, result.mixed)
+
+    found = climbed(case.mixes, errors, lambda mixes: figures_of(mixes).errors(operation), case.mixes.patches.seed)
+    row = figures_of(found).of(operation)
+    named = {name: row[name] for name in ("worst_first", "worst_second", "worst_right", "worst_result")}
+    return {"angle_worst_deg": row["angle_max_deg"]} | named
 
 
 def _described(case: Case) -> Row:

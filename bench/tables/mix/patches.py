@@ -21,6 +21,8 @@ LEAST_SIDE = 16
 TEXELS = SIDE * SIDE
 # Neighbours of an image that are further apart lie on either side of an edge.
 LEAST_EDGE_DEG = 20.0
+# Steradians of the whole sphere.
+SPHERE = 4 * math.pi
 
 
 def in_domain(normals: np.ndarray, views: np.ndarray, domain: str) -> np.ndarray:
@@ -45,6 +47,7 @@ class Patches:
         views: float32 of shape (patches, 3).
         seed: what it was made with.
         code_space: of a captured frame the space that its normals are in.
+        is_anywhere: whether patches may lie anywhere on the sphere, turned in any way: those of the whole of it.
     """
 
     name: str
@@ -55,6 +58,7 @@ class Patches:
     seed: int
     edge_deg: float | None = None
     code_space: str | None = None
+    is_anywhere: bool = False
 
     @property
     def size(self) -> tuple[int, int]:
@@ -151,7 +155,8 @@ def patches_of(
         yield from _own_neighbours(normals, count, seed)
         return
     directions = _directions(normals, count, seed)
-    made = [_about(normals.name, directions, angle, seed) for angle in angles_deg]
+    is_anywhere = normals.area == SPHERE
+    made = [replace(_about(normals.name, directions, angle, seed), is_anywhere=is_anywhere) for angle in angles_deg]
     yield from made
     yield from (_with_edge(made[0], edge, seed) for edge in edges_deg)
 
@@ -195,7 +200,7 @@ def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Pa
     n = np.cos(length)[..., None] * directions + np.sin(length)[..., None] * tangents
     chosen = _filled(count)
     views = np.broadcast_to(np.array([0, 0, -1], np.float32), (len(chosen), 3))
-    return Patches(name, angle_deg, count, _rounded(n[:, chosen]), views, seed)
+    return Patches(name, angle_deg, count, rounded(n[:, chosen]), views, seed)
 
 
 def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
@@ -216,7 +221,7 @@ def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
     turned = n * np.cos(angle) + np.cross(np.broadcast_to(tangent, n.shape), n) * np.sin(angle)
     turned += tangent * along * (1 - np.cos(angle))
     mixed = np.where(is_beyond[..., None], unit_rows(turned), n)
-    return replace(patches, edge_deg=edge_deg, normals=_rounded(mixed))
+    return replace(patches, edge_deg=edge_deg, normals=rounded(mixed), is_anywhere=False)
 
 
 def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patches]:
@@ -241,7 +246,7 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
         if len(which):
             again = which[_filled(len(which))]
             edge = float(np.round(np.median(steepest[which]))) if is_edge else None
-            cut_out = _rounded(cut[:, again]), seen[again]
+            cut_out = rounded(cut[:, again]), seen[again]
             yield Patches(normals.name, None, len(which), *cut_out, seed, edge, normals.code_space)
 
 
@@ -252,6 +257,6 @@ def _steepest(normals: np.ndarray) -> np.ndarray:
     return np.max([angles_between(one, other).max(axis=(0, 1)) for one, other in pairs], axis=0)
 
 
-def _rounded(n: np.ndarray) -> np.ndarray:
+def rounded(n: np.ndarray) -> np.ndarray:
     """As float32 has them, which is what encoders are given."""
     return n.astype(np.float32).astype(np.float64)

@@ -82,6 +82,9 @@ class MixOptions(Reading):
     samples: Annotated[int, Option("--samples", "Samples per pixel that are resolved; the device may give more.")] = 4
     power: Annotated[float, Option("--power", "The specular power that Toksvig's formula starts from.")] = 64.0
     count: Annotated[int, Option("--count", "Mixes of each set and angle.")] = COUNT
+    worst_case: Annotated[
+        bool, Option("--worst-case", "The worst mix of each operation, by search; seconds a codec.")
+    ] = False
     seed: Seed = 0
 
 
@@ -129,7 +132,15 @@ COLUMNS = (
     _degrees("alone_max_deg", "Largest error of the texels without any mixing."),
     _degrees("angle_mean_deg", "Mean angle between the result, decoded, and the right normal."),
     _degrees("angle_p99_deg", "99 % of these angles are below it.", 6),
-    _degrees("angle_max_deg", "The largest of these angles."),
+    _degrees("angle_max_deg", "The largest of these angles, of the mixes that were sampled: not a bound."),
+    Column(
+        "angle_worst_deg",
+        "The largest angle that a search finds, which climbs from the worst of the sample by the model. Patches of the "
+        "whole sphere are turned and weighed in any way; of other sets only the weights are changed. In rows of jax.",
+        unit="degrees",
+        better="less",
+        option="worst_case",
+    ),
     _degrees("added_max_deg", "What mixing adds: angle_max_deg less alone_max_deg.", 5),
     Column(
         "geometry_max_deg",
@@ -148,8 +159,15 @@ COLUMNS = (
         better="less",
     ),
     Column(
+        "garbage_error_percent",
+        "Standard error of garbage_percent, by the rule of succession: not 0 where no garbage was met.",
+        HOW,
+        "%",
+        drops=4,
+    ),
+    Column(
         "worst_first",
-        "Of the mix that is farthest off, one of the two texels farthest apart.",
+        "Of the mix that is farthest off, sampled or found, one of the two texels farthest apart.",
         RAW,
         drops=1,
     ),

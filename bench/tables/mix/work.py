@@ -52,7 +52,7 @@ def cases(options: MixOptions) -> list[Case]:
     samples = _samples(options.samples, backends)
     mixes = [{given: mixes_of(patches, given) for given in set(samples.values())} for patches in sets]
     return [
-        Case(codec, by_samples[samples[name]], name, operations, options.power)
+        Case(codec, by_samples[samples[name]], name, operations, options.power, worst_case=options.worst_case)
         for codec in codecs
         for by_samples in mixes
         for name in backends
@@ -100,7 +100,7 @@ def _key(case: Case) -> Row:
     key: Row = {"codec": case.codec.name, "normals": patches.name, "angle": patches.angle_deg, "backend": case.backend}
     key |= {"edge": patches.edge_deg}
     key |= {"operations": list(case.operations), "samples": case.mixes.samples, "power": case.power}
-    return key | {"count": patches.count, "seed": patches.seed}
+    return key | {"count": patches.count, "seed": patches.seed, "worst_case": case.worst_case}
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
@@ -129,7 +129,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
     yield from _summary(done.rows)
     shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "edge_deg", "alone_max_deg")
-    shown += ("angle_mean_deg", "angle_max_deg", "garbage_percent", "power_error_percent", "power_decoded_percent")
+    shown += ("angle_mean_deg", "angle_max_deg", "angle_worst_deg", "garbage_percent", "garbage_error_percent")
+    shown += ("power_error_percent", "power_decoded_percent")
     inside = [row for row in one_backend(done.rows) if not row["edge_deg"]]
     across = [row for row in one_backend(done.rows) if row["edge_deg"]]
     for title, rows in (("inside a surface, of all sets and angles", inside), ("across an edge", across)):

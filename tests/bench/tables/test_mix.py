@@ -2,6 +2,7 @@
 
 import json
 import re
+from ast import literal_eval
 from contextlib import ExitStack
 from dataclasses import replace
 
@@ -12,7 +13,8 @@ from slowly import all_but
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.results.measuring import Nothing, asked, measured
-from normalbench.bench.tables.mix import reference
+from normalbench.bench.tables.mix import reference, worst
+from normalbench.bench.tables.mix.figures import error_of_percent
 from normalbench.bench.tables.mix.judge import faults
 from normalbench.bench.tables.mix.measure import Case, Modelled, measure
 from normalbench.bench.tables.mix.model import BY_MODEL, MODEL, Texels, Way
@@ -41,6 +43,12 @@ def mixes(normals: str = "axes", angle: float = 5.0, count: int = COUNT):
 
 def rows_of(name: str, backend: str = "jax", operations=tuple(OPERATIONS), **given):
     return {row["operation"]: row for row in measure(Case(codec(name), mixes(**given), backend, operations, 64.0))}
+
+
+def on_sphere(name: str, operations: tuple[str, ...], seed: int = 0, worst_case: bool = False):
+    """Rows of a codec on the whole sphere, 5 degrees apart, by the model."""
+    (patches,) = patches_of(NORMAL_SETS["sphere"](COUNT, seed), (5.0,), COUNT, seed)
+    return measure(Case(codec(name), mixes_of(patches, SAMPLES), "jax", operations, 64.0, worst_case=worst_case))
 
 
 def angle_deg(a, b):
@@ -327,6 +335,48 @@ def test_a_gate_holds_the_share_of_garbage(run, tmp_path):
         path.write_text(gate.format(name))
         status, out, err = run("check", str(path))
         assert status == expected, out + err
+
+
+def test_the_worst_mix_is_searched_for_and_named():
+    """Means of octahedral codes on opposite corners of the square, which are -z, are +z: 180 degrees off. A code
+    without a seam in its domain stays within what its texels alone and its kinks explain."""
+    operations = ("filter", "mip_2x2", "resolve", "blend")
+    for name, least, most in (("octahedral/rg8", 179.0, 180.0), ("hemi_octahedral/rg8", 1.0, 3.5)):
+        for row in on_sphere(name, operations, worst_case=True):
+            assert row["angle_max_deg"] <= row["angle_worst_deg"] and least <= row["angle_worst_deg"] <= most, row
+            right, result = (np.array(literal_eval(row[f"worst_{which}"])) for which in ("right", "result"))
+            assert angle_deg(right, result / np.linalg.norm(result)) == pytest.approx(row["angle_worst_deg"], abs=0.2)
+    (row,) = on_sphere("octahedral/rg8", ("filter",))
+    assert row["angle_worst_deg"] is None and row["angle_max_deg"] < 179, "a sample misses it"
+
+
+def test_a_detail_of_another_alpha_lies_on_the_arc():
+    """As reoriented normal mapping has it of the scaled tilt."""
+    given = mixes("sphere", 5.0, 64)
+    made = worst._between(given.patches.normals[0], given.decals, given.alphas)
+    assert np.abs(made - given.details).max() < 1e-6
+
+
+def test_only_weights_are_changed_where_the_normals_are_given():
+    """An axis stays in the first four texels of each patch of `axes`."""
+    given = mixes("axes", 5.0, 64)
+    moved = worst._moved(given, np.full(len(given.alphas), 5.0), np.random.default_rng(0))
+    assert np.allclose(moved.patches.normals, given.patches.normals, atol=1e-7)
+    assert not np.allclose(moved.shares, given.shares)
+    given = mixes("sphere", 5.0, 64)
+    moved = worst._moved(given, np.full(len(given.alphas), 5.0), np.random.default_rng(0))
+    a, b = given.patches.normals, moved.patches.normals
+    assert np.allclose(np.sum(a[0] * a[15], axis=1), np.sum(b[0] * b[15], axis=1), atol=1e-6), "as far apart as before"
+    assert np.abs(a - b).max() > 0.05
+
+
+def test_the_standard_error_is_the_scatter_of_seeds():
+    found = [on_sphere("octahedral/rg8", ("mip_4x4",), seed)[0] for seed in range(24)]
+    scatter = np.std([row["garbage_percent"] for row in found], ddof=1)
+    assert scatter == pytest.approx(np.mean([row["garbage_error_percent"] for row in found]), rel=0.5)
+    none = error_of_percent(np.zeros(98, bool))
+    # By hand: a share of 1 / 100, sqrt(0.01 x 0.99 / 101).
+    assert none == pytest.approx(100 * 0.0099005, rel=1e-3)
 
 
 def test_rows_have_the_columns_of_the_table(rows):

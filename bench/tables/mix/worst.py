@@ -1,0 +1,107 @@
+"""The worst mix of an operation, climbed to from the worst of a sample: a sample's largest error is no bound.
+
+Patches are turned as a whole, so that neighbours stay as far apart as they are, and their weights are changed. What is
+better is kept; steps grow where that succeeds and shrink where it does not. Mixes are computed by the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from .patches import ALPHAS, FRACTION_BITS, Mixes, rounded
+from .reference import angles_between, unit_rows
+
+# Mixes that are climbed from, what is tried of each in a round, and rounds.
+STARTS, TRIES, ROUNDS = 24, 16, 80
+GROWS, SHRINKS = 1.6, 0.8
+# Of a filter's place between texels, as a share of the step in degrees.
+SHARE_OF_STEP = 0.1
+
+# Mixes -> the error of each in degrees, -1 where the encoding cannot hold it.
+Errors = Callable[[Mixes], np.ndarray]
+
+
+def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
+    """The worst mix that is found, alone.
+
+    Args:
+        mixes: the sample; where its patches may lie anywhere on the sphere, they are turned.
+        errors: of the sample.
+        of: measures other mixes.
+    """
+    random = np.random.default_rng([seed, 3])
+    best = chosen(mixes, np.argsort(errors)[::-1][:STARTS])
+    known, steps = of(best), np.full(len(best.alphas), mixes.patches.angle_deg or 1.0)
+    for _ in range(ROUNDS):
+        tried = _moved(chosen(best, np.repeat(np.arange(len(known)), TRIES)), np.repeat(steps, TRIES), random)
+        found = of(tried).reshape(-1, TRIES)
+        at = found.argmax(axis=1)
+        largest = found.max(axis=1)
+        is_better = largest > known
+        places = np.arange(len(known)) * TRIES + at
+        best = _where(is_better, chosen(tried, places), best)
+        known, steps = np.maximum(known, largest), steps * np.where(is_better, GROWS, SHRINKS)
+    return chosen(best, np.array([known.argmax()]))
+
+
+def chosen(mixes: Mixes, index: np.ndarray) -> Mixes:
+    """Some of the mixes, by their numbers."""
+    patches = mixes.patches
+    patches = replace(patches, count=len(index), normals=patches.normals[:, index], views=patches.views[index])
+    return replace(mixes, patches=patches, **{name: getattr(mixes, name)[index] for name in OF_EACH})
+
+
+OF_EACH = ("shares", "quarters", "counts", "alphas", "decals", "details")
+
+
+def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixes:
+    """Mixes turned and weighed otherwise, by steps in degrees, (patches,)."""
+    count, patches = len(steps), mixes.patches
+    turn = _turns(steps * random.standard_normal(count) * patches.is_anywhere, random)
+    moved = mixes.shares + SHARE_OF_STEP * steps[:, None] * random.standard_normal((count, 2))
+    unit = 2**FRACTION_BITS
+    alphas = np.clip(mixes.alphas + random.integers(-1, 2, count) / 10, ALPHAS[0], ALPHAS[-1])
+    normals = rounded(np.einsum("pij,tpj->tpi", turn, patches.normals))
+    decals = np.einsum("pij,pj->pi", turn, mixes.decals)
+    return replace(
+        mixes,
+        patches=replace(patches, normals=normals),
+        shares=np.clip(np.rint(moved * unit), 0, unit - 1) / unit,
+        counts=np.clip(mixes.counts + random.integers(-1, 2, count), 1, mixes.samples - 1),
+        alphas=alphas,
+        decals=decals,
+        details=_between(normals[0], decals, alphas),
+    )
+
+
+def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndarray:
+    """A detail over its base whose tilt is scaled by alpha, which lies on the arc between the two; (patches, 3)."""
+    tilt = np.radians(angles_between(base, detail))[:, None]
+    # slerp: (sin((1 - a) t) base + sin(a t) detail) / sin t
+    a, whole = alpha[:, None], np.sin(tilt)
+    made = np.sin((1 - a) * tilt) * base + np.sin(a * tilt) * detail
+    return unit_rows(np.divide(made, whole, out=base.copy(), where=whole > 0))
+
+
+def _turns(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Rotations by angles about random axes, (count, 3, 3)."""
+    k = unit_rows(random.standard_normal((len(degrees), 3)))
+    c, s = np.cos(np.radians(degrees))[:, None, None], np.sin(np.radians(degrees))[:, None, None]
+    zero = np.zeros(len(k))
+    # Rodrigues: R = cos I + sin [k]x + (1 - cos) k k'
+    cross = np.array([(zero, -k[:, 2], k[:, 1]), (k[:, 2], zero, -k[:, 0]), (-k[:, 1], k[:, 0], zero)]).transpose(
+        2, 0, 1
+    )
+    return c * np.eye(3) + s * cross + (1 - c) * k[:, :, None] * k[:, None, :]
+
+
+def _where(first: np.ndarray, one: Mixes, other: Mixes) -> Mixes:
+    """The one's mixes where `first` holds, (patches,), and the other's elsewhere."""
+    normals = np.where(first[:, None], one.patches.normals, other.patches.normals)
+    patches = replace(one.patches, normals=normals)
+    named = {name: (getattr(one, name), getattr(other, name)) for name in OF_EACH}
+    made = {name: np.where(first.reshape(-1, *[1] * (a.ndim - 1)), a, b) for name, (a, b) in named.items()}
+    return replace(one, patches=patches, **made)
