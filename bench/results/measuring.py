@@ -130,7 +130,8 @@ def measured_steps(ask: Asked, kept: Kept, place: Place = HERE) -> list[list[Row
     absent = [step for step in ask.steps if found[id(step)] is None]
     found |= {id(part): kept.find(name, part) for step in absent for part in step.parts}
     missing = [one for one in _in_parts(absent) if found.get(id(one)) is None]
-    with progress(sum(step.ticks for step in missing)) as tick:
+    there = sum(step.ticks for step in ask.steps if found[id(step)] is not None)
+    with progress(sum(step.ticks for step in missing), name, there) as tick:
         for step, rows in place.measure(ask, missing, tick):
             found[id(step)] = kept.keep(name, step, rows)
     for step in absent:

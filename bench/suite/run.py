@@ -16,6 +16,7 @@ from ...reports import tables
 from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
+from ..output.progress import progress_of_all
 from ..output.writing import say, whole_file
 from ..results.measuring import Asked, Place, asked, measured, with_parts
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
@@ -146,7 +147,8 @@ def _measured_and_shown(
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
-        shown = _measure_all(run, asks, said, where, second)
+        with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)):
+            shown = _measure_all(run, asks, said, where, second)
         shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
         keep_times(where, run.folder)

@@ -228,7 +228,7 @@ TABLE = Table(
     columns=COLUMNS,
     usual=(
         {
-            "encoding": "xyz,xy,xy_sign,spherical,spheremap,octahedral,hemi_octahedral",
+            "encoding": "xyz,xyz_largest,xy,xy_sign,spherical,spheremap,octahedral,hemi_octahedral",
             "angle": "5",
             "count": 2048,
         },

@@ -3,9 +3,11 @@
 import json
 import math
 import random
+import re
 from operator import le
 
 import pytest
+from manual import ROOT
 
 from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.metrics.images import squared_error
@@ -15,6 +17,8 @@ from normalbench.bench.output import cache
 from normalbench.bench.tables.pick import measure
 from normalbench.bench.tables.pick.answer import answered, groups
 from normalbench.bench.tables.pick.sentences import sentences
+from normalbench.bench.tables.quality.table import COMMON
+from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -274,3 +278,17 @@ def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, name):
     )
     found, expected = (psnr_db(squared_error(displayed(image), displayed(right))[0]) for image in (relit, drawn))
     assert found == pytest.approx(expected, abs=0.02) and 25 < expected < 80
+
+
+def test_a_run_measures_the_codes_that_the_default_answer_names():
+    """Those that it takes in every table that a run measures of several codes; those of the ladder in quality, render
+    and cost."""
+    kept = ROOT / "tests/manual_tables/kept/answer-normalbench-pick.json"
+    said = [line[1] for line in json.loads(kept.read_text())["lines"]]
+    taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
+    ladder = {match[1] for text in said if (match := re.match(r"(?:Mor|Mos|Few|Che)\w+(?: \w+)?: (\w+),", text))}
+    assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
+    assert taken | ladder <= set(COMMON) and len(COMMON) <= 20
+    for name in ("quality", "render", "cost", "mix", "effects"):
+        usual = ",".join(usual["encoding"] for usual in TABLES[name].usual).split(",")
+        assert taken <= set(usual), name
