@@ -106,6 +106,21 @@ def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
 
 
 @pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("what", ["no fold", "no unfold"])
+def test_a_lost_half_is_found_along_any_axis(tmp_path, what, half):
+    """An octahedron with y up, of left-handed view space, or of -n."""
+    to, back = HALVES[half]
+    text = LOST[what][0].replace("dir_encode", "own_in").replace("dir_decode", "own_out")
+    text += f"vec2 dir_encode(vec3 n) {{ return own_in({to}); }}\n"
+    text += f"vec3 dir_decode(vec2 e) {{ vec3 m = own_out(e); return {back}; }}\n"
+    (tmp_path / "dir.glsl").write_text(text)
+    (said,) = first_look(tmp_path / "dir.glsl")["wrong"]
+    lost = half.replace(">=", "<") if ">=" in half else half.replace("<=", ">")
+    side = "encode is octahedral, but its fold" if what == "no fold" else "decode is octahedral, but its unfold"
+    assert f"{side} is missing: directions with {lost} are lost" in said
+
+
+@pytest.mark.parametrize("half", HALVES)
 @pytest.mark.parametrize("what", DESIGNS)
 def test_a_design_for_a_half_is_none(tmp_path, what, half):
     (tmp_path / "dir.glsl").write_text(design(what, half))
