@@ -120,6 +120,7 @@ def _should_be(function: tuple[str, ...], wanted: str) -> str:
     """A function as it stands, as it must be, and what is wrong with it."""
     kind, name, parameters = function
     said = f"{kind} {name}({' '.join(parameters.split())})"
+    said = "".join(letter if letter.isprintable() else "?" for letter in said)
     why = of_hlsl(said) or ("a code has two or three numbers" if "vec4" in said else "")
     return f"{said} must be {wanted}" + (f"; {why}" if why else "")
 
