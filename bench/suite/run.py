@@ -6,7 +6,7 @@ import itertools
 import sys
 import time
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
@@ -266,7 +266,14 @@ def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
     whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
     page = write_report(run.folder, whole, run.folder / PAGE, drawn=drawn)
     run.finish()
-    say(f"All of it on one page: {page}\n")
+    answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
+    say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")
+
+
+def in_short(table: Table, done: Mapping[str, Measured]) -> Iterator[str]:
+    """The first sentence of each of a table's answers."""
+    sheets = table.work.summary(done[table.name].rows) if table.name in done else ()
+    yield from (sheet.said[0] for sheet in sheets if sheet.said)
 
 
 def write_tables(folder: Path, found: Mapping[str, list[Row]]) -> None:

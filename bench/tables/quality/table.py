@@ -209,7 +209,7 @@ ALSO = (
 COMMON = (
     *("xyz", "xyz_renormalised", "xy", "xy_sign", "spherical", "spherical_lut", "spheremap", "spheremap_classic"),
     *("cryengine3", "stereographic", "per_pixel_view", "octahedral", "octahedral_precise", "best_fit"),
-    *("xyz_largest", "warped_cube", "spherical_fibonacci", "optimised_rings"),
+    *("xyz_largest", "warped_cube", "spherical_fibonacci"),
 )
 # Of these, the ones with two numbers.
 TWO = (

@@ -292,3 +292,16 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
     for name in ("quality", "render", "cost", "mix", "effects"):
         usual = ",".join(usual["encoding"] for usual in TABLES[name].usual).split(",")
         assert taken <= set(usual), name
+
+
+@pytest.mark.usefixtures("gl", "radv", "nvidia")
+def test_the_dearest_of_several_families_is_the_price(run):
+    """An NVIDIA GPU is counted in a compute shader; a family may be named as people name it."""
+    words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--format", "json")
+    rows = {}
+    for families in ("navi21", "turing", "navi21,turing"):
+        status, out, err = run(*words, "--family", families)
+        assert status == 0, err
+        (rows[families],) = [row for row in json.loads(out) if row["storage"] == "rg8"]
+    assert rows["turing"]["dearest_family"] == rows["navi21,turing"]["dearest_family"] == "sm_75"
+    assert rows["navi21,turing"]["slots"] == rows["turing"]["slots"] > rows["navi21"]["slots"]
