@@ -30,6 +30,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
         "NORMAL_LEVELS": levels_of(layout.encoding),
         "NORMAL_SCALE": layout.normal_scales,
         "NORMAL_BIASED": int(layout.codec.storage.is_biased),
+        "NORMAL_UNIT": int(layout.encoding.is_unit),
         "PACK_WIDEN": widen,
         "PACK_BIAS": bias,
         "PACK_SIGNED": int(layout.packing == SIGNED),

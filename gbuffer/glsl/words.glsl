@@ -4,6 +4,7 @@
 // scales and bits, and whether the shader rounds (one more than storage.glsl's ways). NORMAL_LEVELS says how many values
 // each of the normal's numbers has, 0 for one like any other. DEPTH_RANGE is the near and the far plane. SIGN_CARRIER is
 // the component that carries number SIGN_NUMBER of the normal's code as its sign, or -1; LEAST_CARRIED keeps it off 0.
+// NORMAL_UNIT is 1 where texels hold the normal's numbers in [0, 1], whatever their format: half of 1 more than a code's.
 #include "depth_code.glsl"
 #include "storage.glsl"
 
@@ -20,8 +21,12 @@ float power_of_roughness(float roughness) {
     return max(2.0 / (alpha * alpha) - 2.0, 0.0);
 }
 
-bool is_signed(int component) { return component < DEPTH || component >= MOTION; }
+bool is_signed(int component) { return (component < DEPTH && NORMAL_UNIT == 0) || component >= MOTION; }
 bool is_integer(int component) { return component == KIND || component == INSTANCE; }
+
+// A number as texels hold it, and back.
+float held(int component, float x) { return NORMAL_UNIT != 0 && component < DEPTH ? x * 0.5 + 0.5 : x; }
+float taken(int component, float x) { return NORMAL_UNIT != 0 && component < DEPTH ? x * 2.0 - 1.0 : x; }
 
 // A number as a fixed-point format keeps it, between 0 and 1; code scale x is the integer nearest it times `scale`.
 float to_unit(int component, float x, float scale) {
@@ -94,7 +99,7 @@ vec4[TARGETS] to_texels(float numbers[NUMBERS]) {
     }
     for (int w = 0; w < WORDS; ++w) {
         int target = word_target[w], first = word_first[w], bits = word_bits[w], component = word_component[w];
-        float x = numbers[component];
+        float x = held(component, numbers[component]);
         bool carries = component == SIGN_CARRIER;
         if (bits == 0) {
             int kind = target_kind[target], rounds = target_rounds[target], channel = target * 4 + first;
@@ -130,7 +135,7 @@ void from_texels(vec4 texels[TARGETS], inout float numbers[NUMBERS]) {
             int kind = target_kind[target];
             float scale = target_scale[target * 4 + first], x = texels[target][first];
             if (carries) take_carried(component, carried(x, kind), scale, numbers);
-            else numbers[component] = from_channel(component, x, kind, scale);
+            else numbers[component] = taken(component, from_channel(component, x, kind, scale));
         } else {
             uint integer = 0u;
             for (int c = 0; c < 4; ++c) {
@@ -139,7 +144,7 @@ void from_texels(vec4 texels[TARGETS], inout float numbers[NUMBERS]) {
             }
             float scale = exp2(float(bits)) - 1.0;
             if (carries) take_carried(component, carried(float(integer) / scale, 0), scale, numbers);
-            else numbers[component] = from_word(component, integer, scale);
+            else numbers[component] = taken(component, from_word(component, integer, scale));
         }
     }
 }

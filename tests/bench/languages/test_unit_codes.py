@@ -88,6 +88,18 @@ def test_signed_and_float_targets_hold_what_the_engine_writes(run):
     assert {(name, row["code_range"]) for (name, _), row in rows.items()} == {("dir", "[0, 1]"), ("octahedral", None)}
 
 
+def test_a_layout_holds_what_the_engine_writes(run):
+    """Of an image the normals lose about a bit in signed and float targets, and nothing in unsigned ones."""
+    storages = "rg8,rg8_snorm,rg16f"
+    words = ("--size", "160x100", "--repeats", "1", "--scene", "room", "--format", "json")
+    status, out, err = run("render", "--encoding", "unit.glsl,octahedral", "--storage", storages, *words)
+    found = {(row["encoding"], row["storage"]): row["normal_psnr_db"] for row in json.loads(out)}
+    assert status == 0, err
+    loss = {storage: found["octahedral", storage] - found["dir", storage] for storage in storages.split(",")}
+    # A room has few directions: more or less than 6 dB is chance.
+    assert abs(loss["rg8"]) < 0.05 and 4 < loss["rg8_snorm"] < 12 and 4 < loss["rg16f"] < 12, loss
+
+
 def test_a_twin_of_such_codes_is_measured_the_same(run, tmp_path):
     (tmp_path / "unit.py").write_text(TWIN)
     for storage in ("rg8", "rg16f", "rg16_snorm"):
