@@ -33,7 +33,7 @@ class Layout:
     Attributes:
         name, title, source: what it is called, what it is, where it comes from.
         targets: in the order of their attachment.
-        encoding: of the normal.
+        encoding: of the normal. In the world's axes a code for a half keeps its own: its y is the world's.
         space: "view" or "world", what the normal's axes are.
         rounding: "nearest" or "truncate", how the normal's own format rounds.
         packing: how words with bits round, a key of PACKINGS.
@@ -59,6 +59,8 @@ class Layout:
 
     def __post_init__(self):
         self._check_names()
+        if self.space == "world" and self.encoding.own:
+            object.__setattr__(self, "encoding", self.encoding.own)
         found = [word.component for word in self.words]
         for component in found:
             if found.count(component) > 1:

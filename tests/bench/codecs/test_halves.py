@@ -2,10 +2,15 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 
 from normalbench.bench.codecs.first_look import first_look
+from normalbench.bench.codecs.user_encodings import encodings_named
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 pytestmark = pytest.mark.usefixtures("gl")
 FOLD = "vec2 fold(vec2 p) { return (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0); }\n"
@@ -155,6 +160,15 @@ def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
     found = first_look(tmp_path / "written.glsl")
     axis, side = found.get("half", (2, 1))
     assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and found["wrong"] == []
+
+
+def test_a_layout_in_world_space_keeps_the_axes_of_a_half(tmp_path):
+    """A code for y >= 0 holds what looks up in the world, and of view space what looks at the viewer."""
+    (tmp_path / "dir.glsl").write_text(design("xy", "y >= 0"))
+    (encoding,) = encodings_named("dir.glsl")
+    layout = replace(LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rg8"])), space="view")
+    assert (layout.encoding.axis, layout.encoding.is_turned) == ("x", True)
+    assert not replace(layout, space="world").encoding.is_turned
 
 
 def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
