@@ -19,7 +19,7 @@ NORMAL_SETS = {
     "sphere": "directions spread evenly over the sphere, seeded",
     "hemisphere": "directions spread evenly over z >= 0, seeded",
     "axes": "axis-aligned, both zeros, and a few units in the last place around",
-    "playground": "the scene of Pranckevicius' article rendered at 640 x 480, without its four lamp arms",
+    "playground": "the scene of Pranckevicius' article rendered at 640 x 480, with four lamp arms like its own",
 }
 
 FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from .mesh import Mesh, box, grid_triangles, grid_uv, joined, smooth_normals, sphere
+from .models.teapot import teapot
 from .scene import Light, Material, Part, Scene, View, Water, placed
 from .setting import Setting, coloured
-from .teapot import teapot
 
 TITLE = "a lake between hills under a clear sky: trees, a jetty, floats, stones, a teapot under water"
 FRAMES = 3

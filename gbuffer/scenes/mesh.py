@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -90,6 +90,15 @@ def wound(mesh: Mesh) -> np.ndarray:
     triangles = mesh.triangles.copy()
     triangles[inwards] = triangles[inwards][:, ::-1]
     return triangles
+
+
+def facing(mesh: Mesh) -> Mesh:
+    """What a mesh in view space shows the eye, the origin, where backs are culled: the triangles that are seen from the
+    side that their normals point to."""
+    triangles = wound(mesh)
+    corners = mesh.positions[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return replace(mesh, triangles=triangles[np.sum(across * corners[:, 0], axis=1) < 0])
 
 
 def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:

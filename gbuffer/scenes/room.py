@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from .mesh import Mesh, box, plane, sphere
+from .models.teapot import teapot
 from .scene import Light, Material, Part, Scene, View, placed
 from .setting import Setting, coloured
-from .teapot import teapot
 
 TITLE = "axis-aligned walls, floor and boxes, a teapot, glass; spot lights, point lights and a sun"
 FRAMES = 1

@@ -6,8 +6,8 @@ import pytest
 from normalbench.gbuffer.scenes import mesh as shapes
 from normalbench.gbuffer.scenes import rasterise as rasteriser
 from normalbench.gbuffer.scenes.mesh import Mesh
+from normalbench.gbuffer.scenes.models.teapot import HEIGHT, control_points, teapot
 from normalbench.gbuffer.scenes.rasterise import Camera, rasterise
-from normalbench.gbuffer.scenes.teapot import HEIGHT, control_points, teapot
 
 CAMERA = Camera(width=160, height=120, fov=60.0, near=0.1, far=100.0)
 

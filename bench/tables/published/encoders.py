@@ -11,8 +11,8 @@ from .figure import DECIBELS, DEGREES, Figure, Measure
 from .measures import ArticleMse, Counted, InACube, Instructions, Quality
 
 LAMPS = (
-    "four copies of a lamp arm in the article's scene may not be redistributed, "
-    "and curved surfaces may be cut more or less finely"
+    "the four lamp arms of the article's scene may not be redistributed: ours have their statistics, and another "
+    "shape; curved surfaces may be cut more or less finely"
 )
 
 # Pranckevicius

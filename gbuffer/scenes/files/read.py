@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..mesh import facing, joined
 from ..rasterise import Camera, Rendered, rasterise
 from ..scene import Light, Part, Scene, View
 from ..setting import Setting, coloured
@@ -120,9 +121,10 @@ def _lights(file: MeshFile, setting: Setting) -> list[Light]:
 def seen(file: MeshFile, size: tuple[int, int]) -> Rendered:
     """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
 
-    Both sides of every surface are drawn.
+    The back of a surface is drawn where the file's material says so, as renderers do.
     """
     view = file_view(file)
     matrix = view.matrix()
-    mesh = file.baked.placed(matrix[:3, :3].T, matrix[:3, 3])
-    return rasterise(mesh, Camera(*size, view.fov, view.near, view.far))
+    pieces = [piece.baked().placed(matrix[:3, :3].T, matrix[:3, 3]) for piece in file.pieces]
+    drawn = [mesh if file.two_sided[p.material] else facing(mesh) for p, mesh in zip(file.pieces, pieces, strict=True)]
+    return rasterise(joined(drawn), Camera(*size, view.fov, view.near, view.far))

@@ -142,11 +142,11 @@ def test_two_channels_leave_nothing_to_choose():
 
 
 def test_blocks_that_cross_the_fold_of_an_octahedral_code_are_the_long_tail():
-    """Of the scene with silhouettes: the mean grows by half, the largest angle more than tenfold."""
+    """Of the scene with silhouettes: the mean doubles, the largest angle is more than tenfold."""
     none, bc5 = (
         measure(case(NORMAL_SETS["playground"](0, 0), block, encoding="octahedral"))[0] for block in ("none", "bc5")
     )
-    assert bc5["angle_mean_deg"] < 1.6 * none["angle_mean_deg"], bc5["angle_mean_deg"]
+    assert 1.5 < bc5["angle_mean_deg"] / none["angle_mean_deg"] < 2.5, bc5["angle_mean_deg"]
     assert bc5["angle_max_deg"] > 10 * none["angle_max_deg"], bc5["angle_max_deg"]
 
 

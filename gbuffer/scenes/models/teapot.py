@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .mesh import Mesh, grid_triangles, grid_uv, joined
+from ..mesh import Mesh, grid_triangles, grid_uv, joined
 
 # A quarter circle's inner control points lie at this share of the radius, unless a circle names another.
 QUARTER = 0.56

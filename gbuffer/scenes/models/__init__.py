@@ -1,0 +1,1 @@
+"""Meshes that are made by code."""
