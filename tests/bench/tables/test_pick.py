@@ -186,10 +186,18 @@ EXPECTED = {
 
 
 FIRST, *OTHERS = EXPECTED
+# Of the others these are in every run.
+SLOW = ("--storage rgb10a2", "--storage rg8 --domain hemisphere")
+HERE = "bench/tables/test_pick.py::test_the_answer_is_what_an_expert_expects"
+ASKED = [
+    FIRST,
+    *(pytest.param(words, marks=pytest.mark.slow) for words in SLOW),
+    *(pytest.param(words, marks=pytest.mark.nightly(HERE)) for words in OTHERS if words not in SLOW),
+]
 
 
 @pytest.mark.usefixtures("gl", "radv")
-@pytest.mark.parametrize("words", [FIRST, *(pytest.param(words, marks=pytest.mark.slow) for words in OTHERS)])
+@pytest.mark.parametrize("words", ASKED)
 def test_the_answer_is_what_an_expert_expects(run, words):
     code, more = EXPECTED[words]
     status, out, err = run("pick", *words.split(), "--format", "markdown")
