@@ -148,7 +148,7 @@ WRONG = {
     ),
     "another angle of view": Wrong(
         lambda path: floats(path, N),
-        "at --fov 10, 0% at about 50: check --fov, which is the vertical angle",
+        "at --fov 10, 0% at about 60: check --fov, which is the vertical angle",
         Reading(fov=10),
         Reading(fov=60),
     ),
