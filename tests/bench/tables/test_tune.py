@@ -137,7 +137,8 @@ def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
 
 @pytest.mark.slow
 def test_the_scale_of_2010_was_found_well():
-    """On the scene it was found on 1.7777 is within 1 % of the best for PSNR, and what is found is no worse there."""
+    """On the scene it was found on, with arms of ours, 1.7777 is within 3 % of the best for PSNR, and what is found is
+    no worse there."""
     chosen = halves_of(playground(), 0, by_tiles=False)
     codec = codec_of("stereographic", "rg8")
     found = tuned(codec, chosen.fitting, "psnr")
@@ -145,7 +146,7 @@ def test_the_scale_of_2010_was_found_well():
         quality.measure(quality.Case(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
         for e in (codec.encoding, codec.encoding.with_parameters(found.values))
     )
-    assert found.values["scale"] == pytest.approx(1.7777, rel=0.01)
+    assert found.values["scale"] == pytest.approx(1.7777, rel=0.03)
     assert after >= before, found
 
 
