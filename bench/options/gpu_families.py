@@ -89,16 +89,9 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
 MOBILE = (TURNIP, V3DV)
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
 
-
-def _called(family: Family) -> str:
-    """A family's title as people type it: "navi-2x", "turing"."""
-    return family.title.lower().replace(" ", "-")
-
-
-# What a user may name: a family, also by its title, or a vendor for all of its families.
+# What a user may name: a family, or a vendor for all of its families.
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {name: (name,) for name in FAMILIES}
-    | {_called(family): (name,) for name, family in FAMILIES.items() if "," not in family.title}
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
     | {"mobile": tuple(name for name, family in FAMILIES.items() if family.library in MOBILE)}
 )

@@ -84,7 +84,7 @@ def prepare(folder: Path) -> None:
 MEASURING = "here it would be measured"
 
 
-def would_measure(_: int) -> NoReturn:
+def would_measure(*_: object) -> NoReturn:
     """In place of the measurement, which for some words is of everything there is."""
     raise UsageError(MEASURING)
 

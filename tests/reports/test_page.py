@@ -45,7 +45,7 @@ def test_the_page_itself_never_scrolls_sideways(seen):
 
 def test_the_answer_is_what_is_seen_first(seen):
     lead = seen.page.locator(".lead")
-    assert lead.text_content().startswith("What normals lose; ")
+    assert lead.text_content().startswith("What normals lose")
     box, height = lead.bounding_box(), seen.page.viewport_size["height"]
     assert box["y"] > 0 and box["y"] + box["height"] < height, box
     assert np.ptp(seen.pixels(".lead")) > 150, "dark on light or light on dark"

@@ -185,7 +185,16 @@ def test_pictures_beside_the_page_are_all_there_in_full_size(run, tmp_path):
 def pick_row(encoding: str, mean: float, slots: int) -> dict:
     """A code of an answer."""
     about = {"asked": "rg8", "storage": "rg8", "encoding": encoding, "normals": "sphere", "scene": "gloss", "bits": 16}
-    about |= {"aim": "angle", "readers": 4, "worth": 3.0, "domain": "sphere", "family": "navi21", "invalid": 0}
+    about |= {
+        "aim": "angle",
+        "readers": 4,
+        "worth": 3.0,
+        "enough": 0.35,
+        "packed": False,
+        "domain": "sphere",
+        "family": "navi21",
+        "invalid": 0,
+    }
     about |= {"dearest_family": "navi21", "lost_percent": 0.0, "against": False, "beside": False, "table": False}
     figures = {"angle_mean_deg": mean, "angle_max_deg": 1.0, "image_db_gloss_47": 50.0, "free_bits": 0}
     costs = {"encode_slots": slots, "decode_slots": 0, "slots_once": slots, "slots": slots, "loops": 0}

@@ -214,7 +214,7 @@ COMMON = (
 # Of these, the ones with two numbers.
 TWO = (
     *("xy", "xy_sign", "spherical", "spherical_lut", "spheremap", "spheremap_classic", "cryengine3"),
-    *("stereographic", "per_pixel_view", "octahedral"),
+    *("stereographic", "per_pixel_view", "octahedral", "spherical_fibonacci"),
 )
 # Of these, what is worth more than 16 bits.
 WIDE = ("octahedral", "octahedral_precise", "spheremap", "spherical")

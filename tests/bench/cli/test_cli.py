@@ -143,7 +143,7 @@ def test_run_leaves_a_results_folder(tmp_path, run):
         name for name in COMMON if ENCODINGS[name].components == 2 and Codec(ENCODINGS[name], STORAGES["rg16f"]).fits
     ]
     assert tuple(two) == TWO
-    codecs = len(COMMON) + len(two) + 3 * len(WIDE)
+    codecs = len(COMMON) + len(two) + 3 * len(WIDE) + 2
     assert len(rows) == codecs * 2 * 2, "in rgba8, rg16f, rgb10a2, rg16 and 12:12"
     assert {row["normals"] for row in rows} == {"playground", "hemisphere"}
     assert all(row["skipped"] is None and row["count"] for row in rows)
