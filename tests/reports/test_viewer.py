@@ -175,11 +175,11 @@ def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
     page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(2)")
-    assert page.page.locator(".proof:not([hidden])").count() == 4, "two storages on two scenes"
-    page.page.locator(".proof").nth(2).locator("button").first.click()
+    assert page.page.locator(".proof:not([hidden])").count() == 2, "two storages"
+    page.page.locator(".proof").first.locator("button").first.click()
     page.page.wait_for_selector(VIEWED)
     page.page.wait_for_timeout(300)
-    assert page.page.locator("#subject option:checked").text_content() == "the answer on room at power 47"
+    assert page.page.locator("#subject option:checked").text_content() == "the answer on gloss at power 47"
     sides = [page.page.locator(f"#{side} option:checked").text_content() for side in ("left", "right")]
     assert sides == ["fine rg8", "xy rg8"] and page.page.locator("#view").input_value() == "final"
     for index in (0, 1, 0):
