@@ -10,7 +10,7 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES
 from ..tables.devices.agreement import time_of
-from ..tables.pick.answer import BEST, answered
+from ..tables.pick.answer import BEST, answered, places_of
 from ..tables.pick.sentences import degrees, left_out, rungs
 from ..tables.pick.table import READERS, TEXEL_DEG, WORTH_DB, PickOptions
 from ..tables.table import Row, Sheet
@@ -95,7 +95,7 @@ def _asked(row: Row, known: Known) -> Row:
 
 def _sheet(question: Sequence[str], group: Sequence[Row]) -> Sheet:
     storage, target, rounding = question
-    best = next((row for row in group if BEST in str(row.get("place")).split(", ")), None)
+    best = next((row for row in group if BEST in places_of(row)), None)
     kept = [row for row in group if row.get("front") or row is best]
     said = f"rounded to {rounding}" if rounding == "nearest" else rounding
     title = f"{storage} in {target}, {said}: the codes that no other one beats"

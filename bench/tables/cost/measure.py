@@ -312,15 +312,16 @@ def _executed(case: Case, row: Row, assembly: str) -> float | None:
     read, family = listings_of(row["family"]), row["family"]
     if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):
         return None
+    static = sum(rate * row[kind] for kind, rate in rates.items())
     if not row["loops"]:
-        return sum(rate * row[kind] for kind, rate in rates.items())
+        return static
     turns = executed.turns_of(case.encoding) if case.encoding and hasattr(read, "loops") else None
     if turns is None:
         return None
     kinds, loops = read.kinds_in_order(assembly, family), read.loops(assembly)
     slots = executed.executed_slots(kinds, rates, loops, turns[case.operation])
-    static = sum(rates.get(kind, 0) for kind in kinds)
-    return None if slots is None else slots - static + sum(rate * row[kind] for kind, rate in rates.items())
+    # The empty kernel has no loops: what they add is the whole kernel's.
+    return None if slots is None else slots - sum(rates.get(kind, 0) for kind in kinds) + static
 
 
 def listings_of(family: str) -> Any:

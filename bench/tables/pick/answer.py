@@ -38,7 +38,9 @@ INDISTINGUISHABLE_DB = 70.0
 # The share of the angle that the error of a decode's length has, from which on it must be normalised before it is lit.
 # `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
 LENGTH = 0.1
+# Nobody chooses by less than half a decibel, or half a doubling of the price.
 STEP = 0.5
+# Prices that are apart by less of a doubling are one.
 SAME_PRICE = 0.1
 # Rungs of a ladder that differ by less are one.
 LEAST_DB = 0.25
@@ -50,6 +52,11 @@ NO_FIGURE = "no figure for --aim"
 WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
 TIES = 3
+
+
+def places_of(row: Row) -> list[str]:
+    """What a row is in the answer, as `place` says it; nothing of one without a place."""
+    return str(row.get("place") or "").split(", ")
 
 
 def largest(row: Row) -> float | None:

@@ -16,7 +16,7 @@ from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...output.writing import files_of, whole_file
 from ..render import measure as render
 from ..table import Row
-from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images
+from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
 from .measure import Case, Pictures
 
 PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
@@ -24,7 +24,7 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
     """The image at each power of every code that has a place, and of the exact normals."""
-    placed = {(row["storage"], row["encoding"]) for row in rows if set(_places(row)) & set(PLACES)}
+    placed = {(row["storage"], row["encoding"]) for row in rows if set(places_of(row)) & set(PLACES)}
     drawn = (one for one in chosen if (one.codec.storage.name, one.codec.encoding.name) in placed)
     for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
         # A code that the device has no room for has no image.
@@ -48,7 +48,7 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     """What lies in a folder of the answers: at each power, the highest first, the codes by their places."""
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
-    found = [row for row in rows if set(_places(row)) & set(PLACES)]
+    found = [row for row in rows if set(places_of(row)) & set(PLACES)]
     placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place(row)))
     drawn = dict.fromkeys(key for row in placed for key in images(row))
     scenes = list(dict.fromkeys(scene for scene, _ in drawn))
@@ -62,12 +62,8 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             yield Subject(f"the answer on {scene} at power {power}", "image", partial(read_png, exact), known)
 
 
-def _places(row: Row) -> list[str]:
-    return str(row.get("place") or "").split(", ")
-
-
 def _place(row: Row) -> int:
-    return min(PLACES.index(word) for word in _places(row) if word in PLACES)
+    return min(PLACES.index(word) for word in places_of(row) if word in PLACES)
 
 
 def _read(path: Path) -> ImagePixels | None:

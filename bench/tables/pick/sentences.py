@@ -26,9 +26,11 @@ from .answer import (
     largest,
     loss_db,
     lost,
+    places_of,
     price,
     why_unfit,
 )
+from .table import TEXEL_DEG
 
 Row = dict[str, Any]
 
@@ -48,18 +50,18 @@ MOST_NAMED = 6
 UPSAMPLE = "upsample"
 # Axis-aligned normals that come back closer are exact.
 EXACT_DEG = 1e-3
-# How far the mirror's image is, in metres, and the size of the environment map, whose texel is in degrees.
-FAR, MAP, MAP_TEXEL_DEG = 10.0, "a 1k environment map", 360 / 1024
+# How far the mirror's image is, in metres, and the map that it shows.
+FAR, MAP = 10.0, "a 1k environment map"
 WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
     """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences."""
-    best = next((row for row in group if BEST in _places(row)), None)
+    best = next((row for row in group if BEST in places_of(row)), None)
     where = f"{group[0]['asked']}, on {group[0]['normals']}"
     if best is None:
         return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group), *left_out(group)]
-    others = [_elsewhere(row, best) for row in group if ELSEWHERE in _places(row)]
+    others = [_elsewhere(row, best) for row in group if ELSEWHERE in places_of(row)]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
     made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
     made += list(filter(None, [_images(best), _mixing(best)]))
@@ -84,11 +86,7 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
     """A sentence for each rung of the ladder."""
     titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
     for place, title in titles.items():
-        yield from (f"{title}: {_rung(row, best)}" for row in group if place in _places(row))
-
-
-def _places(row: Row) -> list[str]:
-    return str(row.get("place") or "").split(", ")
+        yield from (f"{title}: {_rung(row, best)}" for row in group if place in places_of(row))
 
 
 def _called(row: Row) -> str:
@@ -133,7 +131,7 @@ def _seen(row: Row) -> str:
     moved = _moved(row)
     if len(moved) < 2:
         return ""
-    texels = " and ".join(f"{value / MAP_TEXEL_DEG:.2g}" for value in moved)
+    texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
