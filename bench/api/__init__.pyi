@@ -123,7 +123,7 @@ def quality(
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
-        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
+        normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. `domain` is all that a code is made for: sphere and axes, or hemisphere.
         backend: jax, glsl, wgsl; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.

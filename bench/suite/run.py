@@ -54,7 +54,8 @@ def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
     is_as_it_is = own.get("layout") and not {"encoding", "storage", "rounding"} & set(own)
     unusual = {"encoding"} if is_as_it_is else set()
     chosen = ({name: value for name, value in usual.items() if name not in unusual} for usual in table.usual)
-    return [table.options(**usual | own) for usual in chosen]
+    replaced = {key: value for name in own for key, value in table.usual_where_said.get(name, {}).items()}
+    return [table.options(**usual | replaced | own) for usual in chosen]
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:

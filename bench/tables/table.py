@@ -253,6 +253,7 @@ class Table:
         also: columns that only its summaries have.
         section: its part of the page.
         usual: what `run` measures of it where nothing else is asked for: sets of options.
+        usual_where_said: by an option, what of `usual` is replaced where `run` is given that option.
         single: options of a gate or a test that says nothing else.
         files: by output, the folder or file of a run that holds it.
         by: a column; for people rows that differ in it are tables of their own.
@@ -276,6 +277,7 @@ class Table:
     outputs: type = NoOutputs
     also: tuple[Column, ...] = ()
     usual: tuple[Mapping[str, Any], ...] = ({},)
+    usual_where_said: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     single: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
     by: str = ""

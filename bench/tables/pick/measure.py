@@ -28,6 +28,7 @@ from ...metrics.images import squared_error
 from ...metrics.totals import psnr_db
 from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...output import cache as kept
+from ...output.errors import tell
 from ...output.sources import sources
 from ...worst_case.exact_figures import has_twin
 from ..mix import judge
@@ -348,6 +349,9 @@ class Pictures:
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._references:
             self._references[question] = Reference(*self._drawn(case, maker, LAYOUTS["fp32"]))
+            covered = 100.0 * float(np.mean(self._references[question].held_by("sphere")))
+            for line in render.says_little(maker.name, covered):
+                tell(line)
         return self._references[question]
 
     def _relit(self, case: Case, maker: SceneMaker) -> list[np.ndarray]:

@@ -13,7 +13,7 @@ from ...options.option import (
     Count,
     Encodings,
     Images,
-    Normals,
+    Names,
     Option,
     Reading,
     Roundings,
@@ -34,7 +34,15 @@ class QualityOptions(Reading):
     storage: StorageNames = "rgba8"
     rounding: Roundings = "nearest"
     arithmetic: Arithmetics = "float"
-    normals: Normals = "playground"
+    normals: Annotated[
+        str,
+        Option(
+            "--normals",
+            f"Normal sets or files, {Names}. `domain` is all that a code is made for: sphere and axes, or hemisphere.",
+            files=True,
+            in_run=True,
+        ),
+    ] = "playground"
     backend: BackendsAndWgsl = "jax,glsl"
     count: Count = DEFAULT_COUNT
     seed: Seed = 0
@@ -219,6 +227,8 @@ TWO = (
 # Of these, what is worth more than 16 bits.
 WIDE = ("octahedral", "octahedral_precise", "spheremap", "spherical")
 SETS = "playground,hemisphere"
+# A code that somebody names is measured on all directions that it is made for.
+SETS_OF_NAMED = f"{SETS},domain"
 
 TABLE = Table(
     name="quality",
@@ -237,6 +247,7 @@ TABLE = Table(
         {"encoding": ",".join(WIDE), "normals": SETS, "storage": "rgb10a2,rg16,rgb8_12_12"},
         {"encoding": "xyz_largest,warped_cube", "normals": SETS, "storage": "rgb10a2"},
     ),
+    usual_where_said={"encoding": {"normals": SETS_OF_NAMED}},
     single={"encoding": "octahedral", "backend": "jax"},
     files={"images": "images", "maps": "sphere", "live": "live"},
     renamed={"psnr_seed_db": "psnr_article_db"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from ....encodings.codecs.codec import Codec
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ....reports.page.verdict import counted_set
@@ -34,6 +35,9 @@ BY_BACKEND = ("psnr_article_db", "psnr_db")
 # How many rows without figures a line names.
 MOST_NAMED = 4
 AGREED = "dB, the same by JAX and GLSL"
+# The word among normal sets that stands for those of a code's domain.
+DOMAIN = "domain"
+OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
 def cases(options: QualityOptions) -> list[measure.Case]:
@@ -56,8 +60,23 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     for line in left_out:
         leave_out(line)
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
-    normal_sets = normal_sets_named(options.normals, count, options.seed, options.reading, needs_rays)
-    return measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
+    said = [word.strip() for word in options.normals.split(",")]
+    names = dict.fromkeys(name for codec in codecs for name in _set_names(said, codec))
+    normal_sets = normal_sets_named(",".join(names), count, options.seed, options.reading, needs_rays)
+    made = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
+    return [case for case in made if _is_asked(case, said)]
+
+
+def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:
+    """The normal sets that words stand for where it is about a codec."""
+    for word in said:
+        yield from (OF_SPHERE if codec.encoding.domain == "sphere" else OF_HALF) if word == DOMAIN else (word,)
+
+
+def _is_asked(case: measure.Case, said: Sequence[str]) -> bool:
+    """Whether words name the set of a case, which `domain` does for codes of that domain alone."""
+    name = case.normal_set.name
+    return DOMAIN not in said or name not in OF_SPHERE + OF_HALF or name in _set_names(said, case.codec)
 
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:

@@ -32,6 +32,8 @@ STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for s
 UNMEASURABLE = (ShaderError, FormatError)
 # What 8 bits show as 0.
 BLACK = 0.5 / 255
+# A scene that covers less of its picture, in percent, leaves few pixels to judge by.
+LEAST_COVERED = 100 / 3
 # Codecs are ranked among rows that agree in these.
 SAME = ("scene", "power", "effects", "pipeline", "light_buffer", "light_targets", "shadow")
 Row = dict[str, Any]
@@ -131,6 +133,13 @@ def require_surface(maker: SceneMaker, is_seen: bool) -> None:
     """Raises UsageError where no surface of a scene is seen."""
     if not is_seen:
         raise UsageError(f"{maker.name}: {SEES_NOTHING}")
+
+
+def says_little(scene: str, covered: float) -> Iterator[str]:
+    """What is to be said of a scene that covers so many percent of its picture; nothing of one that fills it."""
+    if 0 < covered < LEAST_COVERED:
+        what = f"{scene}: surfaces cover {covered:.0f} % of the picture"
+        yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
 
 
 class Bench:

@@ -34,7 +34,7 @@ from ..charts import drawing, having
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
-from .measure import Bench, Case, described, in_order, ranked, shown_scene
+from .measure import Bench, Case, described, in_order, ranked, says_little, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
@@ -179,6 +179,8 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         if row["invalid"]:
             what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
             yield f"{what} on {row['scene']}: {row['invalid']} pixels are NaN or infinite"
+    for scene, covered in _most(rows, "covered_percent").items():
+        yield from says_little(scene, covered)
     for scene, black in _most(rows, "black_percent").items():
         if black > MOSTLY_BLACK:
             remedy = "it has no light that reaches what is seen, or needs --exposure auto"
@@ -194,7 +196,8 @@ def _most(rows: Sequence[Row], column: str) -> dict[str, float]:
     found: dict[str, float] = {}
     for row in rows:
         scene = shown_scene(row)
-        found[scene] = max(found.get(scene, 0.0), row[column] or 0.0)
+        if row[column] is not None:
+            found[scene] = max(found.get(scene, 0.0), row[column])
     return found
 
 

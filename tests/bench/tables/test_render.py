@@ -1,6 +1,7 @@
 """`normalbench render`: rows, pictures, and what it says of bad input."""
 
 import json
+import re
 import sys
 from dataclasses import replace
 
@@ -100,6 +101,19 @@ def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monk
         assert len(err.splitlines()) == 1, err
     status, out, err = run("lights", "--experiment", "image", *code[4:])
     assert (status, out) == (2, "") and "away.glb: no light reaches what its camera sees" in err, err
+
+
+def test_a_scene_that_covers_little_of_its_picture_is_said(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    document = as_document([sphere(1.0, 16, 8)])
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    document.node(camera=0, translation=[0, 0, 5])
+    document.write(tmp_path / "far.glb")
+    code = ["--encoding", "octahedral", "--storage", "rg8", "--scene", "far.glb", "--size", "64x48"]
+    # A ball of radius 1 at 5: pi tan(asin(1/5))^2 of a picture of 4/3 (2 tan(0.5))^2 is 8.2 %.
+    for words in (["render", "--repeats", "0"], ["pick"]):
+        _, _, err = run(*words, *code)
+        assert re.search(r"far.glb: surfaces cover (7|8|9) % of the picture; a camera in the file", err), (words, err)
 
 
 def test_a_black_image_is_said(run):
