@@ -19,6 +19,8 @@ NORMAL = 3
 # UnpackNormalOctRectEncode of Unity's HDRP decodes.
 DECODES, ENCODES = ("unpack", "decode", "decompress"), ("pack", "encode", "compress")
 
+BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
+
 
 @dataclass(frozen=True)
 class Function:
@@ -54,6 +56,11 @@ class Function:
     def takes_a_normal(self) -> bool:
         """Whether it is of a normal, whatever it gives."""
         return self.given in ((NORMAL,), (NORMAL, NORMAL))
+
+    @property
+    def gives_by_parameter(self) -> bool:
+        """Whether it is of a vector, and returns nothing."""
+        return self.kind == "void" and self.given[:1] > (0,)
 
     @property
     def may_decode(self) -> bool:
@@ -160,6 +167,9 @@ def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pa
     if missing:
         known = ", ".join(dict.fromkeys(one.name for one in found)) or "none"
         raise NoPairError(f"no function is named {missing[0]}; there are: {known}")
+    for one in found:
+        if one.name in asked and one.gives_by_parameter:
+            raise NoPairError(BY_PARAMETER.format(one.name))
     raise NoPairError(f"{asked[0]} must take a float3 and give what {asked[1]} takes; {asked[1]} must give a float3")
 
 
@@ -191,6 +201,9 @@ def stem(name: str) -> str:
 def _none_fits(found: Sequence[Function]) -> str:
     encoders = [one.name for one in found if one.may_encode and role(one.name) != "decode"]
     decoders = [one.name for one in found if one.may_decode and role(one.name) != "encode"]
+    for one in found:
+        if one.gives_by_parameter and role(one.name):
+            return BY_PARAMETER.format(one.name)
     others = [one for one in found if one.takes_a_normal and not one.result and role(one.name) == "encode"]
     if others and not encoders:
         return f"{others[0].name} gives a {others[0].kind}, but a code is two or three numbers that are not packed yet"

@@ -21,7 +21,7 @@ _PLACED = re.compile(r"(\d+):(\d+): (.*)", re.S)
 
 def preprocessed(source: Source, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
     """A source as it is, once it can be read. Raises TranslationError."""
-    _program(source)
+    _checked(source, lambda: read_wgsl(source.text))
     return source.text
 
 
@@ -37,7 +37,7 @@ def functions(text: str) -> list[Function]:
 
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
     """A function of a source as a fragment shader in GLSL: see `plain.py`. Raises TranslationError."""
-    program = reduced(_program(source), {function.name: "entry"}, "wgsl", "")
+    program = _checked(source, lambda: reduced(read_wgsl(source.text), {function.name: "entry"}, "wgsl", ""))
     # Names that end in a number are those that `plain.py` makes its own: none is a word of GLSL's.
     numbered(program, "wgsl")
     entry = program.functions[-1]
@@ -46,10 +46,6 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
     words = {"VIEW": view, "RESULT": f"vec{function.result}", "GIVEN": f"vec{function.given[0]}"}
     made = template("entry.frag", FUNCTION=entry.name, ARGUMENTS=", ".join(given), **words)
     return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + made
-
-
-def _program(source: Source) -> tree.Program:
-    return _checked(source, lambda: read_wgsl(source.text))
 
 
 def _checked(source: Source, made):

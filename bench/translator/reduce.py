@@ -25,6 +25,9 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
         roots: what functions are to be called, by the name that they have.
         prefix: what every name begins with.
         own: what the names of an encoding's own functions begin with, which the prefix stands for.
+
+    Raises:
+        TranslationError: one of these functions could not be read.
     """
     keys = {plain_name(f): f.name for f in program.functions}
     kept = _reached(program, [keys[name] for name in roots])
@@ -45,7 +48,10 @@ def _reached(program: Program, names: list[str]) -> set[str]:
     by_name = {f.name: f for f in program.functions}
     found, left = set(names), list(names)
     while left:
-        for node in inside(by_name[left.pop()].body):
+        function = by_name[left.pop()]
+        if function.unread:
+            raise function.unread
+        for node in inside(function.body):
             if isinstance(node, Call) and node.is_own and node.name not in found:
                 found.add(node.name)
                 left.append(node.name)

@@ -252,10 +252,13 @@ class Parameter:
 
 @dataclass
 class Function(Statement):
+    """`unread` is why its body could not be read, which is nobody's loss unless somebody needs it."""
+
     kind: str
     name: str
     parameters: list[Parameter]
     body: list[Statement]
+    unread: TranslationError | None = field(default=None, kw_only=True)
 
 
 @dataclass

@@ -1,10 +1,17 @@
-"""WGSL read as a tree: functions without side effects, and constants."""
+"""WGSL read as a tree: functions without side effects, and constants.
+
+A module may have more: entry points, bindings, functions of pointers. They are left out, and what needs one of them has
+the reason in place of its body.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from copy import deepcopy
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 from types import MappingProxyType
 
@@ -31,6 +38,7 @@ from .tree import (
     Return,
     Statement,
     Struct,
+    TranslationError,
     Unary,
     While,
     inside,
@@ -65,6 +73,15 @@ BITS: Mapping[tuple[str, str], str] = MappingProxyType(
 SCALAR_NAMES = {"float": "f32", "int": "i32", "uint": "u32", "bool": "bool"}
 ONE, ZERO = Literal("float", "1.0"), Literal("float", "0.0")
 SKIPPED = frozenset(("alias", "enable", "requires", "diagnostic", "const_assert"))
+# What declares that which a pipeline sets, and what no encoder has.
+SET_FROM_OUTSIDE = frozenset(("var", "override"))
+# Where a comment may begin, and what stands in one.
+OPENS, CLOSES = frozenset("({["), frozenset(")}]")
+# What stands behind the name that a declaration gives.
+NAME_ENDS = frozenset(("(", ":", "=", "{", ";"))
+DECLARATION_ENDS = frozenset(("}", ";"))
+OUTSIDE, INSIDE = re.compile(r"//[^\n]*|/\*"), re.compile(r"/\*|\*/")
+OF_A_PIPELINE = re.compile(r"@|ptr|atomic|sampler\w*|texture_\w+")
 # What WGSL defines and GLSL does not; no name of WGSL begins with two underscores.
 DEFINED = Path(__file__).with_name("wgsl_defined.glsl")
 OPERATIONS: Mapping[str, str] = MappingProxyType({"/": "__quotient", "%": "__remainder"})
@@ -76,8 +93,21 @@ TRUTHS = frozenset(("&", "|"))
 def read_wgsl(text: str) -> Program:
     """A program of WGSL's text. Raises TranslationError."""
     with one_error_type():
-        parser = WgslParser(tokens(text))
+        parser = WgslParser(tokens(_with_flat_comments(text)))
     return parser.program()
+
+
+def _with_flat_comments(text: str) -> str:
+    """A text whose comments hold no others, which WGSL's may: the marks inside become blanks."""
+    depth = at = 0
+    made = ""
+    while match := (INSIDE if depth else OUTSIDE).search(text, at):
+        is_mark = match[0] in ("/*", "*/")
+        depth += is_mark * (1 if match[0] == "/*" else -1)
+        is_inner = is_mark and depth + (match[0] == "*/") > 1
+        made += text[at : match.start()] + ("  " if is_inner else match[0])
+        at = match.end()
+    return made + text[at:]
 
 
 @cache
@@ -97,57 +127,133 @@ class WgslParser(Parser):
         self._types: dict[str, int] = {}
         self._structs: dict[str, Struct] = {}
         self._read: set[str] = set()
+        # Why what is declared outside of functions cannot be read, by name.
+        self._unread: dict[str, TranslationError] = {}
 
     def _program(self) -> Program:
         """All of it; functions that call later ones come after these."""
-        self._know_all()
-        while self._next is not END:
-            if not self._skip(";"):
-                self._global()
+        declarations = list(self._declarations())
+        self._know_all(declarations)
+        for declared in declarations:
+            self._at = declared.start
+            try:
+                while self._at < declared.stop:
+                    self._global()
+            except TranslationError as error:
+                self._leave_out(declared, error)
         self._made.functions = [*deepcopy(_defined()), *_callees_first(self._made.functions)]
         self._made.structs = list(self._structs.values())
         return self._made
 
-    def _know_all(self) -> None:
-        """Makes everything outside of functions known: WGSL uses it before it stands."""
-        depth = 0
+    def _declarations(self) -> Iterator[range]:
+        """The tokens of each declaration of the module."""
+        depth = begin = 0
         for at, token in enumerate(self._tokens):
-            depth += (token.text == "{") - (token.text == "}")
-            if not depth and token.text == "const":
-                self._constants[self._tokens[at + 1].text] = at
-        self._know_types()
-        for at, token in enumerate(self._tokens):
-            if token.text == "fn" and token.kind == "word":
-                self._at = at
-                self._add(self._signature())
-        self._at = 0
+            depth += (token.text in OPENS) - (token.text in CLOSES)
+            if depth or token.text not in DECLARATION_ENDS:
+                continue
+            if at > begin or token.text != ";":
+                yield range(begin, at + 1)
+            begin = at + 1
+        if begin < len(self._tokens):
+            yield range(begin, len(self._tokens))
 
-    def _know_types(self) -> None:
+    def _known_by(self, declared: range) -> tuple[Token, str]:
+        """The word that a declaration is made by, such as fn, and its name; the parser stands at the word."""
+        self._at = declared.start
+        while self._next.text == "@":
+            self._at += 2
+            self._skip_group()
+        word = self._next
+        behind = (at for at in range(self._at, declared.stop) if self._tokens[at].text in NAME_ENDS)
+        return word, self._tokens[max(next(behind, declared.stop) - 1, self._at)].text
+
+    def _skip_group(self) -> None:
+        """What stands in parentheses here, if anything does."""
+        depth = 0
+        while self._next is not END:
+            depth += (self._next.text == "(") - (self._next.text == ")")
+            if not depth and self._next.text != ")":
+                return
+            self._at += 1
+
+    def _know_all(self, declarations: Sequence[range]) -> None:
+        """Makes everything outside of functions known: WGSL uses it before it stands."""
+        known = {declared: self._known_by(declared) for declared in declarations}
+        for word, name in known.values():
+            if word.text in SET_FROM_OUTSIDE:
+                what = f"{name} is set from outside; an encoder has its normal, and a view-space position, alone"
+                self._unread[name] = self._error(what, word.place)
+        for declared, (word, name) in known.items():
+            if word.text == "const":
+                self._known_by(declared)
+                self._constants[name] = self._at
+        self._know_types({name: at for at, (word, name) in known.items() if word.text in ("alias", "struct")})
+        for declared, (word, _) in known.items():
+            if word.text == "fn" and not self._has_attributes(declared):
+                self._know_function(declared)
+
+    def _has_attributes(self, declared: range) -> bool:
+        """Whether it is an entry point, or something else of a pipeline."""
+        self._at = declared.start
+        return self._next.text == "@" and self._ahead(1) != "must_use"
+
+    def _know_function(self, declared: range) -> None:
+        _, name = self._known_by(declared)
+        begin = self._at
+        try:
+            self._add(self._signature())
+        except TranslationError as error:
+            signature = (self._tokens[at].text for at in range(begin, declared.stop))
+            if not any(self._is_of_a_pipeline(text) for text in takewhile("{".__ne__, signature)):
+                raise
+            self._unread[name] = error
+
+    def _is_of_a_pipeline(self, text: str) -> bool:
+        return text in self._unread or bool(OF_A_PIPELINE.fullmatch(text))
+
+    def _know_types(self, declared: Mapping[str, range]) -> None:
         """Aliases and structures, each after those that it is made of."""
-        begins = {
-            self._tokens[at + 1].text: at
-            for at, token in enumerate(self._tokens[:-1])
-            if token.text in ("alias", "struct") and token.kind == "word"
-        }
-        self._types = begins
-        for name in [*begins]:
-            self._know_type(name)
-        self._at = 0
+        for name, at in declared.items():
+            self._known_by(at)
+            self._types[name] = self._at
+        for name in declared:
+            with suppress(TranslationError):
+                self._know_type(name)
 
     def _know_type(self, name: str) -> None:
         if name not in self._types:
             return
         before, self._at = self._at, self._types.pop(name)
+        try:
+            self._read_type(name)
+        except TranslationError as error:
+            self._unread[name] = error
+            raise
+        self._at = before
+
+    def _read_type(self, name: str) -> None:
         word = self._take().text
         self._take()
         if word == "alias":
             self._take("=")
             self._aliases[name] = self._kind()
         else:
-            struct = Struct(name, self._fields())
-            self._structs[name] = struct
+            self._structs[name] = Struct(name, self._fields())
             self._aliases[name] = name
-        self._at = before
+
+    def _leave_out(self, declared: range, error: TranslationError) -> None:
+        """A declaration that cannot be read: whoever needs it is told why. Raises the error where it has no end."""
+        if self._tokens[declared.stop - 1].text not in DECLARATION_ENDS:
+            raise error
+        word, name = self._known_by(declared)
+        self._scopes[1:], self._depth = [], 0
+        if word.text == "fn" and name in self._functions:
+            (function,) = self._functions[name]
+            function.body, function.unread = [], error
+            self._made.functions.append(function)
+        else:
+            self._unread.setdefault(name, error)
 
     def _fields(self) -> dict[str, str]:
         self._take("{")
@@ -164,6 +270,8 @@ class WgslParser(Parser):
         first = self._next
         if self._skip("const"):
             self._constant(first)
+        elif self._skip(";"):
+            pass
         elif first.text == "@" and self._ahead(1) == "must_use":
             self._at += 2
         elif self._skip("struct"):
@@ -187,13 +295,22 @@ class WgslParser(Parser):
 
     def _named(self, token: Token) -> Expression:
         """A name; a constant outside of functions is read when it is first used."""
-        is_known = any(token.text in scope for scope in self._scopes)
-        if not is_known and token.text in self._constants and token.text not in self._read:
+        if not any(token.text in scope for scope in self._scopes):
+            self._read_constant(token)
+        return super()._named(token)
+
+    def _read_constant(self, token: Token) -> None:
+        """One outside of functions, where a name is of one that was not read. Raises TranslationError."""
+        if token.text in self._constants and token.text not in self._read:
             before, inner = self._at, self._scopes
             self._at, self._scopes = self._constants[token.text] + 1, self._scopes[:1]
-            self._constant(token)
+            try:
+                self._constant(token)
+            except TranslationError as error:
+                self._unread[token.text] = error
             self._at, self._scopes = before, inner
-        return super()._named(token)
+        if token.text in self._unread:
+            raise self._unread[token.text]
 
     def _would_hide(self, name: str) -> bool:
         return len(self._scopes) > 1 and (name in self._constants or super()._would_hide(name))
@@ -235,6 +352,8 @@ class WgslParser(Parser):
         known = {**KINDS, **self._aliases}
         if token.text in known:
             return known[token.text]
+        if token.text in self._unread:
+            raise self._unread[token.text]
         if token.text not in GENERIC:
             self._at -= 1
             raise self._error(f"{token.text} is not a type that is known here")

@@ -55,6 +55,11 @@ def test_the_pair_of_a_file_is_found(text, named):
         ("", None, "no encoder and decoder found; the two functions must be float2 (or float3) ENCODE(float3 n)"),
         (f"float2 EncodeNormal(float3 n) {OF}", None, "EncodeNormal has no decoder"),
         (BACK, None, "DecodeNormal has no encoder"),
+        (
+            f"void EncodeNormal(float3 n, out float2 e) {OF} {BACK}",
+            None,
+            "EncodeNormal returns nothing; write a function",
+        ),
         (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal gives a uint, but a code is two or three numbers"),
         (
             "".join(f"float2 Encode{x}(float3 n) {OF} float3 Decode{x}(float2 e) {OF}" for x in "AB"),

@@ -89,8 +89,8 @@ WRONG = {
         r"\.wgsl:13:\d+: (int|float) where (int|float) is expected",
     ),
     "binding": (
-        "@group(0) @binding(0) var t: texture_2d<f32>;" + MINE,
-        "only functions, constants, structures and aliases",
+        "@group(0) @binding(0) var<uniform> t: f32;" + MINE.replace("return p;", "return p * t;"),
+        r"\.wgsl:1:\d+: t is set from outside",
     ),
     "endless": (MINE.replace("let p =", "loop { } let p ="), "do not end|did not end|killed|must|declaration"),
     "nan": (MINE.replace("return p;", "return p * sqrt(-1.0 - n.z * n.z);"), "no number"),

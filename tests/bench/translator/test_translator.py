@@ -177,7 +177,8 @@ def test_wgsl_is_read_and_said_in_glsl():
     ("source", "said"),
     [
         ("fn f(x: f32) -> f32 { return y; }", "1:30: y is not known here"),
-        ("@group(0) @binding(0) var t: texture_2d<f32>;", "only functions, constants, structures and aliases are read"),
+        ("@group(0) @binding(0) var<uniform> t: f32; fn f() -> f32 { return t; }", "1:23: t is set from outside"),
+        ("fn g(p: ptr<function, f32>) {} fn f(x: f32) { g(x); }", "1:47: g is not a function that is known here"),
         ("fn f(x: vec5f) -> f32 { return 1.0; }", "1:9: vec5f is not a type"),
         (
             "fn f(x: i32) -> i32 { switch x { case 1 { if x > 0 { break; } } default {} } return x; }",
@@ -191,9 +192,34 @@ def test_wgsl_is_read_and_said_in_glsl():
     ],
 )
 def test_what_wgsl_has_beyond_functions_is_refused_in_a_line(source, said):
-    """Bindings, structures and pointers are no part of an encoder."""
+    """Bindings and pointers are no part of an encoder."""
     with pytest.raises(TranslationError, match=re.escape(said)):
-        read_wgsl(source)
+        reduced(read_wgsl(source), {"f": "encode"}, "p", "")
+
+
+MODULE = """
+/* A comment may /* hold */ others. // */
+struct Settings { scale: f32, @align(16) bias: vec4<f32> };
+@group(0) @binding(0) var<uniform> settings: Settings;
+@group(0) @binding(1) var sheet: texture_2d<f32>;
+struct Given { @builtin(position) p: vec4<f32>, @location(0) n: vec3<f32> };
+@compute @workgroup_size(8, 8) fn cs(@builtin(local_invocation_index) i: u32) { settings.scale; }
+@fragment fn fs(given: Given) -> @location(0) vec2<f32> { return mineEncode(given.n) * settings.scale; }
+fn shade(given: Given) -> vec3<f32> { return given.n; }
+fn bump(p: ptr<function, f32>) { *p = *p + 1.0; }
+fn texel(at: vec2<i32>) -> vec3<f32> { return textureLoad(sheet, at, 0).xyz; }
+"""
+
+
+def test_what_a_module_of_wgsl_has_for_others_is_left_out():
+    """Entry points, bindings and pointers do not keep the pair next to them from being read."""
+    written = [
+        GlslWriter("p", {}).program(
+            reduced(read_wgsl(text), {"mineEncode": "encode", "mineDecode": "decode"}, "p", "mine")
+        )
+        for text in (WGSL, MODULE + WGSL, WGSL + MODULE)
+    ]
+    assert written[0] == written[1] == written[2]
 
 
 ARRAYS = """
