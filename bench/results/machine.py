@@ -14,6 +14,7 @@ from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..isa import isa, spirv
 from ..languages import tools
+from ..machine.settings import settings
 from ..options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..output.errors import MissingError
 
@@ -22,9 +23,6 @@ ROUNDS = {
     "truncate": "truncate (nearest is rounded in the shader)",
     "other": "neither nearest nor truncate (both are rounded in the shader)",
 }
-# Variables that change what JAX and Mesa compute, but for where they keep what they have compiled.
-SETTINGS = ("XLA_FLAGS", "JAX_", "MESA_", "GALLIUM_", "GALLIVM_", "LP_", "LIBGL_", "NIR_")
-KEEPS = "CACHE"
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matplotlib", "vulkan", "openimageio")
 
 
@@ -47,13 +45,7 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | settings() | _gl() | compilers()
-
-
-def settings() -> dict[str, str]:
-    """What is set from outside that figures may depend on, by name."""
-    names = sorted(name for name in os.environ if name.startswith(SETTINGS) and KEEPS not in name)
-    return {f"setting {name}": os.environ[name] for name in names}
+    return facts | {f"setting {name}": value for name, value in settings().items()} | _gl() | compilers()
 
 
 def _gl() -> dict[str, str]:

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 from ..languages.source import Source
 from ..languages.words import files_in, names_an_encoder, twin_of
+from ..machine.settings import settings
 from ..options.option import Reading, fields_of
 from ..output.errors import UsageError
 from ..output.journal import Journal, journal
@@ -74,10 +75,17 @@ class Here:
     """Steps are measured in this process, in their order."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
-        return zip(steps, ask.table.work.measure(steps, tick), strict=True)
+        for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
+            yield step, [_with_settings(row) for row in rows]
 
     def lacking(self, table: str) -> Sequence[str]:  # noqa: ARG002 # as of every Place
         return ()
+
+
+def _with_settings(row: Row) -> Row:
+    """A row whose device has what is set from outside, if anything is."""
+    said = ", ".join(f"{name}={value}" for name, value in settings().items())
+    return row | {"device": f"{row['device']}, {said}"} if said and row.get("device") else row
 
 
 HERE = Here()

@@ -39,7 +39,9 @@ BELOW_LIMIT = Column(
 )
 MSE = Column("mse", "Mean squared error of the displayed image.", better="less", drops=8)
 EXACT = Column("exact", "Whether no error is left at all.", Role.RAW, shown=False)
-DEVICE = Column("device", "What it was measured on.", Role.HOW, drops=1)
+DEVICE = Column(
+    "device", "What it was measured on, and the variables of JAX and Mesa that were set meanwhile.", Role.HOW, drops=1
+)
 ROUNDED_BY = Column(
     "rounded_by",
     "emulation; device, where the GL device rounds as asked; shader, where it does not and the shader rounds first.",

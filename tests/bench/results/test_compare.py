@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from test_readme import a_copy_of_the_rooms
 
+from normalbench.bench.machine.settings import settings
 from normalbench.bench.results import compare_command
 from normalbench.bench.results.comparison import compared, in_short, mann_whitney, total
-from normalbench.bench.results.machine import settings
 from normalbench.bench.results.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -112,13 +112,20 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     flags = "--xla_cpu_enable_fast_math=true"
     monkeypatch.setenv("XLA_FLAGS", flags)
     monkeypatch.setenv("MESA_SHADER_CACHE_DIR", "/somewhere")
-    set_here = settings()
-    assert set_here["setting XLA_FLAGS"] == flags and not any("CACHE" in name for name in set_here)
+    assert settings()["XLA_FLAGS"] == flags and not any("CACHE" in name for name in settings())
+    set_here = {"setting XLA_FLAGS": flags}
     runs = {"one": Done({"machine": {"python": "3"}}, []), "two": Done({"machine": {"python": "3"} | set_here}, [])}
     monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
     status, _, err = run("compare", "one", "two")
     assert status == 0
     assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err
+
+
+def test_settings_from_outside_stand_in_a_row(run, monkeypatch):
+    monkeypatch.setenv("MESA_NO_ERROR", "1")
+    words = ["quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--format", "json"]
+    devices = {row["backend"]: row["device"] for row in json.loads(run(*words)[1])}
+    assert devices["jax"] == "cpu, MESA_NO_ERROR=1" and devices["glsl"].endswith(", MESA_NO_ERROR=1")
 
 
 def test_the_encoder_that_broke_comes_before_counts_that_changed_from_0_to_2():

@@ -1,0 +1,14 @@
+"""What is set from outside that figures may depend on."""
+
+from __future__ import annotations
+
+import os
+
+# Variables that change what JAX and Mesa compute, but for where they keep what they have compiled.
+SETTINGS = ("XLA_FLAGS", "JAX_", "MESA_", "GALLIUM_", "GALLIVM_", "LP_", "LIBGL_", "NIR_")
+KEEPS = "CACHE"
+
+
+def settings() -> dict[str, str]:
+    """The variables that are set, by name."""
+    return {name: os.environ[name] for name in sorted(os.environ) if name.startswith(SETTINGS) and KEEPS not in name}
