@@ -14,8 +14,8 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
 from ...encodings.storages import rounding
 from ...encodings.storages.storage import MANTISSA, Storage
-from ..codecs.python_source import Gathered
 from ..output.errors import UsageError
+from .python_source import Gathered
 
 HEAD = '''def _where(condition, a, b):
     """np.where in float32, also of two plain numbers."""

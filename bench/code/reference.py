@@ -15,9 +15,9 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.codec_passes import CodecPasses
 from ...gbuffer.gl.device import device
-from ..codecs.doctor.probe import directions
-from ..worst_case.exact_figures import has_twin
+from ..metrics.directions import directions
 from .channels import WORD, Channel, Channels
+from .twin import has_twin
 
 COUNT = 2**16
 SIDE = 2**8

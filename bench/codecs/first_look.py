@@ -32,19 +32,21 @@ from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.codecs.loops import loop_limit, loops_ended
 from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ..code.twin import NoTwinError
 from ..languages.words import is_translated, twin_of
 from ..machine import children
+from ..metrics.directions import directions
 from ..output.errors import MissingError, UsageError
 from .doctor import folds
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import Domain, guessed
 from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit
 from .doctor.likeness import likeness
-from .doctor.probe import VIEW, Probe, Trip, directions, probe_of, trip_of
+from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import of_hlsl
-from .user_encodings import ANY, NoTwinError, read_encoding, twin_is_looked_at
+from .user_encodings import ANY, read_encoding, twin_is_looked_at
 
 # Of directions that a picture is marked with.
 MOST_BAD = 4000

@@ -14,10 +14,11 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
+from ..code.twin import NoTwinError
 from ..languages.words import CHAIN
 from ..options.words import Words, given_in
 from ..output.errors import UsageError, by_reason, names_a_file, pick
-from .user_encodings import NoTwinError, encodings_named
+from .user_encodings import encodings_named
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:

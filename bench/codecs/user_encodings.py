@@ -20,6 +20,7 @@ from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.harness import takes_view
 from ...gbuffer.gl.shader import ShaderError, read_shader
+from ..code.twin import NoTwinError
 from ..languages.pairs import NORMAL, Function
 from ..languages.programs import pair
 from ..languages.source import Source
@@ -47,10 +48,6 @@ ANY = "any"
 FIRST_LOOK = "normalbench.bench.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
 UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
-
-
-class NoTwinError(Exception):
-    """An encoding that is there in GLSL only."""
 
 
 def encodings_named(names: str) -> list[Encoding]:

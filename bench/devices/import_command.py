@@ -11,7 +11,7 @@ from ..output.errors import UsageError, tell
 from ..output.writing import say
 from ..results.plain import plain
 from ..results.runs import amended, read_run
-from ..suite.run import write_tables
+from ..results.table_files import write_tables
 from ..tables.device_facts.table import TABLE as FACTS
 from ..tables.devices.agreement import many
 from ..tables.devices.device_file import DeviceFile, Read, read_device_file

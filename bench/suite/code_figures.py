@@ -11,12 +11,12 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
 from ..code.emit import LANGUAGES
 from ..code.files import Code
+from ..code.twin import has_twin
 from ..code.verify import is_catalogues
 from ..normals.normal_sets import NORMAL_SETS
 from ..options.counts import DEFAULT_COUNT
 from ..tables.cost import measure as cost
 from ..tables.quality import measure as quality
-from ..worst_case.exact_figures import has_twin
 
 # Figures that differ by less are the same.
 SAME = 1e-3

@@ -12,14 +12,14 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ...reports import tables
 from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..options.option import fields_of
 from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..output.progress import progress_of_all
-from ..output.writing import say, whole_file
+from ..output.writing import say
 from ..results.measuring import Asked, Place, asked, measured, with_parts
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
+from ..results.table_files import write_tables
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
 from ..workers.places import keep_times, place
@@ -29,6 +29,7 @@ from .table_command import in_folder
 
 RESULTS = Path("results")
 PAGE = "report.html"
+SECOND = "normalbench.bench.suite.second_child"
 
 
 def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
@@ -138,7 +139,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
 def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
     """The second process, where there is something for it to do."""
     is_wanted = not on and is_worth_it(chosen_tables(request.tables, given(request)))
-    return second_process() if is_wanted else nullcontext()
+    return second_process(SECOND) if is_wanted else nullcontext()
 
 
 def _measured_and_shown(
@@ -275,19 +276,3 @@ def in_short(table: Table, done: Mapping[str, Measured]) -> Iterator[str]:
     """The first sentence of each of a table's answers."""
     sheets = table.work.summary(done[table.name].rows) if table.name in done else ()
     yield from (sheet.said[0] for sheet in sheets if sheet.said)
-
-
-def write_tables(folder: Path, found: Mapping[str, list[Row]]) -> None:
-    """The rows of tables, by name, as files for others. Raises UsageError."""
-    for name, rows in found.items():
-        table = TABLES.get(name)
-        _write_table(folder / name, table.work.finish(rows) if table else rows)
-
-
-def _write_table(path: Path, rows: list[Row]) -> None:
-    for suffix, written in ((".json", tables.to_json), (".csv", tables.to_csv)):
-        with whole_file(path.with_suffix(suffix)) as partial:
-            partial.write_text(written(rows), encoding="utf-8")
-    if tables.has_parquet():
-        with whole_file(path.with_suffix(".parquet")) as partial:
-            tables.write_parquet(rows, partial)

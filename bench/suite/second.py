@@ -1,7 +1,7 @@
 """The second process of a run, which measures tables while the first one renders others.
 
 One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
-starts it with `second_process`; what happens in it stands in `second_child.py`. What it measured it draws, too.
+starts it with `second_process`, and names the program that it runs. What it measured it draws, too.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from ..results.plain import key_text
 from ..results.runs import Run
 from ..tables.table import Step, Table
 
-CHILD = python("normalbench.bench.suite.second_child")
 ERRORS: Mapping[int, type[Exception]] = {error.exit_code: error for error in (UsageError, MissingError)}
 
 
@@ -114,9 +113,17 @@ class Second:
 
 
 @contextmanager
-def second_process() -> Iterator[Second]:
-    """A process that imports what it will need, and waits for what to measure; ended with the block."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors, _started(errors) as process:
+def second_process(program: str) -> Iterator[Second]:
+    """A process that imports what it will need, and waits for what to measure; ended with the block.
+
+    Args:
+        program: the module that it runs.
+    """
+    command = python(program)
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
+        _started(command, errors) as process,
+    ):
         second = Second(process)
         try:
             yield second
@@ -125,10 +132,10 @@ def second_process() -> Iterator[Second]:
             _tell_all(errors)
 
 
-def _started(errors: IO[str]) -> subprocess.Popen[str]:
+def _started(command: list[str], errors: IO[str]) -> subprocess.Popen[str]:
     # In a session of its own: what interrupts this process does not reach it twice.
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": errors}
-    return subprocess.Popen(CHILD, text=True, env=environment(), start_new_session=True, **pipes)
+    return subprocess.Popen(command, text=True, env=environment(), start_new_session=True, **pipes)
 
 
 def _tell_all(errors: IO[str]) -> None:

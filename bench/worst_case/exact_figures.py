@@ -5,17 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any, TypeVar
 
-import jax
-import jax.numpy as jnp
-
-from ...encodings.catalogue import is_in_catalogue
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
-from ...encodings.vec import Vec3
-from ..codecs.user_encodings import NoTwinError
+from ..code.twin import has_twin
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
 from ..metrics.totals import Statistics
 from ..output.errors import UsageError
@@ -24,20 +18,6 @@ from .search import worst_case
 
 T = TypeVar("T")
 Row = dict[str, Any]
-
-
-@cache
-def has_twin(encoding: Encoding) -> bool:
-    """Whether an encoding is there in JAX."""
-    # Tracing takes a tenth of a second, and those of the catalogue all have one.
-    if is_in_catalogue(encoding):
-        return True
-    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
-    try:
-        jax.eval_shape(encoding.encode, n, n)
-    except NoTwinError:
-        return False
-    return True
 
 
 def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....gbuffer.gl.device import Device
+from ...metrics.directions import circles, directions
 from . import exact, folds, nearly
 from .between import MOST, SAME_DEG, axes_of, step_between
 from .domains import HALVES, HEMISPHERE, SPHERE, Domain, asked, guessed
 from .halves import Sides, lost, unread, unused
 from .likeness import likeness
-from .probe import Probe, Trip, circles, directions, trip_of
+from .probe import Probe, Trip, trip_of
 
 # This near directions come back nearly: a scale that is a few hundredths off.
 NEARLY_DEG = 10.0

@@ -16,7 +16,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from .probe import Probe, directions, of_unit, unit
+from ...metrics.directions import directions, unit
+from .probe import Probe, of_unit
 
 # How many directions and codes are compared.
 COUNT = 128

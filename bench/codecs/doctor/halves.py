@@ -12,9 +12,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...metrics.directions import unit
 from .between import SAME_DEG, axes_of
 from .domains import Domain
-from .probe import Probe, Trip, unit
+from .probe import Probe, Trip
 
 # Codes that are nearer than this in every number are the same; 8 bits have 256 of them.
 SAME_CODE = 4e-3

@@ -11,10 +11,11 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.gl.device import Device
 from ...metrics.angles import angles_deg
+from ...metrics.directions import directions
 from .between import NOTHING, RANGES, SAME_DEG, TURNS, Step, decoded_after
 from .domains import SPHERE, Domain
 from .folds import frames
-from .probe import Probe, directions, probe_of, trip_of
+from .probe import Probe, probe_of, trip_of
 
 # How many directions are compared, how near two codes are the same, and of how many that must be so.
 COUNT, NEAR, NEARLY_ALL = 64, 0.01, 0.95

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...metrics.angles import angles_deg
-from .probe import Probe, Trip, unit
+from ...metrics.directions import unit
+from .probe import Probe, Trip
 
 # Of a finite difference; of float32's digits it leaves half.
 STEP = 1e-3

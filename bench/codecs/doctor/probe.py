@@ -6,7 +6,6 @@ comes back.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,9 +18,6 @@ from ...metrics.angles import angles_deg
 
 # The view-space position that every direction is seen at.
 VIEW = (0.1, -0.2, -1.0)
-RANDOM = 4096
-# How many directions lie on a circle.
-AROUND = 96
 
 
 @dataclass(frozen=True)
@@ -54,33 +50,6 @@ def probe_of(gl: Device, encoding: Encoding) -> Probe:
         return exact_values(gl, encoding, wide, view, wide)
 
     return Probe(lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size)
-
-
-def directions() -> np.ndarray:
-    """Axes with both zeros and what lies beside them, diagonals, and random directions: float32 of shape (count, 3).
-
-    The last RANDOM are the random ones.
-    """
-    near = (0.0, -0.0, 1e-7, -1e-7, 1e-3, -1e-3)
-    sides = itertools.product(range(3), (1.0, -1.0), near, near)
-    axes = [np.insert(np.array([a, b]), axis, side) for axis, side, a, b in sides]
-    diagonals = [d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(d)]
-    random = np.random.default_rng(0).normal(size=(RANDOM, 3))
-    return unit(np.concatenate([axes, diagonals, random])).astype(np.float32)
-
-
-def circles() -> np.ndarray:
-    """Directions in which a number is exactly 0, all around: float32 of shape (count, 3)."""
-    turn = np.arange(AROUND) * (2 * np.pi / AROUND)
-    return np.concatenate(
-        [np.insert(np.stack([np.cos(turn), np.sin(turn)], axis=1), axis, 0.0, axis=1) for axis in range(3)]
-    ).astype(np.float32)
-
-
-def unit(v: np.ndarray) -> np.ndarray:
-    """Rows at length 1; those of length 0 stay."""
-    length = np.linalg.norm(v.astype(np.float64), axis=1, keepdims=True)
-    return v / np.where(length > 0, length, 1.0)
 
 
 @dataclass(frozen=True)

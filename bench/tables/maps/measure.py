@@ -21,7 +21,7 @@ from ....encodings.storages.storage import STORAGES
 from ....encodings.vec import Vec3
 from ....gbuffer.gl.compressed import device_texels
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ...codecs.user_encodings import NoTwinError
+from ...code.twin import NoTwinError
 from ...metrics.meter import Decoded, Meter
 from ...metrics.totals import Statistics, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet

@@ -24,9 +24,9 @@ from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...code import trip as wgsl_trip
+from ...code.twin import NoTwinError, has_twin
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
-from ...codecs.user_encodings import NoTwinError
 from ...machine.cores import on_all_cores
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
@@ -337,7 +337,7 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
 
 
 def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
-    shared = [case for case in group if case.backend == "jax" and exact_figures.has_twin(case.codec.encoding)]
+    shared = [case for case in group if case.backend == "jax" and has_twin(case.codec.encoding)]
     measured: dict[int, tuple[Total, Measures]] = {}
     if shared:
         meters = [*on_all_cores(lambda case: meter_of(case.codec, case.is_compiled), shared)]

@@ -17,7 +17,7 @@ import jax
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES
-from ...codecs.user_encodings import NoTwinError
+from ...code.twin import NoTwinError
 from ...machine.cores import on_all_cores
 from ...metrics.meter import in_groups
 from ...metrics.moments import FAST_BLOCK, squared_errors

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.codecs import user_encodings
-from normalbench.bench.codecs.doctor.probe import directions
 from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.machine import forks
+from normalbench.bench.metrics.directions import directions
 from normalbench.bench.output.errors import UsageError
 from normalbench.encodings.catalogue import NAMES
 
