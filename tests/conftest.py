@@ -21,18 +21,18 @@ import kept_runs
 import pytest
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.isa import driver_files, isa, null_device, spirv
-from normalbench.bench.isa.nvidia import tools
-from normalbench.bench.machine.memory import (
+from normalbench.bench.ground.machine.memory import (
     give_back_what_a_table_needed,
     give_back_what_is_freed,
     have_few_heaps,
     keep_what_is_imported,
     look_for_garbage_seldom,
 )
+from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.isa import driver_files, isa, null_device, spirv
+from normalbench.bench.isa.nvidia import tools
 from normalbench.bench.metrics import published
-from normalbench.bench.options.gpu_families import ANV, HASVK, R600, RADV
-from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results import measuring
 from normalbench.bench.results.machine import require_mobile
 from normalbench.gbuffer.gl.device import NoDeviceError, device

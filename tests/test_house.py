@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from normalbench.bench.ground.options import listing
 from normalbench.bench.normals import normal_sets
-from normalbench.bench.options import listing
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import sets as frame_sets
@@ -195,24 +195,30 @@ def test_no_runner_asks_for_a_variants_name():
 BENCH = ROOT / "bench"
 
 
-def _rooms_of(path: Path) -> set[str]:
-    """The folders of bench/ that a file imports, other than its own."""
-    own = path.relative_to(BENCH).parts[0]
-    found = {module.split(".")[1] for module in imported(path) if module.startswith("bench.")}
-    return {room for room in found if (BENCH / room).is_dir()} - {own}
+# The storeys of bench/, from the door down: each imports those below it alone.
+STOREYS = ("door", "show", "run", "keep", "tables", "measures", "subjects", "shaders", "ground")
 
 
-def test_the_folders_of_bench_import_each_other_one_way():
-    """No folder imports another that imports it, by whatever way around."""
-    files = [path for path in BENCH.rglob("*.py") if path.parent != BENCH]
-    known: dict[str, set[str]] = {}
-    for path in files:
-        known.setdefault(path.relative_to(BENCH).parts[0], set()).update(_rooms_of(path))
-    assert "tables" in known["suite"] and "output" in known["tables"], "imports are found"
-    while free := [room for room, others in known.items() if not others & set(known)]:
-        for room in free:
-            del known[room]
-    assert not known, f"a circle among {sorted(known)}"
+def _modules_of_bench(path: Path) -> set[str]:
+    """The modules of bench/ that a file imports, or names as a string for a process of its own."""
+    strings = (node.value for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Constant))
+    named = {text.removeprefix("normalbench.") for text in strings if isinstance(text, str) and _is_a_module(text)}
+    return {module for module in {*imported(path), *named} if module.startswith("bench.")}
+
+
+def _is_a_module(text: str) -> bool:
+    return bool(re.fullmatch(r"normalbench(\.\w+)+", text))
+
+
+def test_each_storey_of_bench_imports_those_below_it_alone():
+    """Also inside functions, for type checkers, and by the name of a module."""
+    wrong = []
+    for path in BENCH.rglob("*.py"):
+        own = path.relative_to(BENCH).parts[0]
+        above = STOREYS[: STOREYS.index(own)] if own in STOREYS else ()
+        imports = sorted(module for module in _modules_of_bench(path) if module.split(".")[1] in above)
+        wrong += [f"{path.relative_to(ROOT)} imports {module}" for module in imports]
+    assert not wrong, wrong
 
 
 def test_what_the_set_up_imports_is_there():

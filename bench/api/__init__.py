@@ -38,7 +38,7 @@ def _tables() -> Any:
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES or (not name.startswith("_") and name in _tables()):
-        import_module(".bench.machine.system", __name__).prepare()
+        import_module(".bench.ground.machine.system", __name__).prepare()
     if name in _HOMES:
         return getattr(import_module(_HOMES[name], __name__), name)
     if not name.startswith("_") and name in _tables():

@@ -22,10 +22,10 @@ from typer.exceptions import Abort, TyperException
 
 from ...encodings.codecs.files import CatalogueError
 from ...reports.charts.plots import PlotError
-from ..options.code import CodeOptions
-from ..output.errors import MissingError, UsageError, tell, told
-from ..output.progress import ending
-from ..output.writing import abandon_output, check_is_folder, write
+from ..ground.options.code import CodeOptions
+from ..ground.output.errors import MissingError, UsageError, tell, told
+from ..ground.output.progress import ending
+from ..ground.output.writing import abandon_output, check_is_folder, write
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
 from ..workers.words import check_place
@@ -69,7 +69,7 @@ def every_command(
 ) -> None:
     """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
     if no_cache:
-        from ..output import cache
+        from ..ground.output import cache
 
         cache.switch_off()
 
@@ -90,7 +90,7 @@ def list_command(
     output: PlainOutput = None,
 ) -> None:
     """What there is: encodings, storages, codes of other kinds, sets, layouts, pipelines, effects, scenes, lights."""
-    from ..options.listing import listing
+    from ..ground.options.listing import listing
 
     write(listing(what), format_of(format, output), output, SPARED, by="kind")
 

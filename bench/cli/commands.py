@@ -9,9 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..options.counts import whole_number
-from ..options.option import Field, Reading, fields_of
-from ..output.writing import check_is_folder, check_page
+from ..ground.options.counts import whole_number
+from ..ground.options.option import Field, Reading, fields_of
+from ..ground.output.writing import check_is_folder, check_page
 from ..tables.table import Table
 from ..workers.words import HELP, check_place
 from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..output.writing import check_is_folder
+from ..ground.output.writing import check_is_folder
 
 Files = Annotated[
     list[Path], typer.Argument(help='Device files, which a page saves by "Save this device".', metavar="FILE...")

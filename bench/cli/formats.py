@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from ..output.errors import MissingError, UsageError
+from ..ground.output.errors import MissingError, UsageError
 
 WRITTEN = "What is written"
 

@@ -28,7 +28,7 @@ def completion_of(option: str) -> Callable[[str], list[str]]:
     what, kind = NAMES[option]
 
     def complete(incomplete: str) -> list[str]:
-        from ..options.listing import listing
+        from ..ground.options.listing import listing
 
         before, comma, begun = incomplete.rpartition(",")
         names = [str(row["name"]) for row in listing(what) if row["kind"] == kind]

@@ -19,7 +19,7 @@ def program() -> NoReturn:
     chosen = os.environ.get("MESA_SHADER_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     if not _takes_files(Path(chosen or Path(os.environ.get("HOME", ""), ".cache"))):
         os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
-    from ..machine.memory import look_for_garbage_seldom
+    from ..ground.machine.memory import look_for_garbage_seldom
 
     look_for_garbage_seldom()
     from .app import program as run
@@ -28,8 +28,8 @@ def program() -> NoReturn:
 
 
 def _prepare() -> None:
-    from ..machine.system import prepare
-    from ..output.errors import MissingError, tell
+    from ..ground.machine.system import prepare
+    from ..ground.output.errors import MissingError, tell
 
     try:
         prepare()

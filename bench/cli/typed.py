@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any, get_args
 
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 
 
 def check_begins_with_command(words: Sequence[str], commands: Collection[str], own: Collection[str]) -> None:

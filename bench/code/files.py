@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...encodings.codecs.codec import Codec
+from ..ground.output.errors import UsageError
 from ..languages.words import is_translated
-from ..output.errors import UsageError
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of

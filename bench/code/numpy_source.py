@@ -14,7 +14,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
 from ...encodings.storages import rounding
 from ...encodings.storages.storage import MANTISSA, Storage
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 from .python_source import Gathered
 
 HEAD = '''def _where(condition, a, b):

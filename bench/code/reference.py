@@ -15,7 +15,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.codec_passes import CodecPasses
 from ...gbuffer.gl.device import device
-from ..metrics.directions import directions
+from ..ground.directions import directions
 from .channels import WORD, Channel, Channels
 from .twin import has_twin
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.shader import ShaderError
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 from .files import Code, code_of
 from .run import wgsl
 from .run.interface import BLOCK, Ran

@@ -12,7 +12,7 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.rounding import store_texel
-from ..metrics.angles import angles_deg
+from ..ground.angles import angles_deg
 from .channels import WORD, Channels
 from .reference import Reference, bytes_turned, reference, signed
 from .run import runner

@@ -15,9 +15,9 @@ from ...encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
 from ..code.twin import NoTwinError
+from ..ground.options.words import Words, given_in
+from ..ground.output.errors import UsageError, by_reason, names_a_file, pick
 from ..languages.words import CHAIN
-from ..options.words import Words, given_in
-from ..output.errors import UsageError, by_reason, names_a_file, pick
 from .user_encodings import encodings_named
 
 

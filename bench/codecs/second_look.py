@@ -15,14 +15,14 @@ import numpy as np
 from ...encodings.codecs.encoding import Encoding
 from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.gl.device import Device
+from ..ground.output import cache as kept
+from ..ground.output.errors import MissingError, UsageError
 from ..languages import tools
 from ..languages.language import also_read_by, language_of
 from ..languages.second import NoSecondWayError, UndefinedError, Way, second_way
 from ..languages.source import Source
 from ..languages.translated import own, translated
 from ..languages.words import TRANSLATED, file_of
-from ..output import cache as kept
-from ..output.errors import MissingError, UsageError
 
 RANDOM = 2**16
 VIEW = (0.1, -0.2, -1.0)

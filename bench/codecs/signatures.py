@@ -11,7 +11,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 
 # Type, name and parameters, of a definition or of a declaration; not of a call or a macro.
 FUNCTION = r"\b(?!return\b|else\b|define\b)(\w+)\s+({name})\s*\(([^(){{}};]*)\)"

@@ -10,8 +10,8 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called
 from ...encodings.codecs.variants import MARK, TABLE, known_settings, settings_in, variant
-from ..output.arrays import DamagedError, read_npy
-from ..output.errors import UsageError
+from ..ground.output.arrays import DamagedError, read_npy
+from ..ground.output.errors import UsageError
 
 
 def tuned(word: str) -> Encoding:

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..output.errors import UsageError, tell
-from ..output.writing import say
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.writing import say
 from ..results.plain import plain
 from ..results.runs import amended, read_run
 from ..results.table_files import write_tables

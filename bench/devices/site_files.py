@@ -15,8 +15,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...encodings.codecs.files import file_json
-from ..output.errors import UsageError
-from ..output.writing import check_folder
+from ..ground.output.errors import UsageError
+from ..ground.output.writing import check_folder
 
 MARKER = ".normalbench-site.json"
 # What a site's own files are called; a marker that lists others was not written by this program.

@@ -11,9 +11,9 @@ from typing import Any
 
 from ...encodings.codecs.files import file_json
 from ...reports.tables import to_json
-from ..options.option import fields_of
-from ..output.errors import UsageError
-from ..output.writing import whole_file
+from ..ground.options.option import fields_of
+from ..ground.output.errors import UsageError
+from ..ground.output.writing import whole_file
 from ..results.comparison import difference, same
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Table

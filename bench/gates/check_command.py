@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..output.errors import UsageError, tell, tell_together
-from ..output.progress import progress
-from ..output.writing import check_writable, without, write
+from ..ground.output.errors import UsageError, tell, tell_together
+from ..ground.output.progress import progress
+from ..ground.output.writing import check_writable, without, write
 from .gates import BASELINE, WRITER, Baselines, Gate, checked, read_gates
 
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_toml
+from ..ground.options.option import fields_of
+from ..ground.output.errors import UsageError
 from ..languages.words import files_in
-from ..options.option import fields_of
-from ..output.errors import UsageError
 from ..results.runs import read_run
 from ..tables.table import Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline

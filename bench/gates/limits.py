@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..options.option import fields_of
-from ..output.errors import UsageError
+from ..ground.options.option import fields_of
+from ..ground.output.errors import UsageError
 from ..tables.table import Role, Table
 
 # Neither can be read in two ways, which would take a long text a long time.

@@ -9,10 +9,10 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from ..ground.options.option import checked_options, fields_of
+from ..ground.output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..languages.words import file_of, files_in, names_an_encoder, twin_of, with_files
 from ..metrics.totals import Worst
-from ..options.option import checked_options, fields_of
-from ..output.errors import UsageError, names_a_file, noting_what_is_left_out
 from ..results.measuring import Nothing, asked, measured_steps
 from ..tables.registry import TABLES
 from ..tables.table import Role, Row, Step, Table

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
-from ..machine import children
-from ..options.gpu_families import MOBILE, R600, RADV, TITLES
+from ..ground.machine import children
+from ..ground.options.gpu_families import MOBILE, R600, RADV, TITLES
 from .mobile import driver as mobile
 from .terascale import driver as terascale
 

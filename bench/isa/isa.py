@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any
 
 from ...gbuffer.defines.kernels import PLANES
-from ..machine.children import python
-from ..machine.cores import cores
-from ..options.gpu_families import FAMILIES, MOBILE, NVRTC, R600, RADV, TITLES, TURNIP, V3DV
-from ..output import cache as kept
+from ..ground.machine.children import python
+from ..ground.machine.cores import cores
+from ..ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, R600, RADV, TITLES, TURNIP, V3DV
+from ..ground.output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
 from .driver_files import driver_file, is_gl, no_driver

@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ..output import cache as kept
+from ..ground.output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")
 SHARED = SOURCE.with_name("null_drm.h")

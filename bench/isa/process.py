@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from ..machine.children import python
+from ..ground.machine.children import python
 from .driver_files import environment, is_gl
 
 CHILD: Sequence[str] = python("normalbench.bench.isa.child")

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from ...gbuffer.gl.shader import ShaderError, Source
-from ..output import cache as kept
-from ..output.errors import MissingError
+from ..ground.output import cache as kept
+from ..ground.output.errors import MissingError
 
 COMPILER, OPTIMISER = "glslangValidator", "spirv-opt"
 NO_COMPILER = f"no GLSL compiler: {COMPILER} is not on the path; install it (Debian: apt-get install glslang-tools)"

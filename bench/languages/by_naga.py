@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.vulkan import NO_DRIVER, adapters
-from ..output.errors import MissingError
+from ..ground.machine.vulkan import NO_DRIVER, adapters
+from ..ground.output.errors import MissingError
 
 ENTRY, GROUP, ROW = "normalbench_second", 64, 16
 

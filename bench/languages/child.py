@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import called
-from ..machine import children
-from ..output.errors import MissingError, UsageError
+from ..ground.machine import children
+from ..ground.output.errors import MissingError, UsageError
 from . import programs
 from .language import Language, also_read_by, language_of
 from .pairs import NORMAL, Function, NoPairError, Pair, pair_of

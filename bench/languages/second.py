@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..machine import children
-from ..output.errors import MissingError
+from ..ground.machine import children
+from ..ground.output.errors import MissingError
 from . import slang, tools
 from .programs import TranslationError, macros, template
 from .source import Source

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...encodings.codecs.files import MOST_TEXT, file_text
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 
 # One that has no end goes to the end of the text, so that every letter is looked at once.
 _COMMENT = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?(?:\*/|\Z)', re.S)

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Any
 
-from ..output.errors import MissingError
+from ..ground.output.errors import MissingError
 
 GLSLANG, SPIRV_CROSS, SLANG = "glslangValidator", "spirv-cross", "slangc"
 # What to install.

@@ -10,9 +10,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ..machine import children
-from ..output import cache as kept
-from ..output.errors import MissingError, UsageError
+from ..ground.machine import children
+from ..ground.output import cache as kept
+from ..ground.output.errors import MissingError, UsageError
 from ..translator import tree
 from . import tools
 from .language import also_read_by, language_of

@@ -18,9 +18,9 @@ import numpy as np
 from ...encodings.codecs.codec import Codec
 from ..code.channels import Channels
 from ..code.reference import Reference, reference_of, signed
-from ..metrics.angles import angles_deg
-from ..output import cache as kept
-from ..output.sources import sources
+from ..ground.angles import angles_deg
+from ..ground.output import cache as kept
+from ..ground.output.sources import sources
 from . import normals
 from .normals import COUNT, checksum, hashed
 

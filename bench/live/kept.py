@@ -14,7 +14,7 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.files import file_bytes
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
-from ..output.writing import files_of, whole_file
+from ..ground.output.writing import files_of, whole_file
 from . import checks
 from .programs import MOST_TABLES, NotLiveError, Record, program
 

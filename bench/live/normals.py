@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from ..metrics.directions import RANDOM, directions
+from ..ground.directions import RANDOM, directions
 
 COUNT = 2**16
 # lowbias32 of C. Wellons, "Prospecting for Hash Functions" (2018): x ^= x >> shift, then x *= factor, in turn.

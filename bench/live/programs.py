@@ -17,7 +17,7 @@ from ...gbuffer.gl.shader import ShaderError, Source
 from ..code.channels import Channels
 from ..code.files import Code, code_of
 from ..code.verify import is_catalogues
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 
 Record = dict[str, Any]
 LANGUAGE, PREFIX = "essl", "codec"

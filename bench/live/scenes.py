@@ -14,8 +14,8 @@ import numpy as np
 
 from ...encodings.normals.octahedral import encode
 from ...encodings.vec import Vec3
-from ..output.arrays import DamagedError, read_npz
-from ..output.writing import files_of, whole_file
+from ..ground.output.arrays import DamagedError, read_npz
+from ..ground.output.writing import files_of, whole_file
 
 Record = dict[str, Any]
 FIELDS = ("codes", "covered", "slope")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..output.errors import MissingError
+from ..ground.output.errors import MissingError
 
 
 def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]:

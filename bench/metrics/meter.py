@@ -21,8 +21,8 @@ import numpy as np
 
 from ...encodings.elementary import atan2_pi
 from ...encodings.vec import Vec3, cross, dot, minimum, select
-from ..machine.cores import on_all_cores
-from .angles import angles_deg
+from ..ground.angles import angles_deg
+from ..ground.machine.cores import on_all_cores
 from .histogram import bin_of, bins_of, tally
 from .totals import Figures, Part, Statistics, Total, Worst, statistics
 

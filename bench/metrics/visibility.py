@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...gbuffer.scenes.scene import Scene
-from ..output.errors import MissingError
+from ..ground.output.errors import MissingError
 
 # Rays in flight: some 50 MB.
 BLOCK = 2**19

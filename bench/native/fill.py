@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...encodings.vec import Vec3
-from .elementwise import c_function, c_type
-from .library import address, library, source
+from ..ground.native.elementwise import c_function, c_type
+from ..ground.native.library import address, library, source
 
 LANE = np.dtype(np.uint32)
 

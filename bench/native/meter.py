@@ -11,11 +11,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.vec import Vec3
+from ..ground.native.elementwise import c_function, c_type
+from ..ground.native.library import address, compiler, library, source
 from ..metrics.histogram import BINS, bin_of, bins_of, lower_edge
 from ..metrics.meter import Load, errors, is_smaller, worst_of
 from ..metrics.totals import Figures, Part, Worst
-from .elementwise import c_function, c_type
-from .library import address, compiler, library, source
 
 FLOAT = np.dtype(np.float32)
 FLOATS = Vec3(FLOAT, FLOAT, FLOAT)

@@ -15,8 +15,8 @@ import numpy as np
 
 from ...encodings.codecs.files import called, file_text
 from ...encodings.storages.rounding import from_srgb, to_srgb
-from ..options.option import Reading
-from ..output.errors import UsageError, pick_one
+from ..ground.options.option import Reading
+from ..ground.output.errors import UsageError, pick_one
 from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
 from .normal_sets import NormalSet, from_arrays
 from .pixel_files import READERS, Pixels, read_pixels, refused

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...encodings.vec import Vec3
-from ..machine.cores import cores
+from ..ground.machine.cores import cores
 from .normal_sets import NormalSet, from_arrays
 
 CORES = cores()

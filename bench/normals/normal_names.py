@@ -10,11 +10,11 @@ from typing import Any, get_type_hints
 
 from ...encodings.codecs.files import called
 from ...gbuffer.scenes.files import read as files
-from ..options.counts import checked_sides
-from ..options.option import Count, Reading, fields_of
-from ..options.scene_names import mesh_file, say_notes
-from ..options.words import given_in
-from ..output.errors import UsageError, names_a_folder, pick_or_read, tell
+from ..ground.options.counts import checked_sides
+from ..ground.options.option import Count, Reading, fields_of
+from ..ground.options.scene_names import mesh_file, say_notes
+from ..ground.options.words import given_in
+from ..ground.output.errors import UsageError, names_a_folder, pick_or_read, tell
 from .captures import CODE_SPACES, capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from .pixel_files import MAX_PIXELS

@@ -16,10 +16,10 @@ import numpy as np
 
 from ...encodings.elementary import sincos_pi
 from ...encodings.vec import Vec3, from_array, sqrt
-from ..native.elementwise import NotElementwiseError
+from ..ground.native.elementwise import NotElementwiseError
+from ..ground.native.library import LARGE, NoCompilerError
+from ..ground.options.counts import DEFAULT_COUNT
 from ..native.fill import Fill
-from ..native.library import LARGE, NoCompilerError
-from ..options.counts import DEFAULT_COUNT
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH

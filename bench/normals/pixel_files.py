@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from ...gbuffer.scenes.files.source import SceneFileError, file_bytes
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 from . import png
 
 # An 8K frame; and all the channels of a file together, which the library reads at once.

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from ..gates.gates import Gate, read_gates
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 from .session import Normalbench, session_of
 
 

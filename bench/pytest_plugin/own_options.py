@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from ..options.option import Field, fields_of
+from ..ground.options.option import Field, fields_of
 from ..tables.registry import TABLES
 
 if TYPE_CHECKING:

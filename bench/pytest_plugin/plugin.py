@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ..options.option import Field
-from ..output.errors import MissingError, UsageError
+from ..ground.options.option import Field
+from ..ground.output.errors import MissingError, UsageError
 from .own_options import BASELINE, REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, flag, mirrored
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def _check_baseline(path: Path | None) -> None:
     """Said before anything is measured. Raises pytest.UsageError where it could not be written afterwards."""
-    from ..output.writing import check_writable
+    from ..ground.output.writing import check_writable
 
     if not path:
         raise pytest.UsageError(f"{flag(WRITE_BASELINE)} needs {flag(BASELINE)} FILE")
@@ -87,7 +87,7 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
     """What measures for the tests of a folder; where the program does not run they fail, and other tests do not."""
-    from ..machine.system import prepare
+    from ..ground.machine.system import prepare
 
     try:
         prepare()

@@ -16,9 +16,9 @@ from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
 from ..gates.measured import Found, located, measured, single, table_named, with_their_options
-from ..machine.devices import found_device
-from ..options.option import checked_options, fields_of
-from ..output.errors import MissingError, UsageError
+from ..ground.machine.devices import found_device
+from ..ground.options.option import checked_options, fields_of
+from ..ground.output.errors import MissingError, UsageError
 from ..tables.registry import TABLES
 from ..tables.table import Row, Table
 from .own_options import REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, mirrored

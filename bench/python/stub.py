@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import textwrap
 
-from ..options.option import Field, fields_of
+from ..ground.options.option import Field, fields_of
 from ..tables.registry import TABLES
 from ..tables.table import Table
 from ..workers.words import HELP

@@ -12,11 +12,11 @@ import pandas as pd
 
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.storage import Storage
+from ..ground.options.option import checked_options, fields_of
+from ..ground.options.words import Words
+from ..ground.output.errors import UsageError
 from ..normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN
 from ..normals.normal_sets import NORMAL_SETS, from_arrays
-from ..options.option import checked_options, fields_of
-from ..options.words import Words
-from ..output.errors import UsageError
 from ..results.measuring import Nothing, asked, measured
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table

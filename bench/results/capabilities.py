@@ -8,12 +8,12 @@ from types import MappingProxyType
 from ...reports import tables
 from ..code.run import c, msl, slang, wgsl
 from ..codecs.half.compute import half_device
+from ..ground.machine.devices import require_device, require_jax
+from ..ground.output import cache
+from ..ground.output.errors import MissingError
 from ..languages.language import require_language
-from ..machine.devices import require_device, require_jax
 from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
-from ..output import cache
-from ..output.errors import MissingError
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..output.errors import tell
-from ..output.writing import check_writable, without, write
+from ..ground.output.errors import tell
+from ..ground.output.writing import check_writable, without, write
 from .comparison import GONE, compared, in_short, total
 from .runs import read_run
 

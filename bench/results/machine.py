@@ -12,11 +12,11 @@ import jax
 from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
+from ..ground.machine.settings import settings
+from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
+from ..ground.output.errors import MissingError
 from ..isa import isa, spirv
 from ..languages import tools
-from ..machine.settings import settings
-from ..options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
-from ..output.errors import MissingError
 
 ROUNDS = {
     "nearest": "nearest",

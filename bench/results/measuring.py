@@ -12,14 +12,14 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Protocol
 
+from ..ground.machine.settings import settings
+from ..ground.options.option import Reading, fields_of
+from ..ground.output.errors import UsageError
+from ..ground.output.journal import Journal, journal
+from ..ground.output.progress import progress
+from ..ground.output.writing import is_special, target_of
 from ..languages.source import Source
 from ..languages.words import files_in, names_an_encoder, twin_of
-from ..machine.settings import settings
-from ..options.option import Reading, fields_of
-from ..output.errors import UsageError
-from ..output.journal import Journal, journal
-from ..output.progress import progress
-from ..output.writing import is_special, target_of
 from ..tables.table import Measured, Row, Step, Table, Tick
 from .plain import key_text, plain
 

@@ -15,10 +15,10 @@ from pathlib import Path
 from threading import Lock
 
 from ...encodings.codecs.files import file_json
-from ..output.errors import UsageError
-from ..output.journal import Journal, data_of, journal, read_lines
-from ..output.sources import sources
-from ..output.writing import check_folder, whole_file
+from ..ground.output.errors import UsageError
+from ..ground.output.journal import Journal, data_of, journal, read_lines
+from ..ground.output.sources import sources
+from ..ground.output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
 from ..tables.table import PART, Role, Row, Step, Table
 from .plain import key_text, plain

@@ -9,7 +9,7 @@ from typing import Annotated, Any, NotRequired
 from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, ValidationError, with_config
 from typing_extensions import TypedDict
 
-from ..output.errors import UsageError
+from ..ground.output.errors import UsageError
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Table
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ...reports import tables
-from ..output.writing import whole_file
+from ..ground.output.writing import whole_file
 from ..tables.registry import TABLES
 from .runs import Row
 

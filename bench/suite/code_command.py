@@ -19,11 +19,11 @@ from ..code.files import Code, code_of, file_name
 from ..code.run import runner
 from ..code.verify import Agreement, agreement, is_catalogues
 from ..codecs.names import codecs_named, fitting
-from ..options.code import CodeOptions
-from ..options.targets import what_is_left
-from ..output.errors import MissingError, UsageError, leave_out, pick, tell
-from ..output.progress import progress
-from ..output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..ground.options.code import CodeOptions
+from ..ground.options.targets import what_is_left
+from ..ground.output.errors import MissingError, UsageError, leave_out, pick, tell
+from ..ground.output.progress import progress
+from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
 from .code_figures import figures, head
 
 Row = dict[str, Any]

@@ -13,8 +13,8 @@ from ..code.emit import LANGUAGES
 from ..code.files import Code
 from ..code.twin import has_twin
 from ..code.verify import is_catalogues
+from ..ground.options.counts import DEFAULT_COUNT
 from ..normals.normal_sets import NORMAL_SETS
-from ..options.counts import DEFAULT_COUNT
 from ..tables.cost import measure as cost
 from ..tables.quality import measure as quality
 

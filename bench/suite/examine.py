@@ -14,9 +14,9 @@ from ...encodings.storages.storage import Storage
 from ...reports.charts import charts
 from ..codecs.names import storages_named
 from ..codecs.user_encodings import ANY, Examined, examined
+from ..ground.output.errors import UsageError, pick_one, tell
+from ..ground.output.writing import check_plot, save_plot, write
 from ..normals.normal_sets import NORMAL_SETS
-from ..output.errors import UsageError, pick_one, tell
-from ..output.writing import check_plot, save_plot, write
 from ..tables.quality.measure import Case, measure
 from ..tables.quality.sphere_maps import sphere_map
 

@@ -30,16 +30,16 @@ from ...reports.page.pixels import Subject, film_uri
 from ...reports.page.sections import Section, Sheet, whole
 from ...reports.page.verdict import BACKENDS, LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
+from ..ground.options.gpu_families import FAMILIES, usual_stage
+from ..ground.output import cache
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.sources import sources
+from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file
 from ..languages.words import CHAIN
 from ..live import checks
 from ..live.kept import read_live
 from ..live.programs import helpers, storage_functions
 from ..live.scenes import read_scenes, unpacking
-from ..options.gpu_families import FAMILIES, usual_stage
-from ..output import cache
-from ..output.errors import UsageError, tell
-from ..output.sources import sources
-from ..output.writing import check_folder, check_page, check_writable, files_of, say, whole_file
 from ..results import side_by_side
 from ..results.runs import Done, Row, read_run
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where

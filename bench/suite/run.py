@@ -12,11 +12,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
-from ..options.option import fields_of
-from ..output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
-from ..output.progress import progress_of_all
-from ..output.writing import say
+from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
+from ..ground.options.option import fields_of
+from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
+from ..ground.output.progress import progress_of_all
+from ..ground.output.writing import say
 from ..results.measuring import Asked, Place, asked, measured, with_parts
 from ..results.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..results.table_files import write_tables
@@ -121,7 +121,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
     have_few_heaps()
     # It imports what it needs while this process does, and finds out what there is to measure.
     with _second(request, on) as second:
-        from ..machine.devices import require_jax
+        from ..ground.machine.devices import require_jax
 
         require_jax()
         facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field, make_dataclass
 from typing import Annotated, Any
 
-from ..options.option import Field, Option, fields_of
+from ..ground.options.option import Field, Option, fields_of
 from ..tables.registry import TABLES
 
 

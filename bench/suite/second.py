@@ -16,9 +16,9 @@ from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import IO, Any
 
-from ..machine.children import environment, python
-from ..machine.cores import cores
-from ..output.errors import MissingError, UsageError, tell, told
+from ..ground.machine.children import environment, python
+from ..ground.machine.cores import cores
+from ..ground.output.errors import MissingError, UsageError, tell, told
 from ..results.measuring import Asked, with_parts
 from ..results.plain import key_text
 from ..results.runs import Run

@@ -19,14 +19,14 @@ from pathlib import Path
 from threading import Thread
 from typing import IO, Any
 
-from ..machine.devices import require_jax
-from ..machine.memory import (
+from ..ground.machine.devices import require_jax
+from ..ground.machine.memory import (
     give_back_what_a_table_needed,
     have_few_heaps,
     keep_what_is_imported,
     look_for_garbage_seldom,
 )
-from ..output.errors import MissingError, UsageError, told
+from ..ground.output.errors import MissingError, UsageError, told
 from ..results.measuring import Asked, measured
 from ..results.plain import key_text, plain
 from ..results.runs import read_run

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ...reports import tables
-from ..output.errors import UsageError, tell
-from ..output.writing import check_writable, say, whole_file
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.writing import check_writable, say, whole_file
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
 FOR_PEOPLE = ("table", "markdown")

@@ -11,11 +11,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from ..machine.memory import keep_what_is_freed
-from ..options.option import fields_of
-from ..output.errors import MissingError, UsageError, tell
-from ..output.sources import sources
-from ..output.writing import check_writable, say
+from ..ground.machine.memory import keep_what_is_freed
+from ..ground.options.option import fields_of
+from ..ground.output.errors import MissingError, UsageError, tell
+from ..ground.output.sources import sources
+from ..ground.output.writing import check_writable, say
 from ..results.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..results.plain import plain
 from ..results.runs import Done, facts_of

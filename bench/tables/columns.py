@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..output.errors import pick
+from ..ground.output.errors import pick
 from .registry import TABLES
 from .table import Column, Row, Table
 

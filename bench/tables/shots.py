@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..machine.memory import give_back_what_is_freed
+from ..ground.machine.memory import give_back_what_is_freed
 from .table import Row, Step, Tick
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..machine.devices import found_device
-from ..machine.vulkan import adapters
-from ..native import library
-from ..output.sources import sources
+from ..ground.machine.devices import found_device
+from ..ground.machine.vulkan import adapters
+from ..ground.native import library
+from ..ground.output.sources import sources
 from ..results.machine import compilers, processor
 from ..tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from ..ground.options.words import given_in
+from ..ground.output.errors import UsageError, noting_what_is_left_out
 from ..languages.words import files_in, with_files
-from ..options.words import given_in
-from ..output.errors import UsageError, noting_what_is_left_out
 from ..results.measuring import Asked, companions, file_digest, words_of
 from ..results.plain import key_text
 from ..tables.table import Row, Step

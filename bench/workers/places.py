@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..output.writing import whole_file
+from ..ground.output.writing import whole_file
 from ..results.measuring import HERE, Here
 from .words import Local, place_named, require_dask
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 
-from ..output.errors import leave_out, tell
-from ..output.writing import whole_file
+from ..ground.output.errors import leave_out, tell
+from ..ground.output.writing import whole_file
 from ..results.measuring import HERE, Asked
 from ..tables.table import Role, Row, Step, Table, Tick
 from . import tasks

@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any
 
 from ...reports.tables import written
+from ..ground.output.errors import UsageError
+from ..ground.output.journal import journal
 from ..metrics.growth import exponent
-from ..output.errors import UsageError
-from ..output.journal import journal
 from .chunks import chunk_size
 from .places import TIMES
 

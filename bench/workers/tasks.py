@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from ..output.errors import MissingError, UsageError, told
+from ..ground.output.errors import MissingError, UsageError, told
 from ..results.measuring import Asked, asked, with_parts
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Row, Step

@@ -26,8 +26,8 @@ from types import FrameType
 from typing import Any, NoReturn
 from urllib.parse import urlsplit
 
-from ..machine.memory import keep_what_is_freed, look_for_garbage_seldom
-from ..output.errors import UsageError, tell
+from ..ground.machine.memory import keep_what_is_freed, look_for_garbage_seldom
+from ..ground.output.errors import UsageError, tell
 from .words import checked_address, require_dask
 
 # What a scheduler knows normalbench's workers by.

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from ..machine.cores import on_all_cores
+from ..ground.machine.cores import on_all_cores
 from .exact_codec import SLAB, ExactCodec
 
 ALL_CORNERS, SOME_CORNERS, NEAREST, NONE = "all corners", "corners", "nearest codes", ""

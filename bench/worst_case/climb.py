@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.cores import on_all_cores
+from ..ground.machine.cores import on_all_cores
 
 WAYS = 2**4  # places that are tried around one
 STEPS = 80  # of a round

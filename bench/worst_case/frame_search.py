@@ -22,7 +22,7 @@ import numpy as np
 from ...encodings.codecs.frame_codec import FrameCodec
 from ...encodings.rotation import Frame, frame_of, frame_of_quaternion
 from ...encodings.vec import Vec4, cross, dot, normalize
-from ..machine.cores import on_all_cores
+from ..ground.machine.cores import on_all_cores
 from .cells import column_peaks
 from .climb import KEPT, WAYS, Ground, Starts, highest
 from .exact_codec import BLOCK, degrees

@@ -18,7 +18,7 @@ from functools import cache, partial
 import numpy as np
 
 from ...encodings.codecs.codec import Codec
-from ..machine.cores import on_all_cores
+from ..ground.machine.cores import on_all_cores
 from .cells import sides
 from .exact_codec import BLOCK, ExactCodec
 from .search import spread

@@ -24,7 +24,7 @@ from operator import add
 import numpy as np
 
 from ...encodings.codecs.codec import Codec
-from ..machine.cores import on_all_cores
+from ..ground.machine.cores import on_all_cores
 from . import cells
 from .climb import WAYS, Ground, Starts, highest
 from .exact_codec import BLOCK, ExactCodec, degrees

@@ -10,7 +10,7 @@ from damaged import mutated
 
 from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import encodings_named
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 
 from .kind import MEASURED, REFUSED, Attack, Kind, one_line
 

@@ -17,7 +17,7 @@ from written import some_normals
 
 from normalbench.bench.gates.baseline import Baseline, read_baseline
 from normalbench.bench.gates.gates import checked, read_gates
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.layouts.layout import read_layout

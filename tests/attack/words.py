@@ -10,7 +10,7 @@ from unittest.mock import patch
 import numpy as np
 from written import packed, some_normals, write_image
 
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.results import measuring
 
 from .kind import MEASURED, Attack, Kind, command, outcome

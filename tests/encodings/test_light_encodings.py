@@ -9,7 +9,7 @@ import pytest
 from parity.comparison import ULP, rows
 from parity.light import apart, given_texels, lights, planes
 
-from normalbench.bench.options.light_names import light_buffers_named
+from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
 from normalbench.encodings.chromaticity import chromaticity, coloured, luminance
 from normalbench.encodings.codecs.light_codec import LightCodec

@@ -5,8 +5,8 @@ import pytest
 from slowly import all_but
 
 from normalbench.bench.codecs.tuned_names import tuned
-from normalbench.bench.metrics.angles import angles_deg
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

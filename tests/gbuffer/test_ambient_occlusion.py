@@ -23,7 +23,7 @@ from occluded import (
     turned,
 )
 
-from normalbench.bench.metrics.angles import angles_deg
+from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.metrics.visibility import RayCaster, triangles_of
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.metrics.angles import angles_deg
+from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codecs.codec import Codec

@@ -11,7 +11,7 @@ import pytest
 import water_twin as twin
 from drawing import FP32, apart
 
-from normalbench.bench.options.effect_names import lacking
+from normalbench.bench.ground.options.effect_names import lacking
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.effects.catalogue import EFFECTS

@@ -14,8 +14,8 @@ from functools import cache
 from importlib.metadata import distributions
 from pathlib import Path
 
-from normalbench.bench.machine.devices import found_device, processor_kind
-from normalbench.bench.output.cache import key_of
+from normalbench.bench.ground.machine.devices import found_device, processor_kind
+from normalbench.bench.ground.output.cache import key_of
 from normalbench.bench.results.measuring import Asked
 from normalbench.bench.results.plain import key_text, plain
 from normalbench.bench.tables.table import Row, Step, Tick

@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from normalbench.bench.output.cache import key_of
+from normalbench.bench.ground.output.cache import key_of
 
 Run = Callable[..., subprocess.CompletedProcess[bytes]]
 

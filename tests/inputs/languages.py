@@ -5,7 +5,7 @@ import os
 import pytest
 
 from normalbench.bench.code.run import runner
-from normalbench.bench.output.errors import MissingError
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 

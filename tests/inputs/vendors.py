@@ -7,11 +7,11 @@ from types import ModuleType
 
 import pytest
 
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.isa import intel_disassembly, isa, null_device
 from normalbench.bench.isa import process as isa_process
 from normalbench.bench.isa.nvidia import sass, tools
 from normalbench.bench.isa.terascale import disassembly as terascale_disassembly
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines.packings import PACKINGS

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ....gbuffer.gl.shader import ShaderError, read_shader
-from ...machine import children
-from ...output.errors import MissingError
+from ...ground.machine import children
+from ...ground.output.errors import MissingError
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, compile_with, first_line, folder, on_path
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ....gbuffer.gl.shader import ShaderError
-from ...machine import children
-from ...output.errors import MissingError
+from ...ground.machine import children
+from ...ground.output.errors import MissingError
 from .interface import Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, EmittedSource, folder
 

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from ...machine import children
-from ...machine.vulkan import adapters
+from ...ground.machine import children
+from ...ground.machine.vulkan import adapters
 
 
 def main(words: Sequence[str]) -> None:

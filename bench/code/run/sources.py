@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ....gbuffer.gl.shader import Line, ShaderError, Source
-from ...machine import children
-from ...output.errors import MissingError
+from ...ground.machine import children
+from ...ground.output.errors import MissingError
 from .interface import Interface
 
 # Slang's compiler loads 200 MB before it begins.

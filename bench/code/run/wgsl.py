@@ -14,9 +14,9 @@ import numpy as np
 
 from ....encodings.codecs.files import file_text
 from ....gbuffer.gl.shader import ShaderError
-from ...machine import children, forks
-from ...machine.vulkan import NO_DRIVER, adapters
-from ...output.errors import MissingError
+from ...ground.machine import children, forks
+from ...ground.machine.vulkan import NO_DRIVER, adapters
+from ...ground.output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, folder
 

@@ -13,7 +13,7 @@ from functools import cache
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
 from .domains import AXES, Domain, guessed
 from .probe import Probe, Trip
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....gbuffer.gl.device import Device
-from ...metrics.directions import circles, directions
+from ...ground.directions import circles, directions
 from . import exact, folds, nearly
 from .between import MOST, SAME_DEG, axes_of, step_between
 from .domains import HALVES, HEMISPHERE, SPHERE, Domain, asked, guessed

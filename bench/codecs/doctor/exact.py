@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
 from . import folds
 from .domains import AXES, Domain
 from .probe import Probe, Trip, vector

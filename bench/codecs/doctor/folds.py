@@ -16,7 +16,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...metrics.directions import directions, unit
+from ...ground.directions import directions, unit
 from .probe import Probe, of_unit
 
 # How many directions and codes are compared.

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...metrics.directions import unit
+from ...ground.directions import unit
 from .between import SAME_DEG, axes_of
 from .domains import Domain
 from .probe import Probe, Trip

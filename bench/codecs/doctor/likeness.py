@@ -10,8 +10,8 @@ import numpy as np
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.gl.device import Device
-from ...metrics.angles import angles_deg
-from ...metrics.directions import directions
+from ...ground.angles import angles_deg
+from ...ground.directions import directions
 from .between import NOTHING, RANGES, SAME_DEG, TURNS, Step, decoded_after
 from .domains import SPHERE, Domain
 from .folds import frames

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
-from ...metrics.directions import unit
+from ...ground.angles import angles_deg
+from ...ground.directions import unit
 from .probe import Probe, Trip
 
 # Of a finite difference; of float32's digits it leaves half.

@@ -14,7 +14,7 @@ import numpy as np
 from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.codecs.codec_passes import exact_values
 from ....gbuffer.gl.device import Device
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
 
 # The view-space position that every direction is seen at.
 VIEW = (0.1, -0.2, -1.0)

@@ -10,9 +10,9 @@ import numpy as np
 
 from ....gbuffer.gl.device import FormatError
 from ....gbuffer.gl.shader import Source
+from ...ground.machine.vulkan import adapters
+from ...ground.output.errors import MissingError
 from ...isa.spirv import compiled
-from ...machine.vulkan import adapters
-from ...output.errors import MissingError
 
 FEATURE = "shader-f16"
 GROUP = 64

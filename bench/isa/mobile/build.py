@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from ...options.gpu_families import MOBILE, TITLES
-from ...output.errors import MissingError, UsageError
+from ...ground.options.gpu_families import MOBILE, TITLES
+from ...ground.output.errors import MissingError, UsageError
 from . import driver
 
 # What it takes, as measured on two cores with Mesa 22.3.

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from ...output import cache as kept
+from ...ground.output import cache as kept
 from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_mobile.c")

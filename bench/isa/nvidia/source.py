@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.gl.shader import ShaderError
-from ...output import cache as kept
+from ...ground.output import cache as kept
 from ...translator import tree
 from ...translator.glsl_parser import read_glsl
 from ...translator.reduce import reduced

@@ -12,7 +12,7 @@ from importlib.metadata import distributions
 from importlib.util import find_spec
 from pathlib import Path
 
-from ...output import cache as kept
+from ...ground.output import cache as kept
 from ..compiler import MissingDriverError, fingerprint
 
 INSTALL = "install it (python -m pip install 'normalbench[nvidia]')"

@@ -12,8 +12,8 @@ from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.codecs.loops import turns_made
 from ....gbuffer.gl.device import Device
 from ....gbuffer.gl.shader import ShaderError
-from ...output import cache as kept
-from ...output.sources import sources
+from ...ground.output import cache as kept
+from ...ground.output.sources import sources
 
 # Normals that the turns of loops are counted for.
 COUNT, SEED = 2048, 0
@@ -28,7 +28,7 @@ def turns_of(encoding: Encoding) -> Mapping[str, Sequence[Sequence[float]]] | No
     None where no device counts them, or their text cannot be counted.
     """
     # It imports JAX, which only loops are worth.
-    from ...machine.devices import found_device
+    from ...ground.machine.devices import found_device
 
     device, _ = found_device()
     if not device:

@@ -13,9 +13,9 @@ import jax.numpy as jnp
 
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
+from ...ground.output.errors import MissingError
 from ...metrics.moments import FAST_BLOCK, LANES
 from ...normals.directions import CORES, make_input
-from ...output.errors import MissingError
 from .clocks import summary
 from .measure import Case, Row
 

@@ -13,9 +13,9 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage
 from ....reports.charts import pareto, plots
+from ...ground.output.errors import tell
+from ...ground.output.writing import whole_file
 from ...normals.normal_sets import NormalSet
-from ...output.errors import tell
-from ...output.writing import whole_file
 from ..quality import measure as quality
 from .codec_costs import Costs, LeftOutError, Where
 from .measure import Row

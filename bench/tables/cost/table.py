@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from ...options.gpu_families import CHOICES, titled
-from ...options.option import Arithmetics, Encodings, Option, Plot, Seed
+from ...ground.options.gpu_families import CHOICES, titled
+from ...ground.options.option import Arithmetics, Encodings, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table

@@ -19,12 +19,12 @@ from ....reports.charts import pareto
 from ....reports.charts.drawings import Drawing
 from ....reports.charts.front_specs import pareto_specs
 from ...codecs.user_encodings import encodings_named
+from ...ground.options import gpu_families as families
+from ...ground.options import listing
+from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
+from ...ground.output.errors import MissingError, UsageError, pick
+from ...ground.output.writing import check_folder, check_plot, whole_file
 from ...isa import isa, spirv
-from ...options import gpu_families as families
-from ...options import listing
-from ...options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
-from ...output.errors import MissingError, UsageError, pick
-from ...output.writing import check_folder, check_plot, whole_file
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .measure import file_name
@@ -189,8 +189,8 @@ def _listings(asked: Costing, missing: list[str]) -> Iterator[tuple[Row, str]]:
 
 
 def _time(asked: Costing) -> Iterable[Row]:
-    from ...machine.devices import require_device
-    from ...options.targets import checked_target
+    from ...ground.machine.devices import require_device
+    from ...ground.options.targets import checked_target
     from . import clocks
 
     device = require_device()
@@ -200,7 +200,7 @@ def _time(asked: Costing) -> Iterable[Row]:
 
 
 def _jax(asked: Costing) -> Iterable[Row]:
-    from ...machine.devices import require_jax
+    from ...ground.machine.devices import require_jax
     from .jax_time import jax_rows
 
     require_jax()

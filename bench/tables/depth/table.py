@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Backends, Images, Names, Option, Plot, Seed
+from ...ground.options.option import Backends, Images, Names, Option, Plot, Seed
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

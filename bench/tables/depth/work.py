@@ -24,12 +24,12 @@ from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import pictures, plots, specs
 from ....reports.charts.drawings import Drawing
-from ...machine.devices import require_device, require_jax
-from ...options.backends import backends_named
-from ...options.counts import check_seed, checked_numbers, in_range
-from ...options.targets import what_is_left
-from ...output.errors import UsageError, pick
-from ...output.writing import check_folder, check_plot, save_plot, whole_file
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.backends import backends_named
+from ...ground.options.counts import check_seed, checked_numbers, in_range
+from ...ground.options.targets import what_is_left
+from ...ground.output.errors import UsageError, pick
+from ...ground.output.writing import check_folder, check_plot, save_plot, whole_file
 from ..charts import drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

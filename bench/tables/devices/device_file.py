@@ -27,7 +27,7 @@ from pydantic import (
 
 from ....encodings.codecs.files import file_bytes, not_json
 from ....reports.page.found import plain_text
-from ...output.errors import UsageError
+from ...ground.output.errors import UsageError
 from .names import browser_name
 
 FORMAT = 1

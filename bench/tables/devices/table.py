@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Option
+from ...ground.options.option import Option
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

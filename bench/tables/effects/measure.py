@@ -20,11 +20,11 @@ from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
+from ...ground.output.errors import MissingError, tell
 from ...metrics.images import flip, squared_error
 from ...metrics.occlusion_error import method_error
 from ...metrics.totals import psnr_db
-from ...output.errors import MissingError, tell
 from ..render.measure import UNMEASURABLE
 from .table import TABLE
 

@@ -11,7 +11,7 @@ import numpy as np
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
-from ...output.writing import files_of, whole_file
+from ...ground.output.writing import files_of, whole_file
 from ..render.pictures import name_of_file
 from ..table import Row
 from .measure import Drawn, in_order

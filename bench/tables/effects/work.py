@@ -23,14 +23,14 @@ from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.layout_names import layouts_named
 from ...codecs.names import codecs_named
-from ...machine.devices import require_device, require_jax
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.counts import MAX_REPEATS, in_range
+from ...ground.options.effect_names import effects_named, lacking, pipeline_with
+from ...ground.options.scene_names import scenes_named
+from ...ground.options.targets import checked_setting, checked_target, what_is_left
+from ...ground.output.errors import UsageError, pick, pick_one
+from ...ground.output.writing import check_folder
 from ...metrics.images import require_flip
-from ...options.counts import MAX_REPEATS, in_range
-from ...options.effect_names import effects_named, lacking, pipeline_with
-from ...options.scene_names import scenes_named
-from ...options.targets import checked_setting, checked_target, what_is_left
-from ...output.errors import UsageError, pick, pick_one
-from ...output.writing import check_folder
 from ..charts import drawing, having
 from ..render.work import attempt, with_codecs
 from ..shots import Shot, by_shots

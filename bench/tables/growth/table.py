@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated
 
-from ...options.counts import MAX_COUNT, MAX_LIGHTS, MAX_OBJECTS
-from ...options.option import Option, Plot
+from ...ground.options.counts import MAX_COUNT, MAX_LIGHTS, MAX_OBJECTS
+from ...ground.options.option import Option, Plot
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

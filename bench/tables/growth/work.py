@@ -8,11 +8,11 @@ from typing import Any
 
 from ....reports.charts import growth as charts
 from ....reports.charts.drawings import Drawing
-from ...machine.devices import require_jax
+from ...ground.machine.devices import require_jax
+from ...ground.options.counts import checked_numbers
+from ...ground.output.errors import UsageError, pick
+from ...ground.output.writing import check_plot, save_plot
 from ...metrics.growth import exponent, growth_lines
-from ...options.counts import checked_numbers
-from ...output.errors import UsageError, pick
-from ...output.writing import check_plot, save_plot
 from ..charts import drawing, having
 from ..table import GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

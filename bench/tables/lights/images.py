@@ -25,9 +25,9 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import Colour, Scene
+from ...ground.output.errors import UsageError
 from ...metrics.images import squared_error
 from ...metrics.totals import psnr_db
-from ...output.errors import UsageError
 
 Row = dict[str, Any]
 # Lamps and sun this much brighter: highlights then reach several times what a display shows.

@@ -16,7 +16,7 @@ from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.pipelines import Pipeline
-from ...output.errors import UsageError
+from ...ground.output.errors import UsageError
 from .images import Lit, Resolves, Shot, targets_of, with_power
 from .sums import Adder, banding, chromaticity, equal_lights, gradient, random_lights
 from .table import TABLE

@@ -17,13 +17,13 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....reports.charts import pictures, plots, specs
 from ....reports.charts.drawings import Drawing
-from ...machine.devices import found_device, require_jax
-from ...options.counts import checked_numbers
-from ...options.light_names import MOST_LIGHT, light_buffers_named
-from ...options.scene_names import scenes_named
-from ...options.targets import TARGETS, checked_setting, checked_target
-from ...output.errors import MissingError, UsageError, pick
-from ...output.writing import check_folder, check_plot, save_plot, whole_file
+from ...ground.machine.devices import found_device, require_jax
+from ...ground.options.counts import checked_numbers
+from ...ground.options.light_names import MOST_LIGHT, light_buffers_named
+from ...ground.options.scene_names import scenes_named
+from ...ground.options.targets import TARGETS, checked_setting, checked_target
+from ...ground.output.errors import MissingError, UsageError, pick
+from ...ground.output.writing import check_folder, check_plot, save_plot, whole_file
 from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

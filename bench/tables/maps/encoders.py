@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...output.errors import MissingError
+from ...ground.output.errors import MissingError
 
 # How hard encoders try: etcpak's BC7 from 0 to 4, quicktex' BC5 from 0 to its largest search, astcenc from 0 to 100.
 BC7_EFFORT, ASTC_EFFORT = 4, 60

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ....reports.charts import pictures
-from ...output.writing import whole_file
+from ...ground.output.writing import whole_file
 from .measure import UNMEASURABLE, Case, Clock, bands, through
 
 # Of the pictures of a codec those that a code in channels of its own does not need.

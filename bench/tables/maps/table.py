@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated
 
-from ...options.option import Encodings, Images, Option, Plot, Reading
+from ...ground.options.option import Encodings, Images, Option, Plot, Reading
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

@@ -10,15 +10,15 @@ from ....reports.charts import maps as charts
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import check_twin
 from ...codecs.user_encodings import encodings_named
-from ...machine.devices import require_device, require_jax
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.counts import DEFAULT_COUNT
+from ...ground.options.targets import what_is_left
+from ...ground.options.words import Words, given_in
+from ...ground.output.errors import MissingError, UsageError, leave_out, pick
+from ...ground.output.writing import check_folder, check_plot, save_plot
 from ...metrics import published
 from ...normals.normal_names import normal_sets_named
 from ...normals.normal_sets import NormalSet
-from ...options.counts import DEFAULT_COUNT
-from ...options.targets import what_is_left
-from ...options.words import Words, given_in
-from ...output.errors import MissingError, UsageError, leave_out, pick
-from ...output.writing import check_folder, check_plot, save_plot
 from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure, pictures

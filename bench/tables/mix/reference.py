@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
 
 
 def unit_rows(v: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated
 
-from ...options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
+from ...ground.options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

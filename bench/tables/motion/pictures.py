@@ -10,7 +10,7 @@ import numpy as np
 from ....gbuffer.scenes.gloss import POWERS
 from ....reports.charts import motion as chart
 from ....reports.page.pixels import Film
-from ...output.writing import files_of, whole_file
+from ...ground.output.writing import files_of, whole_file
 from ..charts import having
 from ..table import Row
 from .measure import Filmed

@@ -17,7 +17,7 @@ from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ...code.twin import has_twin
-from ...machine.devices import require_device
+from ...ground.machine.devices import require_device
 
 WIDTH = 256
 CHUNK = 2**15

@@ -13,7 +13,7 @@ from ....gbuffer.layouts.words import LayoutError
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
-from ...output.writing import files_of, whole_file
+from ...ground.output.writing import files_of, whole_file
 from ..render import measure as render
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.defines.packings import packing_of
-from ...options.gpu_families import usual_stage
+from ...ground.options.gpu_families import usual_stage
 from ..cost import measure as cost
 from .answer import Row
 from .table import READERS

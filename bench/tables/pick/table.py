@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import (
+from ...ground.options.option import (
     Count,
     Effects,
     Encodings,

@@ -16,15 +16,15 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...codecs.names import check_twin, codecs_named, storages_named
-from ...machine.devices import found_device, require_jax
+from ...ground.machine.devices import found_device, require_jax
+from ...ground.options.counts import check_seed, checked_count, in_range
+from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
+from ...ground.options.gpu_families import CHOICES
+from ...ground.options.scene_names import powers_named, scenes_named
+from ...ground.output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
+from ...ground.output.writing import check_folder
 from ...normals.normal_names import normal_sets_named
 from ...normals.normal_sets import NormalSet
-from ...options.counts import check_seed, checked_count, in_range
-from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...options.gpu_families import CHOICES
-from ...options.scene_names import powers_named, scenes_named
-from ...output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
-from ...output.writing import check_folder
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from ...machine.devices import require_jax
-from ...output.errors import UsageError
+from ...ground.machine.devices import require_jax
+from ...ground.output.errors import UsageError
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from .figure import DIFFERENT, UNEXPLAINED, Figure, Source
 from .table import TABLE, PublishedOptions

@@ -27,15 +27,15 @@ from ...code import trip as wgsl_trip
 from ...code.twin import NoTwinError, has_twin
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
-from ...machine.cores import on_all_cores
+from ...ground.machine.cores import on_all_cores
+from ...ground.native.elementwise import NotElementwiseError
+from ...ground.native.library import LARGE, NoCompilerError
+from ...ground.output.errors import MissingError
 from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
 from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
-from ...native.elementwise import NotElementwiseError
-from ...native.library import LARGE, NoCompilerError
 from ...native.meter import NativeMeter
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
-from ...output.errors import MissingError
 from ...worst_case import exact_figures
 from .table import TABLE
 

@@ -16,11 +16,11 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import MAX_PIXELS, NormalPixels, Pictured, Subject, angle_bytes, read_png
 from ....reports.page.verdict import LEADING, is_count, is_number
+from ...ground.angles import angles_deg
+from ...ground.output.arrays import DamagedError, read_npz
+from ...ground.output.writing import files_of, whole_file
 from ...live.scenes import write_scene
 from ...metrics import published
-from ...metrics.angles import angles_deg
-from ...output.arrays import DamagedError, read_npz
-from ...output.writing import files_of, whole_file
 from ..table import Row
 from . import measure
 

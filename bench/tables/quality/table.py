@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from ...options.counts import DEFAULT_COUNT
-from ...options.option import (
+from ...ground.options.counts import DEFAULT_COUNT
+from ...ground.options.option import (
     Arithmetics,
     BackendsAndWgsl,
     Count,

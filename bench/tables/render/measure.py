@@ -20,11 +20,11 @@ from ....gbuffer.render import Rendering, bytes_per_pixel, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
+from ...ground.output.errors import UsageError
 from ...metrics.images import flip, squared_error
 from ...metrics.totals import Worst, psnr_db
 from ...normals.normal_names import SEES_NOTHING
-from ...output.errors import UsageError
 from .table import TABLE
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))

@@ -13,7 +13,7 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ....reports.page.verdict import LEADING, is_number
-from ...output.writing import files_of, whole_file
+from ...ground.output.writing import files_of, whole_file
 from ..table import Row
 from .measure import Drawn, shown_scene
 

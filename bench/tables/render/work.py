@@ -21,15 +21,15 @@ from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.layout_names import layouts_named
 from ...codecs.names import check_twin, codecs_named
-from ...machine.devices import require_device, require_jax
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.counts import MAX_REPEATS, in_range
+from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
+from ...ground.options.light_names import light_buffers_named
+from ...ground.options.scene_names import powers_named, scenes_named
+from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
+from ...ground.output.errors import UsageError, by_reason, pick, pick_one
+from ...ground.output.writing import check_folder, without
 from ...metrics.images import require_flip
-from ...options.counts import MAX_REPEATS, in_range
-from ...options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...options.light_names import light_buffers_named
-from ...options.scene_names import powers_named, scenes_named
-from ...options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...output.errors import UsageError, by_reason, pick, pick_one
-from ...output.writing import check_folder, without
 from ..charts import drawing, having
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work

@@ -13,7 +13,7 @@ from typing import Any
 
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.defines.packings import SIGN, packing_of
-from ...options.gpu_families import usual_stage
+from ...ground.options.gpu_families import usual_stage
 from ..cost import measure as cost
 from ..cost.codec_costs import Costs, LeftOutError, Where
 from .rates import Rates

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
-from ...options.gpu_families import FAMILIES
-from ...output.errors import UsageError
+from ...ground.options.gpu_families import FAMILIES
+from ...ground.output.errors import UsageError
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from itertools import combinations
 from ....reports.charts import roofline as charts
 from ....reports.charts.drawings import Drawing
 from ...codecs.names import codecs_named
+from ...ground.options.counts import checked_numbers, checked_sides
+from ...ground.options.targets import that_fit
+from ...ground.output.errors import UsageError
+from ...ground.output.writing import check_plot, save_plot
 from ...isa import spirv
-from ...options.counts import checked_numbers, checked_sides
-from ...options.targets import that_fit
-from ...output.errors import UsageError
-from ...output.writing import check_plot, save_plot
 from ..charts import drawing, having
 from ..table import COMPILERS, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

@@ -11,10 +11,10 @@ from ....gbuffer.pipelines import PIPELINES
 from ....reports.charts import charts, plots, specs
 from ....reports.charts.drawings import Drawing
 from ...codecs.layout_names import layouts_named
-from ...machine.devices import require_device, require_jax
-from ...options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
-from ...options.light_names import light_buffers_named
-from ...options.targets import (
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
+from ...ground.options.light_names import light_buffers_named
+from ...ground.options.targets import (
     SHADOWS,
     TARGETS,
     check_scale,
@@ -22,8 +22,8 @@ from ...options.targets import (
     checked_target,
     what_is_left,
 )
-from ...output.errors import pick
-from ...output.writing import check_plot, save_plot, without
+from ...ground.output.errors import pick
+from ...ground.output.writing import check_plot, save_plot, without
 from ..charts import drawing, having
 from ..render.work import suited
 from ..table import Measured, Row, Sheet, Step, Tick, Work

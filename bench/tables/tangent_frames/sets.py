@@ -14,8 +14,8 @@ from ....encodings.rotation import frame_of_quaternion
 from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS
 from ....gbuffer.scenes.mesh import Mesh, tangents
-from ...options.scene_names import mesh_file, say_notes
-from ...output.errors import pick_or_read
+from ...ground.options.scene_names import mesh_file, say_notes
+from ...ground.output.errors import pick_or_read
 
 CHUNK = 2**16
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.storages.storage import FRAME_STORAGES
-from ...machine.devices import require_device, require_jax
-from ...options.backends import backends_named
-from ...options.counts import check_seed, checked_count
-from ...options.targets import that_fit
-from ...output.errors import pick
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.backends import backends_named
+from ...ground.options.counts import check_seed, checked_count
+from ...ground.options.targets import that_fit
+from ...ground.output.errors import pick
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
 from .sets import frame_sets_named

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ...native.library import NONE
+from ...ground.native.library import NONE
 
 SOURCE = Path(__file__).with_name("row.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-fPIC", "-w")

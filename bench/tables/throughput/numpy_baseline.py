@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...metrics.angles import angles_deg
+from ...ground.angles import angles_deg
 
 
 def quantise_unorm(code: np.ndarray, levels: int = 255) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Encodings, Option, Plot
+from ...ground.options.option import Encodings, Option, Plot
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from ...options.option import Option, Reading, Seed
+from ...ground.options.option import Option, Reading, Seed
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Backends, Names, Option, Seed
+from ...ground.options.option import Backends, Names, Option, Seed
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 

@@ -10,11 +10,11 @@ from ....encodings.codecs.motion_codec import MotionCodec
 from ....encodings.storages.storage import MOTION_STORAGES
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
-from ...machine.devices import require_device, require_jax
-from ...options.backends import backends_named
-from ...options.counts import check_seed, checked_numbers, checked_sides, in_range
-from ...options.targets import that_fit
-from ...output.errors import pick
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.backends import backends_named
+from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
+from ...ground.options.targets import that_fit
+from ...ground.output.errors import pick
 from ..charts import drawing, having, one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from . import measure

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from written import some_normals
 
-from normalbench.bench.output.errors import UsageError
-from normalbench.bench.output.journal import journal
-from normalbench.bench.output.writing import whole_file
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.output.journal import journal
+from normalbench.bench.ground.output.writing import whole_file
 
 SHADER = """
 vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }

@@ -12,7 +12,7 @@ import pytest
 import typer
 
 from normalbench.bench.cli.app import _is_delicate, app
-from normalbench.bench.options.counts import whole_number
+from normalbench.bench.ground.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports import tables
 

@@ -7,7 +7,7 @@ from directions import hard_directions, random_directions, view_positions
 from normalbench.bench.code.numpy_source import numpy_source, words_of
 from normalbench.bench.code.run import runner
 from normalbench.bench.code.run.interface import Interface, Ran
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.variants import settings_in, variant

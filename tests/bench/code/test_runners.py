@@ -10,7 +10,7 @@ import pytest
 
 from normalbench.bench.code.run import LANGUAGES, c, interface, runner
 from normalbench.bench.code.run.interface import Interface, Ran
-from normalbench.bench.output.errors import MissingError
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.gl.shader import ShaderError
 

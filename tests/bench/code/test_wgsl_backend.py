@@ -6,8 +6,8 @@ import pytest
 
 from normalbench.bench.code.run import wgsl
 from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.normals import normal_sets
-from normalbench.bench.output.errors import MissingError
 from normalbench.bench.tables.quality import measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.variants import in_half

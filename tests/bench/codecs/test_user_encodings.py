@@ -9,9 +9,9 @@ import pytest
 from normalbench.bench.codecs import user_encodings
 from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
-from normalbench.bench.machine import forks
-from normalbench.bench.metrics.directions import directions
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.directions import directions
+from normalbench.bench.ground.machine import forks
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from costing import glsl
 
+from normalbench.bench.ground.options.gpu_families import CHOICES
 from normalbench.bench.isa import isa
 from normalbench.bench.isa.disassembly import KINDS, issue_slots, kind, kinds, names
 from normalbench.bench.metrics import published
-from normalbench.bench.options.gpu_families import CHOICES
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import sheets as cost_sheets
 from normalbench.bench.tables.cost import work

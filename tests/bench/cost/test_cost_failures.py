@@ -15,12 +15,12 @@ import pytest
 from costing import glsl
 
 from normalbench.bench.cli import app as cli
+from normalbench.bench.ground.machine import devices
+from normalbench.bench.ground.options import gpu_families as families
+from normalbench.bench.ground.options.option import fields_of
+from normalbench.bench.ground.output import cache
 from normalbench.bench.isa import compiler, driver_files, isa, spirv
 from normalbench.bench.isa import process as isa_process
-from normalbench.bench.machine import devices
-from normalbench.bench.options import gpu_families as families
-from normalbench.bench.options.option import fields_of
-from normalbench.bench.output import cache
 from normalbench.bench.suite.run import asked_of
 from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.cost import measure as cost

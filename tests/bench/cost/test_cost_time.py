@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from normalbench.bench.machine.devices import require_device
+from normalbench.bench.ground.machine.devices import require_device
 from normalbench.bench.tables.cost import clocks as cost_clocks
 from normalbench.bench.tables.cost import jax_time as cost_jax
 from normalbench.bench.tables.cost.clocks import LEAST_TURNS, MOST_TURNS, Field, Pair, Passes, median_interval, summary

@@ -3,9 +3,9 @@
 import pytest
 
 from normalbench.bench.codecs.half.kernels import half_operation
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.isa import disassembly, intel_disassembly, isa, occupancy
 from normalbench.bench.isa.compiler import uses_halves
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.variants import in_half

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from vendors import INTEL, every_or_some
 
+from normalbench.bench.ground.options import gpu_families as families
+from normalbench.bench.ground.options.gpu_families import FAMILIES
+from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.isa import intel_disassembly, null_device
 from normalbench.bench.isa.isa import Compiled, Kernel
-from normalbench.bench.options import gpu_families as families
-from normalbench.bench.options.gpu_families import FAMILIES
-from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.results.machine import require_intel
 from normalbench.bench.suite import report
 from normalbench.bench.tables.cost import measure as cost

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from null_devices import NO_DEVICE, tried
 
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES, MOBILE, TURNIP
+from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.isa import driver_files, isa
 from normalbench.bench.isa.mobile import build, driver, ir3_disassembly, qpu_disassembly
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES, MOBILE, TURNIP
-from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.results.machine import require_mobile
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS

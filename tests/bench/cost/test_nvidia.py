@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from vendors import NVIDIA, every_or_some
 
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.isa import isa
 from normalbench.bench.isa.compiler import DriverError
 from normalbench.bench.isa.nvidia import cubin, listing, sass, source, tools
 from normalbench.bench.isa.nvidia.child import statistics
 from normalbench.bench.isa.nvidia.cubin import Kernel
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
-from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results.machine import require_nvidia
 from normalbench.bench.suite import report
 from normalbench.bench.tables.cost.work import chosen_families

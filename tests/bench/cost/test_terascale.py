@@ -8,11 +8,11 @@ import pytest
 from null_devices import NO_DEVICE, tried
 from vendors import TERASCALE, every_or_some
 
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.isa import isa, null_device
 from normalbench.bench.isa.terascale import disassembly, driver
 from normalbench.bench.metrics import published
-from normalbench.bench.options.gpu_families import CHOICES, FAMILIES
-from normalbench.bench.output.errors import MissingError
 from normalbench.bench.results.machine import require_terascale
 
 LISTINGS = Path(__file__).with_name("terascale_listings")

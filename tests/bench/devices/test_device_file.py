@@ -8,7 +8,7 @@ import time
 import devices as made
 import pytest
 
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.devices import device_file
 from normalbench.bench.tables.devices.device_file import read_device_file
 from normalbench.bench.tables.devices.names import browser_name, device_name, told_apart

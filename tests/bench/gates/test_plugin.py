@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.gates import baseline, measured
-from normalbench.bench.machine import devices
-from normalbench.bench.options.option import fields_of
+from normalbench.bench.ground.machine import devices
+from normalbench.bench.ground.options.option import fields_of
 from normalbench.bench.pytest_plugin import gate_files as pytest_gates
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.languages.language import require_language
-from normalbench.bench.output.errors import MissingError
 
 
 def _there(name):

@@ -11,11 +11,11 @@ from languages import require_runner
 from normalbench.bench.codecs import second_look
 from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.ground.directions import directions
+from normalbench.bench.ground.output import cache as kept
 from normalbench.bench.languages import second
 from normalbench.bench.languages.translated import translated
-from normalbench.bench.metrics.angles import angles_deg
-from normalbench.bench.metrics.directions import directions
-from normalbench.bench.output import cache as kept
 from normalbench.bench.translator.wgsl_parser import WgslParser
 from normalbench.gbuffer.codecs.codec_passes import exact_values
 from normalbench.gbuffer.gl.device import device

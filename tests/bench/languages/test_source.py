@@ -5,8 +5,8 @@ import time
 
 import pytest
 
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.languages.source import Source, without_comments
-from normalbench.bench.output.errors import UsageError
 
 
 def written(folder, text, name="mine.hlsl"):

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from normalbench.bench.codecs.doctor.exact import is_unit
+from normalbench.bench.ground.directions import directions
 from normalbench.bench.languages import tools, translated
 from normalbench.bench.languages.plain import NotPlainError, plain
-from normalbench.bench.metrics.directions import directions
 from normalbench.bench.results.measuring import files_of
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.encodings import vec

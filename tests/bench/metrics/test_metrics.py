@@ -15,14 +15,14 @@ from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
 from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.machine.cores import cores, on_all_cores
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.ground.machine.cores import cores, on_all_cores
+from normalbench.bench.ground.options import counts
 from normalbench.bench.metrics import meter as metrics
-from normalbench.bench.metrics.angles import angles_deg
 from normalbench.bench.metrics.meter import Meter, angle_between
 from normalbench.bench.metrics.moments import squared_errors
 from normalbench.bench.metrics.totals import psnr_db
 from normalbench.bench.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
-from normalbench.bench.options import counts
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.throughput.numpy_baseline import whole_row
 from normalbench.encodings import vec
@@ -268,7 +268,7 @@ def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
     normals = sphere(5 * CHUNK + 99)
     usual = rows_of(normals)
     for threads in (1, 4):
-        monkeypatch.setattr("normalbench.bench.machine.cores.cores", lambda threads=threads: threads)
+        monkeypatch.setattr("normalbench.bench.ground.machine.cores.cores", lambda threads=threads: threads)
         assert rows_of(normals) == usual
     for rows, lanes in ((8, 1024), (32, 1024), (64, 256), (32, 512)):
         monkeypatch.setattr(metrics, "ROWS", rows)

@@ -10,9 +10,9 @@ import pytest
 from drawing import scene_of
 from occluded import CLOSED, effect, scene_of_meshes
 
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.metrics.occlusion_error import compared, method_error
 from normalbench.bench.metrics.visibility import RayCaster, cosine_directions, triangles_of
-from normalbench.bench.output.errors import MissingError
 from normalbench.gbuffer.effects.effect import ChosenEffect, Effect, EffectError
 from normalbench.gbuffer.frame.resource import Resource
 

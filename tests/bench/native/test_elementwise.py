@@ -8,8 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from normalbench.bench.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
-from normalbench.bench.native.library import address, library, source
+from normalbench.bench.ground.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
+from normalbench.bench.ground.native.library import address, library, source
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
 

@@ -4,8 +4,8 @@ import ctypes
 
 import pytest
 
-from normalbench.bench.native import library as native
-from normalbench.bench.output import cache
+from normalbench.bench.ground.native import library as native
+from normalbench.bench.ground.output import cache
 
 SOURCE = "int answer(void) { return 42; }"
 needs_c = pytest.mark.skipif(not native.compiler(), reason="no C compiler")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from directions import random_directions
 
+from normalbench.bench.ground.native import library
 from normalbench.bench.metrics.meter import Meter, measure_together
 from normalbench.bench.metrics.totals import statistics
-from normalbench.bench.native import library
 from normalbench.bench.native.meter import NativeMeter
 from normalbench.bench.normals import normal_sets
 from normalbench.bench.normals.normal_sets import CHUNK, TURN, NormalSet, from_arrays, hemisphere, sphere

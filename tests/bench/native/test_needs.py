@@ -1,6 +1,6 @@
 """Which steps need the same C compiler wherever they are measured."""
 
-from normalbench.bench.native.library import LARGE
+from normalbench.bench.ground.native.library import LARGE
 from normalbench.bench.tables.quality.work import WORK
 from normalbench.bench.tables.table import C_COMPILER, GL, VULKAN, Step
 from normalbench.bench.workers.about import CAN

@@ -11,9 +11,9 @@ from attack.files import ENDINGS, picture
 from damaged import refusal
 from written import chunk, dds_bytes, packed, planes_of, png_bytes, some_normals, write_exr, write_image
 
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.normals import pixel_files
 from normalbench.bench.normals.captures import Reading, capture
-from normalbench.bench.output.errors import UsageError
 
 
 def npy(shape: tuple, data: bytes = b"", kind: str = "<f4") -> bytes:

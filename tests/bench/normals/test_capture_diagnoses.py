@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 from written import given, packed, png_bytes
 
+from normalbench.bench.ground.options.option import Reading
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.normals.captures import capture, typed
-from normalbench.bench.options.option import Reading
-from normalbench.bench.output.errors import UsageError
 from normalbench.encodings.storages.rounding import from_srgb, to_srgb
 from normalbench.gbuffer.scenes.playground import CAMERA, playground
 

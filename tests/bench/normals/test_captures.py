@@ -23,11 +23,11 @@ from written import (
     write_image,
 )
 
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.normals import captures, pixel_files, pixel_process
 from normalbench.bench.normals.captures import Reading, checked, chosen_channels, turns_of
 from normalbench.bench.normals.normal_sets import NormalSet, playground
 from normalbench.bench.normals.pixel_files import read_pixels
-from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

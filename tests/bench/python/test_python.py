@@ -12,7 +12,7 @@ from slowly import all_but
 
 import normalbench as nb
 from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.python import stub
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS

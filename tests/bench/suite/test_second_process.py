@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from normalbench.bench.machine.children import environment
+from normalbench.bench.ground.machine.children import environment
 from normalbench.bench.results.measuring import HERE, Asked
 from normalbench.bench.results.runs import read_run
 from normalbench.bench.suite import report, second, second_child

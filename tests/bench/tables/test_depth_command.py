@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench.machine import devices
+from normalbench.bench.ground.machine import devices
 from normalbench.bench.tables.depth import measure as depth
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.gl.device import NoDeviceError

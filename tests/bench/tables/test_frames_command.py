@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from written import as_document
 
-from normalbench.bench.machine import devices
+from normalbench.bench.ground.machine import devices
 from normalbench.bench.metrics.code_limits import SCATTER
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames

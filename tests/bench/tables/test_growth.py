@@ -5,8 +5,8 @@ import re
 
 import pytest
 
+from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.metrics.growth import exponent
-from normalbench.bench.output.errors import MissingError, UsageError
 from normalbench.bench.tables.growth import measure
 from normalbench.bench.tables.growth.measure import Case
 from normalbench.bench.tables.growth.table import KINDS, GrowthOptions

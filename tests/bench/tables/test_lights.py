@@ -8,8 +8,8 @@ import pytest
 from drawing import FP32, scene_of
 from slowly import all_but
 
-from normalbench.bench.machine import devices
-from normalbench.bench.options.light_names import light_buffers_named
+from normalbench.bench.ground.machine import devices
+from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.lights.images import Lit, Resolves, Shot, targets_of, with_power
 from normalbench.bench.tables.lights.sums import (

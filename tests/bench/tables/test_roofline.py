@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from normalbench.bench.ground.options.gpu_families import FAMILIES
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.isa import spirv
-from normalbench.bench.options.gpu_families import FAMILIES
-from normalbench.bench.output.errors import UsageError
 from normalbench.bench.tables.roofline import measure
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
 from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from normalbench.bench.machine import devices
+from normalbench.bench.ground.machine import devices
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.vectors import measure as vectors
 from normalbench.bench.tables.vectors import work

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from normalbench.bench.options.words import Words, given_in
+from normalbench.bench.ground.options.words import Words, given_in
 from normalbench.bench.results.measuring import Asked
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
@@ -217,7 +217,7 @@ def test_lists_of_names_travel():
 
 
 def test_an_answer_that_is_wrong_ends_the_command():
-    from normalbench.bench.output.errors import UsageError
+    from normalbench.bench.ground.output.errors import UsageError
 
     crew = FakeCrew({"a": {}}, lambda _, names: Answer(wrong=UsageError("no such thing")))  # noqa: ARG005
     with pytest.raises(UsageError, match="no such thing"):

@@ -11,7 +11,7 @@ import pytest
 from written import as_document
 
 import normalbench as nb
-from normalbench.bench.output.errors import UsageError
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
 from normalbench.bench.workers import orders

@@ -12,7 +12,7 @@ from io import FileIO
 from pathlib import Path
 from typing import Any
 
-from ...encodings.codecs.files import file_bytes
+from ....encodings.codecs.files import file_bytes
 from .errors import UsageError
 
 Line = dict[str, Any]

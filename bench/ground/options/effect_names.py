@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ...gbuffer.effects.catalogue import EFFECTS
-from ...gbuffer.effects.effect import ChosenEffect, EffectError, chosen
-from ...gbuffer.frame.contract import Pipeline, PipelineError
-from ...gbuffer.pipelines import PIPELINES
-from ...gbuffer.scenes.scene import Scene
+from ....gbuffer.effects.catalogue import EFFECTS
+from ....gbuffer.effects.effect import ChosenEffect, EffectError, chosen
+from ....gbuffer.frame.contract import Pipeline, PipelineError
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.scenes.scene import Scene
 from ..output.errors import UsageError, pick
 
 

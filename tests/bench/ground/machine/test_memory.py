@@ -8,7 +8,7 @@ import pytest
 ALLOCATE = """
 import resource
 import numpy as np
-from normalbench.bench.machine.memory import keep_what_is_freed
+from normalbench.bench.ground.machine.memory import keep_what_is_freed
 keep_what_is_freed()
 np.ones(10**7, np.uint8), np.ones(10**7, np.uint8)
 before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt

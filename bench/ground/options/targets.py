@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Protocol, TypeVar
 
-from ...gbuffer.gl.device import Device
-from ...gbuffer.scenes.setting import Setting
+from ....gbuffer.gl.device import Device
+from ....gbuffer.scenes.setting import Setting
 from ..output.errors import UsageError, leave_out
 from .counts import MAX_LIGHTS, MAX_OBJECTS, check_seed, checked_sides, in_range
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from ...encodings.codecs.files import called
-from ...gbuffer.scenes.catalogue import SCENES, SceneMaker
-from ...gbuffer.scenes.files.mesh_file import MeshFile
-from ...gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
-from ...gbuffer.scenes.files.source import SceneFileError
+from ....encodings.codecs.files import called
+from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ....gbuffer.scenes.files.mesh_file import MeshFile
+from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
+from ....gbuffer.scenes.files.source import SceneFileError
 from ..output.errors import UsageError, pick_or_read, tell
 
 MAX_POWER = 2048

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ...encodings.catalogue import LIGHT_BUFFERS
-from ...encodings.codecs.light_codec import LightCodec
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.codecs.light_codec import LightCodec
 from ..output.errors import UsageError, pick
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4

@@ -12,7 +12,7 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 @cache
 def sources() -> str:
     """A fingerprint of everything that computes: each source file of the package."""
-    root, digest = Path(__file__).parents[2], hashlib.sha256()
+    root, digest = Path(__file__).parents[3], hashlib.sha256()
     for room in ROOMS:
         for path in sorted((root / room).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts:

@@ -76,7 +76,7 @@ def tell(line: str) -> None:
     Whatever names of files hold, it is one line and leaves the terminal as it is.
     """
     # Here, because every run of pytest imports this module.
-    from ...reports.tables import visible
+    from ....reports.tables import visible
 
     text = visible(" ".join(line.split()))
     shown = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
@@ -87,7 +87,7 @@ def tell(line: str) -> None:
 
 def tell_together(first: str, lines: Iterable[str]) -> None:
     """A line to standard error, and indented ones that belong to it; all of them, however often they were said."""
-    from ...reports.tables import visible
+    from ....reports.tables import visible
 
     for at, line in enumerate((first, *lines)):
         print(("  " if at else "normalbench: ") + visible(" ".join(line.split())), file=sys.stderr)

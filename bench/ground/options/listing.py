@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
-from ...encodings.codecs.encoding import Encoding
-from ...encodings.codecs.variants import known_settings
-from ...encodings.storages.depth_storage import DEPTH_STORAGES
-from ...encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES
-from ...gbuffer.effects.catalogue import EFFECTS
-from ...gbuffer.effects.effect import Choice, Number
-from ...gbuffer.layouts.presets import LAYOUTS
-from ...gbuffer.pipelines import PIPELINES
-from ...gbuffer.scenes.catalogue import SCENES
+from ....encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.variants import known_settings
+from ....encodings.storages.depth_storage import DEPTH_STORAGES
+from ....encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES
+from ....gbuffer.effects.catalogue import EFFECTS
+from ....gbuffer.effects.effect import Choice, Number
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.scenes.catalogue import SCENES
 from ..output.errors import pick
 
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.

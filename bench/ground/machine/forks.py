@@ -3,7 +3,7 @@
 To import JAX takes longer than most of what is done in such a process. So one process imports once, runs nothing, and
 forks for each request. Linux only, where forking is safe; elsewhere each process imports for itself.
 
-    python -m normalbench.bench.machine.forks DESCRIPTOR
+    python -m normalbench.bench.ground.machine.forks DESCRIPTOR
 
 is that process: requests come through a socket.
 """
@@ -90,7 +90,7 @@ def stop() -> None:
 
 
 def _command(descriptor: int) -> list[str]:
-    return children.python("normalbench.bench.machine.forks", str(descriptor))
+    return children.python("normalbench.bench.ground.machine.forks", str(descriptor))
 
 
 @dataclass

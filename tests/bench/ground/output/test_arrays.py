@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from attack.files import ARRAYS
 
-from normalbench.bench.output.arrays import MOST_BYTES, DamagedError, array_of, read_npy, read_npz
+from normalbench.bench.ground.output.arrays import MOST_BYTES, DamagedError, array_of, read_npy, read_npz
 
 
 def npz(**arrays) -> bytes:

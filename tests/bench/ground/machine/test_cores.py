@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from normalbench.bench.machine.cores import cores, on_all_cores
+from normalbench.bench.ground.machine.cores import cores, on_all_cores
 
 
 def threads_used() -> set[int]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...encodings.codecs.files import FileError, file_bytes
+from ....encodings.codecs.files import FileError, file_bytes
 
 # Of an archive's arrays together; the largest that this program writes is a few megabytes.
 MOST_BYTES = 64 << 20

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from normalbench.bench.ground.native import library as native
+from normalbench.bench.ground.output import cache
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.isa import null_device
-from normalbench.bench.native import library as native
-from normalbench.bench.output import cache
-from normalbench.bench.output.errors import MissingError
 
 ELSE = 12345
 FOLDERS = ("native", "programs", "translated")

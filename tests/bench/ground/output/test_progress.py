@@ -2,7 +2,7 @@
 
 import pytest
 
-from normalbench.bench.output.progress import progress, progress_of_all
+from normalbench.bench.ground.output.progress import progress, progress_of_all
 
 
 @pytest.fixture

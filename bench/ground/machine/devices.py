@@ -9,7 +9,7 @@ from typing import Any
 
 import jax
 
-from ...gbuffer.gl.device import Device, NoDeviceError, device
+from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
 

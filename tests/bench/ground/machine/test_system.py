@@ -33,7 +33,7 @@ def test_pytest_on_windows_runs_the_tests_that_measure_nothing(pytester):
         "import pytest\n"
         "@pytest.fixture(autouse=True)\n"
         "def elsewhere(monkeypatch):\n"
-        "    monkeypatch.setattr('normalbench.bench.machine.system.sys.platform', 'win32')\n"
+        "    monkeypatch.setattr('normalbench.bench.ground.machine.system.sys.platform', 'win32')\n"
         "def test_other(): pass\n"
         "def test_measures(normalbench): pass\n"
     )
@@ -73,7 +73,7 @@ def test_a_home_that_somebody_else_made_is_not_used(tmp_path):
     planted = tmp_path / f"normalbench-home-{os.geteuid()}"
     planted.mkdir()
     planted.chmod(0o777)
-    code = "from normalbench.bench.machine.system import prepare; prepare(); print(os.environ['HOME'])"
+    code = "from normalbench.bench.ground.machine.system import prepare; prepare(); print(os.environ['HOME'])"
     home = Path(as_nobody(code, tmp_path).stdout.strip())
     assert home.parent == tmp_path and home != planted and home.stat().st_mode & 0o777 == 0o700
 

@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ...reports import tables
-from ...reports.charts import plots
+from ....reports import tables
+from ....reports.charts import plots
 from .errors import UsageError
 
 # Of a run's rows, facts and tables.

@@ -1,0 +1,1 @@
+"""What everybody stands on: errors, files, option types, this machine, compiled C."""
