@@ -30,11 +30,11 @@ from normalbench.bench.ground.machine.memory import (
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.isa import driver_files, isa, null_device, spirv
-from normalbench.bench.isa.nvidia import tools
 from normalbench.bench.metrics import published
 from normalbench.bench.results import measuring
 from normalbench.bench.results.machine import require_mobile
+from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv
+from normalbench.bench.shaders.isa.nvidia import tools
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 CACHE = Path(__file__).parents[1] / ".pytest_cache"

@@ -11,7 +11,7 @@ from attack.kind import MEASURED
 from attack.trying import KINDS, ODD, one
 from languages import require_runner
 
-from normalbench.bench.languages import translated
+from normalbench.bench.shaders.languages import translated
 
 FEW = [kind for kind in KINDS if kind.few]
 

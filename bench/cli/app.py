@@ -136,7 +136,7 @@ def doctor(
     if build_mesa is not None:
         if file is not None or plot is not None or storage or domain:
             raise UsageError("--build-mesa builds and does nothing else; leave out the file and its options")
-        from ..isa.mobile.build import build_command
+        from ..shaders.isa.mobile.build import build_command
 
         return build_command(build_mesa, mesa_source, yes)
     if mesa_source is not None or yes:

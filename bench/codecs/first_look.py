@@ -32,11 +32,11 @@ from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.codecs.loops import loop_limit, loops_ended
 from ...gbuffer.gl.device import Device, NoDeviceError, device
 from ...gbuffer.gl.shader import ShaderError, read_shader
-from ..code.twin import NoTwinError
 from ..ground.directions import directions
 from ..ground.machine import children
 from ..ground.output.errors import MissingError, UsageError
-from ..languages.words import is_translated, twin_of
+from ..shaders.code.twin import NoTwinError
+from ..shaders.languages.words import is_translated, twin_of
 from .doctor import folds
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import Domain, guessed

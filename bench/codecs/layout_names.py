@@ -15,7 +15,7 @@ from ...gbuffer.layouts.layout import Layout, read_layout
 from ...gbuffer.layouts.presets import LAYOUTS
 from ...gbuffer.layouts.words import LayoutError
 from ..ground.output.errors import MissingError, UsageError, pick
-from ..languages.words import file_of, files_in, lacks_a_function, names_an_encoder
+from ..shaders.languages.words import file_of, files_in, lacks_a_function, names_an_encoder
 from .names import check_twin
 from .user_encodings import encodings_named
 

@@ -14,10 +14,10 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ...encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ...encodings.vec import Vec3
-from ..code.twin import NoTwinError
 from ..ground.options.words import Words, given_in
 from ..ground.output.errors import UsageError, by_reason, names_a_file, pick
-from ..languages.words import CHAIN
+from ..shaders.code.twin import NoTwinError
+from ..shaders.languages.words import CHAIN
 from .user_encodings import encodings_named
 
 

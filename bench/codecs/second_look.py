@@ -17,12 +17,12 @@ from ...gbuffer.codecs.codec_passes import exact_values
 from ...gbuffer.gl.device import Device
 from ..ground.output import cache as kept
 from ..ground.output.errors import MissingError, UsageError
-from ..languages import tools
-from ..languages.language import also_read_by, language_of
-from ..languages.second import NoSecondWayError, UndefinedError, Way, second_way
-from ..languages.source import Source
-from ..languages.translated import own, translated
-from ..languages.words import TRANSLATED, file_of
+from ..shaders.languages import tools
+from ..shaders.languages.language import also_read_by, language_of
+from ..shaders.languages.second import NoSecondWayError, UndefinedError, Way, second_way
+from ..shaders.languages.source import Source
+from ..shaders.languages.translated import own, translated
+from ..shaders.languages.words import TRANSLATED, file_of
 
 RANDOM = 2**16
 VIEW = (0.1, -0.2, -1.0)

@@ -20,17 +20,17 @@ from ...encodings.codecs.files import called
 from ...encodings.vec import Vec2, Vec3
 from ...gbuffer.codecs.harness import takes_view
 from ...gbuffer.gl.shader import ShaderError, read_shader
-from ..code.twin import NoTwinError
 from ..ground.machine import children, forks
 from ..ground.machine.cores import on_all_cores
 from ..ground.options.words import given_in
 from ..ground.output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ..ground.output.spelling import spelled
-from ..languages.pairs import NORMAL, Function
-from ..languages.programs import pair
-from ..languages.source import Source
-from ..languages.translated import glsl_file, translated
-from ..languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
+from ..shaders.code.twin import NoTwinError
+from ..shaders.languages.pairs import NORMAL, Function
+from ..shaders.languages.programs import pair
+from ..shaders.languages.source import Source
+from ..shaders.languages.translated import glsl_file, translated
+from ..shaders.languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from . import tuned_names
 from .doctor.domains import SPHERE, Domain
 from .signatures import check_given, encode_of

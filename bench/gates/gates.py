@@ -11,8 +11,8 @@ from typing import Any
 from ...encodings.codecs.files import file_toml
 from ..ground.options.option import fields_of
 from ..ground.output.errors import UsageError
-from ..languages.words import files_in
 from ..results.runs import read_run
+from ..shaders.languages.words import files_in
 from ..tables.table import Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline
 from .limits import Limit, limits_on, split_limits

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from ...encodings.codecs.codec import Codec
-from ..code.channels import Channels
-from ..code.reference import Reference, reference_of, signed
 from ..ground.angles import angles_deg
 from ..ground.output import cache as kept
 from ..ground.output.sources import sources
+from ..shaders.code.channels import Channels
+from ..shaders.code.reference import Reference, reference_of, signed
 from . import normals
 from .normals import COUNT, checksum, hashed
 

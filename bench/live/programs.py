@@ -14,10 +14,10 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import CONSTANTS
 from ...gbuffer.gl.shader import ShaderError, Source
-from ..code.channels import Channels
-from ..code.files import Code, code_of
-from ..code.verify import is_catalogues
 from ..ground.output.errors import UsageError
+from ..shaders.code.channels import Channels
+from ..shaders.code.files import Code, code_of
+from ..shaders.code.verify import is_catalogues
 
 Record = dict[str, Any]
 LANGUAGE, PREFIX = "essl", "codec"

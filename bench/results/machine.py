@@ -15,8 +15,8 @@ from ...gbuffer.gl.device import NoDeviceError, device
 from ..ground.machine.settings import settings
 from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..ground.output.errors import MissingError
-from ..isa import isa, spirv
-from ..languages import tools
+from ..shaders.isa import isa, spirv
+from ..shaders.languages import tools
 
 ROUNDS = {
     "nearest": "nearest",

@@ -18,8 +18,8 @@ from ..ground.output.errors import UsageError
 from ..ground.output.journal import Journal, journal
 from ..ground.output.progress import progress
 from ..ground.output.writing import is_special, target_of
-from ..languages.source import Source
-from ..languages.words import files_in, names_an_encoder, twin_of
+from ..shaders.languages.source import Source
+from ..shaders.languages.words import files_in, names_an_encoder, twin_of
 from ..tables.table import Measured, Row, Step, Table, Tick
 from .plain import key_text, plain
 

@@ -14,16 +14,16 @@ from typing import Any
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
-from ..code.emit import LANGUAGES
-from ..code.files import Code, code_of, file_name
-from ..code.run import runner
-from ..code.verify import Agreement, agreement, is_catalogues
 from ..codecs.names import codecs_named, fitting
 from ..ground.options.code import CodeOptions
 from ..ground.options.targets import what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, pick, tell
 from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..shaders.code.emit import LANGUAGES
+from ..shaders.code.files import Code, code_of, file_name
+from ..shaders.code.run import runner
+from ..shaders.code.verify import Agreement, agreement, is_catalogues
 from .code_figures import figures, head
 
 Row = dict[str, Any]

@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
-from ..code.twin import has_twin
 from ..ground.output.errors import UsageError
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
 from ..metrics.totals import Statistics
+from ..shaders.code.twin import has_twin
 from .odd_codes import odd_codes
 from .search import worst_case
 

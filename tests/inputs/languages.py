@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from normalbench.bench.code.run import runner
 from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.shaders.code.run import runner
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 

@@ -8,10 +8,10 @@ from types import ModuleType
 import pytest
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
-from normalbench.bench.isa import intel_disassembly, isa, null_device
-from normalbench.bench.isa import process as isa_process
-from normalbench.bench.isa.nvidia import sass, tools
-from normalbench.bench.isa.terascale import disassembly as terascale_disassembly
+from normalbench.bench.shaders.isa import intel_disassembly, isa, null_device
+from normalbench.bench.shaders.isa import process as isa_process
+from normalbench.bench.shaders.isa.nvidia import sass, tools
+from normalbench.bench.shaders.isa.terascale import disassembly as terascale_disassembly
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines.packings import PACKINGS
@@ -21,7 +21,7 @@ CHEAP = ("xyz", "xy", "spheremap", "stereographic", "octahedral")
 # Runs the code where the driver is told of an Intel GPU; for a Radeon it compiles as always.
 INTELS_CHILD = """
 import os, sys, time
-from normalbench.bench.isa import child
+from normalbench.bench.shaders.isa import child
 if {variable!r} in os.environ:
     {code}
 sys.exit(child.main())

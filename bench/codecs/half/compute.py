@@ -12,7 +12,7 @@ from ....gbuffer.gl.device import FormatError
 from ....gbuffer.gl.shader import Source
 from ...ground.machine.vulkan import adapters
 from ...ground.output.errors import MissingError
-from ...isa.spirv import compiled
+from ...shaders.isa.spirv import compiled
 
 FEATURE = "shader-f16"
 GROUP = 64

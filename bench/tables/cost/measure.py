@@ -17,12 +17,12 @@ from ...codecs.half.kernels import half_operation
 from ...ground.machine.cores import on_all_cores
 from ...ground.options.gpu_families import FAMILIES, NVRTC, R600
 from ...ground.output.errors import MissingError
-from ...isa import disassembly, intel_disassembly, isa, occupancy, spirv
-from ...isa.isa import Compiled, Failure, Job, Kernel, Outcome
-from ...isa.mobile import ir3_disassembly, qpu_disassembly
-from ...isa.nvidia import sass
-from ...isa.nvidia.source import cuda_of
-from ...isa.terascale import disassembly as terascale_disassembly
+from ...shaders.isa import disassembly, intel_disassembly, isa, occupancy, spirv
+from ...shaders.isa.isa import Compiled, Failure, Job, Kernel, Outcome
+from ...shaders.isa.mobile import ir3_disassembly, qpu_disassembly
+from ...shaders.isa.nvidia import sass
+from ...shaders.isa.nvidia.source import cuda_of
+from ...shaders.isa.terascale import disassembly as terascale_disassembly
 from . import executed
 from .table import TABLE
 

@@ -24,7 +24,7 @@ from ...ground.options import listing
 from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...ground.output.errors import MissingError, UsageError, pick
 from ...ground.output.writing import check_folder, check_plot, whole_file
-from ...isa import isa, spirv
+from ...shaders.isa import isa, spirv
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .measure import file_name

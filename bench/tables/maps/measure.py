@@ -21,10 +21,10 @@ from ....encodings.storages.storage import STORAGES
 from ....encodings.vec import Vec3
 from ....gbuffer.gl.compressed import device_texels
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ...code.twin import NoTwinError
 from ...metrics.meter import Decoded, Meter
 from ...metrics.totals import Statistics, psnr_db
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet
+from ...shaders.code.twin import NoTwinError
 from ..quality.measure import Row, identity, planes_of
 from .encoders import Texels
 from .formats import BlockFormat, Swizzle

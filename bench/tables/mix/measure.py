@@ -15,7 +15,7 @@ from ....gbuffer.codecs.codec_passes import Decoded
 from ....gbuffer.codecs.mixing.passes import BY_DEVICE, SIDE, MixPasses
 from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...code.twin import NoTwinError, has_twin
+from ...shaders.code.twin import NoTwinError, has_twin
 from .figures import Figures, outside, percent
 from .means import BY_NORMALS, STORED_AGAIN
 from .model import BY_MODEL, MODEL, WAYS, Given, Texels, Way

@@ -16,8 +16,8 @@ from ....encodings.storages.rounding import Scale, fixed, shared
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
-from ...code.twin import has_twin
 from ...ground.machine.devices import require_device
+from ...shaders.code.twin import has_twin
 
 WIDTH = 256
 CHUNK = 2**15

@@ -24,13 +24,13 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Keeps, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.setting import Setting
-from ...code.twin import has_twin
 from ...ground.output import cache as kept
 from ...ground.output.errors import tell
 from ...ground.output.sources import sources
 from ...metrics.images import squared_error
 from ...metrics.totals import psnr_db
 from ...normals.normal_sets import NORMAL_SETS, NormalSet
+from ...shaders.code.twin import has_twin
 from ..mix import judge
 from ..mix.patches import in_domain
 from ..mix.verdict import DONE

@@ -23,8 +23,6 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...code import trip as wgsl_trip
-from ...code.twin import NoTwinError, has_twin
 from ...codecs.half import compute as half_compute
 from ...codecs.half.round_trip import HalfPasses
 from ...ground.machine.cores import on_all_cores
@@ -36,6 +34,8 @@ from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_toget
 from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
 from ...native.meter import NativeMeter
 from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
+from ...shaders.code import trip as wgsl_trip
+from ...shaders.code.twin import NoTwinError, has_twin
 from ...worst_case import exact_figures
 from .table import TABLE
 

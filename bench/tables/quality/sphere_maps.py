@@ -19,10 +19,10 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
-from ...code.twin import has_twin
 from ...ground.output.arrays import DamagedError, read_npz
 from ...ground.output.writing import whole_file
 from ...metrics.meter import angle_between, readable
+from ...shaders.code.twin import has_twin
 from .measure import UNMEASURABLE, rgba, round_trip
 
 # Cells across a disc, and directions along each side of a cell.

@@ -17,13 +17,13 @@ import jax
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES
-from ...code.twin import NoTwinError
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.library import compiler
 from ...metrics.meter import in_groups
 from ...metrics.moments import FAST_BLOCK, squared_errors
 from ...native.meter import NativeMeter
 from ...normals.directions import CORES, Input, make_input
+from ...shaders.code.twin import NoTwinError
 from ..quality import measure as quality
 from . import c_baseline
 from . import numpy_baseline as baseline

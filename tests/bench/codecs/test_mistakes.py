@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from mistakes import MISTAKES, OCTAHEDRAL, TEXTS, program, said
 
-from normalbench.bench.code.files import code_of
 from normalbench.bench.codecs.first_look import first_look
+from normalbench.bench.shaders.code.files import code_of
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES

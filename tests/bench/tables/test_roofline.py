@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.isa import spirv
+from normalbench.bench.shaders.isa import spirv
 from normalbench.bench.tables.roofline import measure
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
 from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named

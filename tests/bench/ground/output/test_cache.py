@@ -10,7 +10,7 @@ import pytest
 from normalbench.bench.ground.native import library as native
 from normalbench.bench.ground.output import cache
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.isa import null_device
+from normalbench.bench.shaders.isa import null_device
 
 ELSE = 12345
 FOLDERS = ("native", "programs", "translated")

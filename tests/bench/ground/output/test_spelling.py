@@ -2,9 +2,9 @@
 
 import pytest
 
-from normalbench.bench.code.emit import LANGUAGES
 from normalbench.bench.ground.options.gpu_families import CHOICES
 from normalbench.bench.ground.output.errors import UsageError, pick
+from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 

@@ -1,0 +1,1 @@
+"""Shader code: read, written, run and counted in many languages."""

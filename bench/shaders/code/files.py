@@ -1,0 +1,117 @@
+"""The files of a codec's code: one of a language, and its look-up tables beside it."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ....encodings.codecs.codec import Codec
+from ...ground.output.errors import UsageError
+from ..languages.words import is_translated
+from ..translator.tree import Program, TranslationError
+from ..translator.writer import identifier
+from .emit import LANGUAGES, program_of
+from .numpy_source import numpy_source
+from .run.interface import Interface
+from .tables import table_files
+from .verify import interface_of, is_catalogues
+
+WIDTH = 118
+GUARDED = ("hlsl", "slang", "glsl", "essl", "msl", "c")
+
+
+@dataclass(frozen=True, eq=False)
+class Code:
+    """A codec's code in one language, without its head.
+
+    Attributes:
+        codec, language: what it is of; `language` is a key of LANGUAGES.
+        prefix: what its names begin with.
+        body: its text.
+        interface: how its functions are called.
+    """
+
+    codec: Codec
+    language: str
+    prefix: str
+    body: str
+    interface: Interface
+
+    @property
+    def name(self) -> str:
+        """Of the file: the codec and the language's ending."""
+        return file_name(self.codec, self.language)
+
+    def text(self, head: Iterable[str]) -> str:
+        """The file, under a comment of these paragraphs."""
+        mark = LANGUAGES[self.language].mark
+        wrapped = (textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""] for said in head)
+        comment = "".join(f"{mark} {line}".rstrip() + "\n" for lines in wrapped for line in lines)
+        return f"{comment}\n{self._guarded}"
+
+    @property
+    def _guarded(self) -> str:
+        """The text, which languages with a preprocessor take once however often it is included."""
+        if self.language not in GUARDED:
+            return self.body
+        guard = f"{identifier(self.prefix).upper()}_INCLUDED"
+        return f"#ifndef {guard}\n#define {guard}\n\n{self.body}\n#endif\n"
+
+    def files(self, head: Iterable[str]) -> dict[str, bytes]:
+        """All its files, by name."""
+        beside = table_files(self.interface.tables, self.language, self.prefix)
+        return {self.name: self.text(head).encode(), **beside}
+
+
+def file_name(codec: Codec, language: str) -> str:
+    """What the file of a codec's code is called."""
+    return identifier(codec.name) + LANGUAGES[language].ending
+
+
+def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
+    """A codec's code in a language.
+
+    Args:
+        codec: one whose storage holds what its encoding makes.
+        language: a key of LANGUAGES.
+        prefix: what every name begins with; the codec's name where it is empty.
+
+    Raises:
+        UsageError: the encoding has what cannot be translated.
+        ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
+    """
+    if codec.encoding.before:
+        raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
+    prefix = prefix or identifier(codec.name)
+    try:
+        program = program_of(codec, prefix)
+        interface = interface_of(codec, prefix, _takes_view(program, prefix))
+        writer = LANGUAGES[language].writer
+        sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
+        body = writer(prefix, sizes).program(program) if writer else _python(codec, prefix)
+    except TranslationError as error:
+        raise UsageError(_untranslatable(codec, str(error))) from error
+    return Code(codec, language, prefix, body, interface)
+
+
+def _python(codec: Codec, prefix: str) -> str:
+    if not is_catalogues(codec.encoding):
+        raise UsageError(
+            f"{codec.encoding.title}: Python is written of the catalogue's encodings; C is written of yours"
+        )
+    return numpy_source(codec, prefix)
+
+
+def _untranslatable(codec: Codec, said: str) -> str:
+    """Why a file is not translated; the place is in the user's file where that is GLSL."""
+    encoding = codec.encoding
+    if encoding.source is None or not is_translated(encoding.source):
+        return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
+    what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
+    return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"
+
+
+def _takes_view(program: Program, prefix: str) -> bool:
+    return len(program.function(f"{prefix}_encode").parameters) > 1

@@ -1,0 +1,99 @@
+"""C99: compiled to a program by the system's compiler, without fused or reordered arithmetic, which limits itself."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from .....gbuffer.gl.shader import ShaderError, read_shader
+from ....ground.machine import children
+from ....ground.output.errors import MissingError
+from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
+from .sources import SECONDS, compile_with, first_line, folder, on_path
+
+WRAPPER, MAIN = Path(__file__).with_suffix(".c"), Path(__file__).with_name("main.c")
+EXACT = ("-O2", "-ffp-contract=off")
+LIMITS = {"RUN_SECONDS": children.SECONDS, "RUN_MEMORY": f"{children.MEMORY}ull", "RUN_FILE": f"{children.FILE}ull"}
+INSTALL = "Debian: apt-get install gcc"
+
+
+def compiler() -> str:
+    """The C compiler. Raises MissingError."""
+    return on_path("cc", INSTALL)
+
+
+@contextmanager
+def prepared(path: Path, interface: Interface) -> Iterator[Run]:
+    """The file as a program. Raises MissingError, ShaderError."""
+    with built(path, interface, compiler(), [*EXACT, *macros(LIMITS)]) as run:
+        yield run
+
+
+@contextmanager
+def built(path: Path, interface: Interface, tool: str, options: Sequence[str]) -> Iterator[Run]:
+    """The file as a program of a compiler and its options. Raises ShaderError."""
+    with folder() as place:
+        (place / "code.h").write_text(read_shader(path), encoding="utf-8")
+        # POSIX's calls for the program around the file; the file itself is C99.
+        includes = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), "-iquote", str(path.parent))
+        command = [tool, *includes, *options, *_macros(interface), str(WRAPPER), str(MAIN), "-lm"]
+        yield called(compiled(command, place / "code", {str(place / "code.h"): str(path)}), path, interface)
+
+
+def _macros(interface: Interface) -> list[str]:
+    prefix, words = interface.prefix, interface.words
+    types = {"RUN_VEC3": f"{prefix}_vec3", "RUN_VEC4": f"{prefix}_vec4", "RUN_CODE": f"{prefix}_vec{interface.size}"}
+    types["RUN_TEXEL"] = f"{prefix}_uvec{words}" if words > 1 else "uint32_t"
+    return macros(interface.defines | types)
+
+
+def macros(values: dict[str, object]) -> list[str]:
+    """Options that define macros for a compiler of C."""
+    return [f"-D{name}={value}" for name, value in values.items()]
+
+
+def compiled(command: Sequence[str], made: Path, names: Mapping[str, str]) -> Path:
+    """The program that a compiler makes. Raises ShaderError, whose message has other names for some files."""
+    try:
+        compile_with([*command, "-o", str(made)])
+    except ShaderError as error:
+        said = str(error)
+        for old, new in names.items():
+            said = said.replace(old, new)
+        raise ShaderError(said) from error
+    return made
+
+
+def called(program: Path, path: Path, interface: Interface) -> Run:
+    """What a program does with rows: see main.c. Each run is a process of its own."""
+
+    def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
+        place, count = program.parent, len(n)
+        rows_of(n, view, texels).tofile(place / "given.bin")
+        try:
+            done = children.finished([str(program), str(place), str(count)], SECONDS)
+        except subprocess.TimeoutExpired as error:
+            raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
+        except PermissionError as error:
+            where = place.parent
+            raise MissingError(
+                f"C cannot be run: {where} runs no programs; set TMPDIR to a folder that does"
+            ) from error
+        if done.returncode:
+            raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
+        made, words = (np.fromfile(place / name, kind) for name, kind in (("made.bin", "<f4"), ("words.bin", "<u4")))
+        return ran_of(made.reshape(MADE * count, 4), words.reshape(count, 4), interface)
+
+    return run
+
+
+def how() -> str:
+    """The compiler. Raises MissingError."""
+    return f"{first_line(compiler(), '--version')}, {' '.join(EXACT)}"
+
+
+RUNNER = Runner(prepared, how)

@@ -1,0 +1,30 @@
+"""A file of WGSL compiled by naga, in a process that it may end.
+
+    python -m normalbench.bench.shaders.code.run.naga FILE
+
+What naga refuses in words is no matter here: whoever compiles it next has the words.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from ....ground.machine import children
+from ....ground.machine.vulkan import adapters
+
+
+def main(words: Sequence[str]) -> None:
+    """What the command does."""
+    children.limit_this_process()
+    import wgpu
+
+    with suppress(wgpu.GPUError):
+        device = adapters()[0].request_device_sync()
+        device.create_shader_module(code=Path(words[0]).read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,74 @@
+"""GLSL compute shaders on the GL device: what the runners of several languages end in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from typing import Any
+
+import numpy as np
+
+from .....gbuffer.codecs.harness import uploaded
+from .....gbuffer.gl.device import Device, bind, device
+from .....gbuffer.gl.shader import ShaderError
+from .interface import GIVEN, MADE, Interface, Ran, Run, ran_of, rows_of
+from .sources import first_complaint
+
+GROUP = 64  # invocations, as the shaders here have them
+
+
+def device_name() -> str:
+    """The GL device and its version. Raises NoDeviceError."""
+    gl = device()
+    return f"{gl.renderer.split(' (')[0]} (OpenGL {gl.version.split()[0]})"
+
+
+@contextmanager
+def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
+    """A compiled shader with its tables, released afterwards.
+
+    The name of a sampler is its table's, or has that in it where a translator made the name.
+    """
+    gl = device()
+    with ExitStack() as stack:
+        gl.owned(stack, compute)
+        bind(compute, uploaded(gl, stack, _by_sampler(compute, interface.tables)))
+
+        def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
+            return ran_of(*dispatched(gl, compute, rows_of(n, view, texels)), interface)
+
+        yield run
+
+
+def _by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    samplers = {name: max((table for table in tables if table in name), key=len, default="") for name in compute}
+    return {sampler: tables[table] for sampler, table in samplers.items() if table}
+
+
+def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What a shader makes of rows, GIVEN for each normal: float32 of shape (MADE count, 4), uint32 of (count, 4)."""
+    count = len(given) // GIVEN
+    if not count:
+        return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
+    with ExitStack() as stack:
+        sizes = (MADE * count * 16, count * 16)
+        made = [gl.owned(stack, gl.context.buffer(reserve=size)) for size in sizes]
+        source = gl.owned(stack, gl.context.buffer(given))
+        for binding, buffer in enumerate([source, *made]):
+            buffer.bind_to_storage_buffer(binding)
+        compute.run(group_x=-(-count // GROUP))
+        rows, words = (np.frombuffer(b.read(size), np.uint32) for b, size in zip(made, sizes, strict=True))
+    return rows.view(np.float32), words
+
+
+def compiled(text: str, explain: Any) -> Any:
+    """A compute shader of GLSL. Raises ShaderError; `explain` turns the driver's message into the user's."""
+    try:
+        return device().context.compute_shader(text)
+    except Exception as error:  # moderngl's own, which only gbuffer/gl imports
+        raise ShaderError(first_complaint(explain(_without_head(str(error))))) from error
+
+
+def _without_head(log: str) -> str:
+    """A driver's log without moderngl's own first lines, one of which says that there is an error."""
+    return log.replace("GLSL Compiler failed", "").replace("compute_shader", "")

@@ -1,0 +1,173 @@
+"""WGSL: compiled by naga and run on a Vulkan device, both through wgpu."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .....encodings.codecs.files import file_text
+from .....gbuffer.gl.shader import ShaderError
+from ....ground.machine import children, forks
+from ....ground.machine.vulkan import NO_DRIVER, adapters
+from ....ground.output.errors import MissingError
+from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
+from .sources import SECONDS, folder
+
+WRAPPER = Path(__file__).with_suffix(".j2")
+MAIN, GROUP = "run_main", 64
+INSTALL = "pip install wgpu"
+ROW = 16  # bytes: four numbers
+
+
+@cache
+def device() -> Any:
+    """The first Vulkan device, by wgpu. Raises MissingError, which says what to install."""
+    try:
+        found = adapters()
+    except ImportError as error:
+        raise MissingError(f"WGSL needs wgpu ({error}); {INSTALL}") from error
+    if not found:
+        raise MissingError(NO_DRIVER)
+    # Tables may be larger than what every device has.
+    limits = found[0].limits
+    asked = ("max-buffer-size", "max-storage-buffer-binding-size", "max-texture-dimension-2d")
+    return found[0].request_device_sync(required_limits={name: limits[name] for name in asked})
+
+
+def device_name() -> str:
+    """What a row calls the device. Raises MissingError."""
+    return f"{device().adapter.info['device']}, Vulkan"
+
+
+@contextmanager
+def prepared(path: Path, interface: Interface) -> Iterator[Run]:
+    """The file on the Vulkan device. Raises MissingError, ShaderError."""
+    gpu = device()
+    tables = _TableGroup(gpu, interface.tables)
+    program = _program(gpu, path, interface, tables.layout)
+
+    def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
+        made, words = _dispatched(gpu, program, tables.group, rows_of(n, view, texels))
+        return ran_of(made, words, interface)
+
+    yield run
+
+
+class _TableGroup:
+    """Look-up tables as textures of group 0, in the order of their names."""
+
+    def __init__(self, gpu: Any, tables: Mapping[str, np.ndarray]):
+        import wgpu
+
+        seen, kind = wgpu.ShaderStage.COMPUTE, {"sample_type": "unfilterable-float"}
+        chosen = [_texture(gpu, tables[name]) for name in sorted(tables)]
+        entries = [{"binding": at, "visibility": seen, "texture": kind} for at in range(len(chosen))]
+        bound = [{"binding": at, "resource": texture.create_view()} for at, texture in enumerate(chosen)]
+        self.layout = gpu.create_bind_group_layout(entries=entries)
+        self.group = gpu.create_bind_group(layout=self.layout, entries=bound)
+
+
+def _texture(gpu: Any, table: np.ndarray) -> Any:
+    import wgpu
+
+    height, width, channels = table.shape
+    texels = np.zeros((height, width, 4), np.float32)
+    texels[..., :channels] = table
+    usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
+    texture = gpu.create_texture(size=(width, height, 1), format="rgba32float", usage=usage)
+    layout = {"bytes_per_row": width * ROW, "rows_per_image": height}
+    gpu.queue.write_texture({"texture": texture}, texels, layout, (width, height, 1))
+    return texture
+
+
+def _program(gpu: Any, path: Path, interface: Interface, tables: Any) -> Any:
+    """The compute pipeline of a file. Raises ShaderError."""
+    import wgpu
+
+    kinds = ("read-only-storage", "storage", "storage")
+    entries = [
+        {"binding": at, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": kind}}
+        for at, kind in enumerate(kinds)
+    ]
+    buffers = gpu.create_bind_group_layout(entries=entries)
+    text = _text(path, interface)
+    if not interface.is_ours:
+        _try_apart(path, text)
+    try:
+        module = gpu.create_shader_module(code=text)
+        layout = gpu.create_pipeline_layout(bind_group_layouts=[tables, buffers])
+        return gpu.create_compute_pipeline(layout=layout, compute={"module": module, "entry_point": MAIN})
+    except wgpu.GPUError as error:
+        raise ShaderError(f"{path}: {_complaint(str(error))}") from error
+
+
+def _try_apart(path: Path, text: str) -> None:
+    """Compile somebody's text in a process of its own: naga ends the process at some. Raises ShaderError."""
+    with folder() as place:
+        (place / "code.wgsl").write_text(text, encoding="utf-8")
+        try:
+            done = forks.finished(f"{__package__}.naga", [str(place / "code.wgsl")], SECONDS)
+        except subprocess.TimeoutExpired as error:
+            raise ShaderError(f"{path}: naga did not end within {SECONDS} s") from error
+    if done.returncode:
+        how = signal.Signals(-done.returncode).name if done.returncode < 0 else children.how_it_ended(done)
+        raise ShaderError(f"{path.name}: naga does not survive it ({how}); other back ends may")
+
+
+def _text(path: Path, interface: Interface) -> str:
+    from jinja2 import Environment, StrictUndefined
+
+    frame = Environment(undefined=StrictUndefined, trim_blocks=True).from_string(file_text(WRAPPER))
+    try:
+        return file_text(path) + frame.render(interface.defines)
+    except (OSError, ValueError) as error:
+        raise ShaderError(f"{path}: {error}") from error
+
+
+def _complaint(said: str) -> str:
+    """naga's complaint and its line in one line; the file's own lines come first, so that its numbers hold."""
+    words = " ".join(said.split())
+    for mark in ("Shader '' parsing error:", "Caused by:"):
+        words = words.partition(mark)[2].strip() or words
+    return words[:400]
+
+
+def _dispatched(gpu: Any, program: Any, tables: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What the shader makes of rows: float32 of shape (MADE count, 4) and uint32 of shape (count, 4)."""
+    import wgpu
+
+    count = len(given) // GIVEN
+    if not count:
+        return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
+    usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
+    buffers = [gpu.create_buffer_with_data(data=given, usage=usage)]
+    buffers += [gpu.create_buffer(size=rows * count * ROW, usage=usage) for rows in (MADE, 1)]
+    bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
+    group = gpu.create_bind_group(layout=program.get_bind_group_layout(1), entries=bound)
+    commands = gpu.create_command_encoder()
+    compute = commands.begin_compute_pass()
+    compute.set_pipeline(program)
+    compute.set_bind_group(0, tables)
+    compute.set_bind_group(1, group)
+    compute.dispatch_workgroups(-(-count // GROUP))
+    compute.end()
+    gpu.queue.submit([commands.finish()])
+    made, words = (np.frombuffer(gpu.queue.read_buffer(b), np.uint32).reshape(-1, 4) for b in buffers[1:])
+    return made.view(np.float32), words
+
+
+def how() -> str:
+    """wgpu, whose compiler is naga, and the device. Raises MissingError."""
+    from importlib.metadata import version
+
+    return f"wgpu {version('wgpu')} (naga), {device_name()}" if device() else ""
+
+
+RUNNER = Runner(prepared, how)

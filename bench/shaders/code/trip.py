@@ -1,0 +1,61 @@
+"""A codec on a Vulkan device: its file of WGSL, from normals through packed texels and back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.gl.shader import ShaderError
+from ...ground.output.errors import UsageError
+from .files import Code, code_of
+from .run import wgsl
+from .run.interface import BLOCK, Ran
+from .run.sources import folder
+
+PREFIX = "codec"
+# Normals and views of shape (count, 3) to what the file gives of them.
+Trip = Callable[[np.ndarray, np.ndarray], Ran]
+
+
+@contextmanager
+def by_wgsl(codec: Codec) -> Iterator[Trip]:
+    """A codec's WGSL on the Vulkan device, compiled once.
+
+    Raises:
+        MissingError: wgpu or a Vulkan driver is missing; what to install.
+        ShaderError: half arithmetic or a chain, or the device refuses the file; one line.
+    """
+    code = _written(codec)
+    with folder() as place:
+        path = place / code.name
+        path.write_text(code.body, encoding="utf-8")
+        with wgsl.prepared(path, code.interface) as run:
+
+            def trip(n: np.ndarray, view: np.ndarray) -> Ran:
+                starts = range(0, max(len(n), 1), BLOCK)
+                texels = np.zeros((min(len(n), BLOCK), 4), np.float32)
+                parts = [(n[at : at + BLOCK], view[at : at + BLOCK]) for at in starts]
+                found = [run(some, rays, texels[: len(some)]) for some, rays in parts]
+                return Ran(*(np.concatenate(each) for each in zip(*found, strict=True)))
+
+            yield trip
+
+
+def _written(codec: Codec) -> Code:
+    if codec.encoding.before:
+        raise ShaderError(f"{codec.name}: a chain of codecs is not written in WGSL; measure it by jax")
+    if codec.encoding.is_half:
+        raise ShaderError(f"{codec.name}: WGSL computes in 32 bits here; measure half arithmetic by jax or glsl")
+    wgsl.device()
+    try:
+        return code_of(codec, "wgsl", PREFIX)
+    except UsageError as error:
+        raise ShaderError(str(error)) from error
+
+
+def device_name() -> str:
+    """What a row calls the device. Raises MissingError."""
+    return wgsl.device_name()

@@ -1,0 +1,30 @@
+"""Whether an encoding is there in JAX, as a twin of its GLSL."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import jax
+import jax.numpy as jnp
+
+from ....encodings.catalogue import is_in_catalogue
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.vec import Vec3
+
+
+class NoTwinError(Exception):
+    """An encoding that is there in GLSL only."""
+
+
+@cache
+def has_twin(encoding: Encoding) -> bool:
+    """Whether an encoding is there in JAX."""
+    # Tracing takes a tenth of a second, and those of the catalogue all have one.
+    if is_in_catalogue(encoding):
+        return True
+    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
+    try:
+        jax.eval_shape(encoding.encode, n, n)
+    except NoTwinError:
+        return False
+    return True

@@ -1,0 +1,72 @@
+"""A process of its own for a driver that may crash or hang: shaders in, what the compiler made of them out.
+
+    python -m normalbench.bench.shaders.isa.child < JOBS
+
+JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). To standard output
+go lines of JSON, each as soon as it is known: what the driver is, the key of a job that is begun, and what came of it.
+Of an empty mapping, which files the driver consists of. The driver's files and the GPU come from the environment.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from .compiler import Compiler, DriverError, MissingDriverError, loaded
+
+
+def own_output() -> Any:
+    """Standard output for the results alone: what the driver prints goes to standard error."""
+    own = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return own
+
+
+def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
+    """What the driver makes of a job: its kernels, or the reason why not."""
+    code, vertex = (base64.b64decode(job[part]) for part in ("code", "vertex"))
+    try:
+        kernels = driver.compile(job["stage"], code, vertex, planes)
+    except DriverError as error:
+        return {"failed": str(error)}
+    return {"kernels": kernels}
+
+
+def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded) -> int:
+    """Compile every job that standard input holds.
+
+    Args:
+        compiler: makes a driver, with what `Compiler` has.
+        fingerprints: which files the driver consists of, as `loaded`.
+    """
+    given = json.load(sys.stdin)
+    out = own_output()
+
+    def say(**line: Any) -> None:
+        print(json.dumps(line), file=out, flush=True)
+
+    try:
+        if given:
+            _compile_all(compiler(), given, say)
+        else:
+            say(loaded=fingerprints())
+    except MissingDriverError as error:
+        say(missing=str(error))
+    except DriverError as error:
+        say(failed=str(error))
+    return 0
+
+
+def _compile_all(driver: Any, given: dict[str, Any], say: Callable[..., None]) -> None:
+    say(device=driver.device, version=driver.version)
+    for job in given["jobs"]:
+        say(begun=job["key"])
+        say(key=job["key"], **compiled(driver, job, given["planes"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

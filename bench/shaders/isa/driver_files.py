@@ -1,0 +1,81 @@
+"""Where Mesa's drivers are on this machine, and the environment that has them compile as they do for everybody."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+
+from ...ground.machine import children
+from ...ground.options.gpu_families import MOBILE, R600, RADV, TITLES
+from .mobile import driver as mobile
+from .terascale import driver as terascale
+
+# Where another vendor's EGL may be the first of the machine, this names Mesa's.
+MESA_EGL = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
+# What would have a driver compile in another way, or the loader load something else; the session's other variables
+# stay.
+UNWANTED = (
+    *("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),
+    *("R600_", "RADEON_", "LIBGL_", "EGL_", "GALLIUM_", "TU_", "IR3_", "FD_", "V3D_", "V3DV_"),
+)
+
+
+def no_driver(library: str) -> str:
+    """What to install where there is no description of a driver."""
+    if library == R600:
+        return terascale.NO_DRIVER
+    if library in MOBILE:
+        return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
+    said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
+    return f"{said}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
+
+
+@cache
+def driver_file(library: str = RADV) -> Path | None:
+    """A driver's own description for the Vulkan loader, or its file where it is one of GL; None where there is none."""
+    if library == R600:
+        return terascale.driver_file()
+    found = [path for path in _descriptions() if _library(path) == library]
+    # A machine may have the driver for several architectures; the file's name says for which, if anything does.
+    return next((path for path in found if platform.machine() in path.name), found[0] if found else None)
+
+
+def _descriptions() -> Iterator[Path]:
+    """The files that the loader would look at, those named by its variables first."""
+    for variable in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
+        yield from map(Path, filter(None, os.environ.get(variable, "").split(os.pathsep)))
+    data = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
+    for root in ("~/.local/share", "/etc", *data.split(os.pathsep)):
+        yield from sorted(Path(root).expanduser().glob("vulkan/icd.d/*.json"))
+    yield from mobile.descriptions()
+
+
+def _library(path: Path) -> str:
+    """The driver that a description names, without folder and ending; empty where it cannot be read."""
+    try:
+        return Path(str(json.loads(path.read_text(encoding="utf-8"))["ICD"]["library_path"])).name.split(".")[0]
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
+def is_gl(path: Path) -> bool:
+    """Whether that is a driver of GL itself, and not a description for the Vulkan loader."""
+    return path.stem == R600
+
+
+def environment(path: Path, variables: Mapping[str, str]) -> dict[str, str]:
+    """A process's environment in which the loader knows one driver alone; `variables` tell it for which GPU."""
+    usual = {key: value for key, value in children.environment().items() if not key.startswith(UNWANTED)}
+    if is_gl(path):
+        driver = {"LIBGL_DRIVERS_PATH": str(path.parent), "EGL_PLATFORM": "surfaceless"}
+        driver |= {"__EGL_VENDOR_LIBRARY_FILENAMES": str(MESA_EGL)} if MESA_EGL.exists() else {}
+    else:
+        driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
+    # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.
+    usual = {"XDG_RUNTIME_DIR": tempfile.gettempdir(), **usual, **driver, "MESA_SHADER_CACHE_DISABLE": "true"}
+    return usual | dict(variables)

@@ -1,0 +1,341 @@
+"""What compilers make of shaders for GPUs that are not there, family by family: Mesa's, and NVIDIA's of CUDA.
+
+Each family compiles in a child process, because drivers crash and hang: a job that does not come back costs itself,
+with the reason, and the others go on in a fresh child. What was compiled is kept in the user's cache, by the shader,
+the driver's own files and the family.
+"""
+
+from __future__ import annotations
+
+import base64
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ....gbuffer.defines.kernels import PLANES
+from ...ground.machine.children import python
+from ...ground.machine.cores import cores
+from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, R600, RADV, TITLES, TURNIP, V3DV
+from ...ground.output import cache as kept
+from . import null_device
+from .compiler import DRIVERS
+from .driver_files import driver_file, is_gl, no_driver
+from .mobile import driver as mobile
+from .null_device import NullDeviceError
+from .nvidia import tools
+from .nvidia.child import ARCHITECTURE
+from .process import Driver, child
+from .terascale import driver as terascale
+
+# What RADV says before it gives up.
+REFUSAL = "Unknown family"
+# After so many jobs that were never answered a family is given up.
+MOST_LOST = 5
+# What decides what a child makes of a job, beside the driver.
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
+OWN_FILES += tuple(f"terascale/{name}" for name in ("compiler.py", "child.py", "disassembly.py", "null_radeon.c"))
+OWN_FILES += ("mobile/null_mobile.c",)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it.
+
+    `glsl` and `glsl_vertex` are for drivers of GL: the same operation in the bare kernel; empty for compute shaders.
+    """
+
+    stage: str
+    code: bytes
+    vertex: bytes
+    glsl: str = ""
+    glsl_vertex: str = ""
+
+    def texts(self, of_gl: bool) -> tuple[bytes, bytes]:
+        """The shader and the one before it as a driver takes them, of GL or of Vulkan."""
+        return (self.glsl.encode(), self.glsl_vertex.encode()) if of_gl else (self.code, self.vertex)
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A shader as it is compiled for one number of lanes.
+
+    Attributes:
+        simd_width: the lanes that an instruction works on.
+        statistics: the driver's, by its own names.
+        assembly: the disassembly, empty where the driver has none.
+    """
+
+    simd_width: int
+    statistics: dict[str, float]
+    assembly: str
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """What came of a job.
+
+    Attributes:
+        family: the name that the driver took.
+        device, version: what the driver calls the device, and Mesa's version; of NVIDIA's compiler its name, too.
+        kernels: one for each number of lanes; Intel's drivers compile for up to three, the others for one.
+    """
+
+    family: str
+    device: str
+    version: str
+    kernels: tuple[Kernel, ...]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why nothing came of a job, in one line; and whether a package is missing."""
+
+    reason: str
+    is_missing: bool = False
+
+
+Outcome = Compiled | Failure
+
+
+@cache
+def _loaded(path: Path) -> str | Failure:
+    """What differs once the driver or the library that disassembles for it does: their files' names and fingerprints,
+    as a child has them loaded. Empty where it cannot be told, a Failure where the driver cannot be loaded at all."""
+    with child({}, Driver(path, threading.Event()), {}) as (lines, why):
+        line = lines()
+        if line is None:
+            return Failure(why())
+        if "missing" in line or "failed" in line:
+            return Failure(line.get("missing") or line["failed"], "missing" in line)
+        files = line.get("loaded", {})
+    ours = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in OWN_FILES]
+    is_there = any(Path(name).name.startswith((DRIVERS[0], R600)) for name in files)
+    return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
+
+
+def missing(library: str = RADV) -> str:
+    """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
+    if library == NVRTC:
+        return tools.missing()
+    path = driver_file(library)
+    if path is None:
+        return no_driver(library)
+    found = _loaded(path)
+    if isinstance(found, Failure) and found.is_missing:
+        return found.reason
+    try:
+        _null_device(library)
+    except NullDeviceError as error:
+        return str(error) if error.is_missing else ""
+    return ""
+
+
+def _null_device(library: str) -> None:
+    """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
+    source = {R600: terascale.SOURCE, TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
+    if library != RADV:
+        null_device.library(source)
+
+
+def compile_all(
+    jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
+) -> dict[tuple[str, Job], Outcome]:
+    """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
+    found: dict[tuple[str, Job], Outcome] = {}
+    stop = threading.Event()
+    with ThreadPoolExecutor(cores()) as pool:
+        try:
+            # Asked of each driver once, before its families ask at the same time.
+            list(pool.map(missing, dict.fromkeys(FAMILIES[family].library for family in families)))
+            for family, outcomes in zip(families, pool.map(lambda f: _family(f, stop, jobs), families), strict=True):
+                found |= {(family, job): outcome for job, outcome in zip(jobs, outcomes, strict=True)}
+                tick(family)
+        except BaseException:
+            # An interrupted command ends at once, whatever a driver does.
+            stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return found
+
+
+def driver_versions() -> dict[str, str]:
+    """Each driver's version, by its name; of one that cannot compile, the reason in one line."""
+    with ThreadPoolExecutor(cores()) as pool:
+        return dict(zip(TITLES.values(), pool.map(_driver_version, TITLES), strict=True))
+
+
+def _driver_version(library: str) -> str:
+    """A driver as it names itself for its first family, with Mesa's version; or what is missing, in one line."""
+    if reason := missing(library):
+        return reason
+    first = next(name for name, family in FAMILIES.items() if family.library == library)
+    try:
+        variables = _variables(first, first)
+    except NullDeviceError as error:
+        return str(error)
+    with child(variables, _driver(library, threading.Event()), _given({})) as (lines, why):
+        line = lines() or {}
+        if "device" in line and library == NVRTC:
+            return line["version"]
+        if "device" in line:
+            # RADV's null device says itself that it is none.
+            return f"Mesa {line['version']}, {line['device']}" + (", a null device" if library != RADV else "")
+        return line.get("missing") or line.get("failed") or why()
+
+
+def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
+    """A family's outcomes, in the order of the jobs; of a stage that is not counted, a Failure."""
+    known = FAMILIES[family]
+    counted = [job for job in jobs if job.stage in known.stages]
+    outcomes = dict(zip(counted, _counted(family, stop, counted), strict=True))
+    return [outcomes.get(job, Failure(f"{known.title}: {job.stage} shaders are not counted")) for job in jobs]
+
+
+def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
+    """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
+    if not jobs:
+        return []
+    library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
+    if reason := missing(library):
+        return [Failure(reason, True)] * len(jobs)
+    driver, identity = _driver(library, stop), _identity(library)
+    keys = [kept.key_of("isa", identity, family, gpu, job.stage, *job.texts(is_gl(driver.path))) for job in jobs]
+    outcomes: dict[str, Outcome] = {}
+    for key in keys if identity else ():
+        if found := _as_compiled(kept.read(key)):
+            outcomes[key] = found
+    left = {key: job for key, job in zip(keys, jobs, strict=True) if key not in outcomes}
+    if left:
+        compiled = _compiled(family, driver, left)
+        for key, outcome in compiled.items():
+            if identity and isinstance(outcome, Compiled):
+                kept.write(key, vars(outcome) | {"kernels": [vars(kernel) for kernel in outcome.kernels]})
+        outcomes |= compiled
+    return [outcomes[key] for key in keys]
+
+
+def _driver(library: str, stop: threading.Event) -> Driver:
+    """A driver that `missing` finds nothing missing of."""
+    if library == NVRTC:
+        return Driver(tools.found()[0], stop, python("normalbench.bench.shaders.isa.nvidia.child"))
+    path = driver_file(library)
+    assert path
+    return Driver(path, stop)
+
+
+def _identity(library: str) -> str:
+    """What differs once a driver does; empty where it cannot be told."""
+    if library == NVRTC:
+        return tools.identity()
+    path = driver_file(library)
+    found = _loaded(path) if path else ""
+    return "" if isinstance(found, Failure) else found
+
+
+def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
+    """What was kept; None where it is anything else."""
+    texts, kernels = ("family", "device", "version"), (value or {}).get("kernels")
+    if value is None or set(value) != {*texts, "kernels"} or not isinstance(kernels, list) or not kernels:
+        return None
+    is_sound = all(isinstance(value[text], str) for text in texts) and all(map(_is_kernel, kernels))
+    return Compiled(**{text: value[text] for text in texts}, kernels=_kernels(kernels)) if is_sound else None
+
+
+def _is_kernel(value: Any) -> bool:
+    """Whether that is what a child says of one kernel."""
+    if not isinstance(value, dict) or set(value) != {"simd_width", "statistics", "assembly"}:
+        return False
+    width, numbers, assembly = value["simd_width"], value["statistics"], value["assembly"]
+    is_sound = isinstance(width, int) and isinstance(assembly, str) and isinstance(numbers, dict)
+    return is_sound and all(isinstance(number, int | float) for number in numbers.values())
+
+
+def _kernels(values: Sequence[dict[str, Any]]) -> tuple[Kernel, ...]:
+    return tuple(Kernel(**value) for value in values)
+
+
+def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
+    """A family's outcomes under the first of its names that the driver takes."""
+    names = FAMILIES[family].names
+    for name in names:
+        try:
+            variables = _variables(family, name)
+        except NullDeviceError as error:
+            return dict.fromkeys(jobs, Failure(str(error), error.is_missing))
+        outcomes = _by_children(name, variables, driver, jobs)
+        if not all(isinstance(o, Failure) and REFUSAL in o.reason for o in outcomes.values()):
+            return outcomes
+    return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(names)}"))
+
+
+def _variables(family: str, name: str) -> dict[str, str]:
+    """What has a driver compile for a family, under one of its names. Raises NullDeviceError."""
+    if FAMILIES[family].library == NVRTC:
+        return {ARCHITECTURE: name}
+    words = FAMILIES[family].null_device
+    if FAMILIES[family].library == R600:
+        return terascale.variables(words)
+    if FAMILIES[family].library in MOBILE:
+        return mobile.variables(words)
+    return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
+
+
+def _by_children(
+    name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
+) -> dict[str, Outcome]:
+    """Children one after the other until each job has its outcome: whoever leaves a job unanswered is replaced."""
+    outcomes: dict[str, Outcome] = {}
+    lost = 0
+    while len(outcomes) < len(jobs):
+        left = {key: job for key, job in jobs.items() if key not in outcomes}
+        begun, end = "", Failure("the driver ended without a word")
+        for line in _answers(name, variables, driver, left):
+            if isinstance(line, Failure):
+                end = line
+            elif isinstance(line, str):
+                begun = line
+            else:
+                key, outcome = line
+                outcomes[key], begun = outcome, ""
+        if len(outcomes) == len(jobs):
+            break
+        lost += 1
+        if not begun or lost >= MOST_LOST or driver.stop.is_set():
+            return dict.fromkeys(left, end) | outcomes
+        outcomes[begun] = end
+    return outcomes
+
+
+def _answers(
+    name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
+) -> Iterator[str | Failure | tuple[str, Outcome]]:
+    """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
+    facts: dict[str, str] = {}
+    with child(variables, driver, _given(jobs, is_gl(driver.path))) as (lines, why):
+        while (line := lines()) is not None:
+            if "missing" in line or ("failed" in line and "key" not in line):
+                yield Failure(line.get("missing") or line["failed"], "missing" in line)
+                return
+            if "device" in line:
+                facts = {"family": name, "device": line["device"], "version": line["version"]}
+            elif "begun" in line:
+                yield line["begun"]
+            elif "failed" in line:
+                yield line["key"], Failure(line["failed"])
+            else:
+                yield line["key"], Compiled(**facts, kernels=_kernels(line["kernels"]))
+        yield Failure(why())
+
+
+def _given(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
+    """Jobs as a child takes them."""
+    return {"planes": PLANES, "jobs": [_as_json(key, job, of_gl) for key, job in jobs.items()]}
+
+
+def _as_json(key: str, job: Job, of_gl: bool) -> dict[str, str]:
+    code, vertex = (base64.b64encode(part).decode() for part in job.texts(of_gl))
+    return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}

@@ -1,0 +1,97 @@
+"""GPUs that are not there: null_i915.c and terascale/null_radeon.c, each built once into the user's cache folder.
+
+A library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from ...ground.output import cache as kept
+
+SOURCE = Path(__file__).with_name("null_i915.c")
+SHARED = SOURCE.with_name("null_drm.h")
+COMPILER = "cc"
+NO_COMPILER = f"no C compiler: these counts need {COMPILER}; install it (Debian: apt-get install gcc libc6-dev)"
+# A build takes a tenth of a second.
+SECONDS = 60.0
+SAID = "NORMALBENCH_NULL_I915"
+
+
+class NullDeviceError(Exception):
+    """It cannot be built; one line. `is_missing` where something is to be installed."""
+
+    def __init__(self, said: str, is_missing: bool = False):
+        super().__init__(said)
+        self.is_missing = is_missing
+
+
+def library(source: Path | None = None) -> Path:
+    """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
+    folder, source = _folder(), source or SOURCE
+    stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
+    sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _name(stem, path))
+    return next(sound, None) or _built(folder, stem, source)
+
+
+def _folder() -> Path:
+    """Where libraries are built that processes can load."""
+    try:
+        return kept.folder_to_execute_from()
+    except OSError:
+        # Building there says why it cannot be.
+        return kept.folder()
+
+
+def variables(words: str) -> dict[str, str]:
+    """What has a process find the Intel GPU that the words describe. Raises NullDeviceError."""
+    return preloaded(library()) | {SAID: words}
+
+
+def preloaded(path: Path) -> dict[str, str]:
+    """What has a process load a library before all others."""
+    others = filter(None, [os.environ.get("LD_PRELOAD", "")])
+    return {"LD_PRELOAD": os.pathsep.join([str(path), *others])}
+
+
+def _name(stem: str, path: Path) -> str:
+    """What a library is called, by what it holds; the name of no file where it cannot be read, or others may have
+    written it."""
+    try:
+        return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so" if kept.is_private(path) else ""
+    except OSError:
+        return ""
+
+
+def _built(folder: Path, stem: str, source: Path) -> Path:
+    if not shutil.which(COMPILER):
+        raise NullDeviceError(NO_COMPILER, is_missing=True)
+    try:
+        kept.make_folder(folder)
+        # Others see a whole file or none: it is moved there once it is complete.
+        with tempfile.TemporaryDirectory(dir=folder) as made:
+            whole = Path(made) / "library.so"
+            _compile(whole, source)
+            path = folder / _name(stem, whole)
+            whole.replace(path)
+            return path
+    except OSError as error:
+        said = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
+        raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
+
+
+def _compile(path: Path, source: Path) -> None:
+    command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(source)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {source.name}") from error
+    if done.returncode or not path.exists():
+        last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
+        said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.returncode}'}"
+        raise NullDeviceError(f"{said}; the headers of libc may be missing (Debian: apt-get install gcc libc6-dev)")

@@ -1,0 +1,56 @@
+"""An operation as CUDA: its own GLSL, translated, between loads and stores."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from .....gbuffer.defines.kernels import Operation
+from .....gbuffer.gl.shader import ShaderError
+from ....ground.output import cache as kept
+from ...translator import tree
+from ...translator.glsl_parser import read_glsl
+from ...translator.reduce import reduced
+from ...translator.tree import TranslationError
+from .cuda_writer import CudaWriter
+
+FOLDER = Path(__file__).parent
+ROOT, LANGUAGE, KERNEL = (FOLDER / name for name in ("operation.glsl", "glsl.cuh", "kernel.cu"))
+PREFIX = "kernel"
+# Of the kernel around an operation.
+MACROS = ("GROUP", "GIVEN", "BESIDE", "MADE")
+
+
+def cuda_of(operation: Operation) -> str:
+    """The kernel's whole text. Raises ShaderError as `functions_of`."""
+    head = "".join(f"#define {name} {operation.defines[name]}\n" for name in MACROS)
+    return "\n".join((head + _text(LANGUAGE), functions_of(operation), f"{_text(KERNEL)}}}  // namespace glsl\n"))
+
+
+def functions_of(operation: Operation) -> str:
+    """The operation's own functions in the language of glsl.cuh, the last of them `kernel_operation`. Kept by its GLSL.
+
+    Raises:
+        ShaderError: its GLSL cannot be read, or has what cannot be translated; the message names file and line.
+    """
+    source = operation.source(str(ROOT))
+
+    def make() -> dict[str, str]:
+        try:
+            program = reduced(read_glsl(source.text), {"kernel_operation": "operation"}, PREFIX, PREFIX)
+            return {"text": CudaWriter(PREFIX, {}).program(program)}
+        except TranslationError as error:
+            said = source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))
+            raise ShaderError(f"{said}; NVIDIA's compiler is given CUDA, in which that is not written") from error
+
+    key = kept.key_of("cuda", source.text, *(path.read_text(encoding="utf-8") for path in _own_files()))
+    return kept.kept(key, make)["text"]
+
+
+def _own_files() -> list[Path]:
+    """What decides how GLSL is translated."""
+    return [*sorted(Path(tree.__file__).parent.glob("*.py")), FOLDER / "cuda_writer.py"]
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")

@@ -1,0 +1,100 @@
+"""Where NVIDIA's compiler of CUDA and its disassembler are on this machine: packages of pip, or an installed CUDA."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from functools import cache
+from importlib.metadata import distributions
+from importlib.util import find_spec
+from pathlib import Path
+
+from ....ground.output import cache as kept
+from ..compiler import MissingDriverError, fingerprint
+
+INSTALL = "install it (python -m pip install 'normalbench[nvidia]')"
+NO_COMPILER = f"no compiler of CUDA: libnvrtc is not found; {INSTALL}"
+NO_DISASSEMBLER = f"no disassembler of CUDA: nvdisasm is not found; {INSTALL}"
+# `libnvrtc.so.12`, not `libnvrtc-builtins.so.12.9` or `libnvrtc.alt.so.12`.
+LIBRARY = re.compile(r"libnvrtc\.so(\.[\d.]+)?$")
+# A variable names an installed CUDA; pip's packages lie in folders of the package `nvidia`.
+HOMES = ("CUDA_HOME", "CUDA_PATH")
+SECONDS = 10
+
+
+def library() -> Path | None:
+    """NVRTC's shared library."""
+    folders = (folder / part for folder in _folders() for part in ("lib", "lib64", "targets/x86_64-linux/lib"))
+    return next((path for folder in folders for path in _libraries(folder)), None)
+
+
+def disassembler() -> Path | None:
+    """The program nvdisasm."""
+    found = (shutil.which("nvdisasm", path=str(folder / "bin")) for folder in _folders())
+    named = next(filter(None, found), None) or shutil.which("nvdisasm")
+    return Path(named) if named else None
+
+
+def _folders() -> Iterator[Path]:
+    """Where CUDA's parts may lie: pip's packages first, which are of the versions that normalbench asks for."""
+    package = find_spec("nvidia")
+    for root in (package.submodule_search_locations or ()) if package else ():
+        yield from sorted(path for path in Path(root).glob("*") if path.is_dir())
+    yield from (Path(os.environ[name]) for name in HOMES if os.environ.get(name))
+
+
+def _libraries(folder: Path) -> list[Path]:
+    # The shortest name is the one that programs link to.
+    found = (path for path in folder.glob("libnvrtc.so*") if LIBRARY.match(path.name))
+    return sorted(found, key=lambda path: (len(path.name), path.name))
+
+
+def missing() -> str:
+    """What this machine lacks, in one line; empty where it lacks nothing."""
+    return NO_COMPILER if not library() else NO_DISASSEMBLER if not disassembler() else ""
+
+
+def found() -> tuple[Path, Path]:
+    """NVRTC's library and nvdisasm. Raises MissingDriverError."""
+    compiler, lister = library(), disassembler()
+    if not compiler or not lister:
+        raise MissingDriverError(missing())
+    return compiler, lister
+
+
+def identity() -> str:
+    """What differs once one of them does, or what is made of their answers. Raises MissingDriverError."""
+    compiler, lister = found()
+    builtins = sorted(compiler.parent.glob("libnvrtc-builtins.so*"))
+    own = sorted(path for path in Path(__file__).parent.glob("*.py"))
+    return kept.key_of(*map(fingerprint, (compiler, lister, *builtins)), *(path.read_text("utf-8") for path in own))
+
+
+def title(number: str) -> str:
+    """Both and their versions; `number` is what NVRTC says of itself. Raises MissingDriverError."""
+    compiler, lister = found()
+    said = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
+    return f"{said}, nvdisasm {_version(lister)}"
+
+
+@cache
+def _package_version(path: Path) -> str:
+    """The version of the package of pip's that a file is of; empty where it is of none."""
+    for package in distributions():
+        name = package.metadata["Name"] or ""
+        if name.startswith("nvidia-cuda-nvrtc") and any(package.locate_file(f) == path for f in package.files or ()):
+            return package.version
+    return ""
+
+
+@cache
+def _version(lister: Path) -> str:
+    try:
+        done = subprocess.run([lister, "--version"], capture_output=True, text=True, timeout=SECONDS)
+    except (OSError, subprocess.TimeoutExpired):
+        return "of no version"
+    match = re.search(r"\bV(\d+(?:\.\d+)+)", done.stdout)
+    return match[1] if match else "of no version"

@@ -1,0 +1,118 @@
+"""Processes of `isa_child`: what they are given, what they say line by line, and why they ended."""
+
+from __future__ import annotations
+
+import json
+import queue
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from ...ground.machine.children import python
+from .driver_files import environment, is_gl
+
+CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.child")
+# For a driver of GL, which the loader of Vulkan does not know.
+GL_CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.terascale.child")
+# Of one job, and of a driver that starts: a thousand times what they take.
+SECONDS = 10.0
+
+Lines = Callable[[], dict[str, Any] | None]
+
+
+@dataclass(frozen=True)
+class Driver:
+    """The driver's description for the loader, or its file where it is one of GL, and what tells its children that
+    nobody waits for them any more.
+
+    `command` starts a child where it is not one of CHILD.
+    """
+
+    path: Path
+    stop: threading.Event
+    command: Sequence[str] = ()
+
+
+@contextmanager
+def child(
+    variables: Mapping[str, str], driver: Driver, given: dict[str, Any]
+) -> Iterator[tuple[Lines, Callable[[], str]]]:
+    """A child over what it is given, for the GPU that the variables name: a function that gives its next line, None at
+    its end or when it has been silent for too long, and one that says why it ended. Killed when the block ends.
+
+    What it reads and complains into are files without names: nothing is left of them, however this process ends.
+    """
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as work, tempfile.TemporaryFile() as errors:
+        json.dump(given, work)
+        work.seek(0)
+        with subprocess.Popen(
+            driver.command or (GL_CHILD if is_gl(driver.path) else CHILD),
+            stdin=work,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            text=True,
+            env=environment(driver.path, variables),
+        ) as process:
+            try:
+                lines: queue.Queue[str | None] = queue.Queue()
+                threading.Thread(target=_read, args=(process.stdout, lines), daemon=True).start()
+                heard = _Heard(lines, driver.stop)
+                yield heard.following, lambda: heard.why(process, errors)
+            finally:
+                process.kill()
+
+
+class _Heard:
+    """What a child says, line by line, as long as it says something."""
+
+    def __init__(self, lines: queue.Queue[str | None], stop: threading.Event):
+        self._lines, self._stop, self._is_silent = lines, stop, False
+
+    def following(self) -> dict[str, Any] | None:
+        """The next line; None at the end, when nothing has come for SECONDS, or when nobody waits any more."""
+        until = time.monotonic() + SECONDS
+        while not self._stop.is_set() and time.monotonic() < until:
+            try:
+                line = self._lines.get(timeout=0.1)
+            except queue.Empty:
+                continue
+            return _parsed(line)
+        self._is_silent = True
+        return None
+
+    def why(self, process: subprocess.Popen[str], errors: IO[bytes]) -> str:
+        """Why there is no more."""
+        if self._is_silent:
+            return f"the driver did not answer within {SECONDS:g} s"
+        status = process.wait(SECONDS)
+        errors.seek(0)
+        return _why(status, errors.read().decode(errors="replace"))
+
+
+def _parsed(line: str | None) -> dict[str, Any] | None:
+    """A child's line; None at the end, and for one that was cut off when the child died."""
+    try:
+        found = json.loads(line or "null")
+    except ValueError:
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
+    for line in stream:
+        lines.put(line)
+    lines.put(None)
+
+
+def _why(status: int, errors: str) -> str:
+    """How a child ended, and the last that it or its driver said."""
+    how = f"signal {signal.Signals(-status).name}" if status < 0 else f"status {status}"
+    last = [line.strip() for line in errors.splitlines() if line.strip()]
+    return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

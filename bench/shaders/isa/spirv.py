@@ -1,0 +1,181 @@
+"""GLSL to SPIR-V by glslangValidator, and how many instructions that is."""
+
+from __future__ import annotations
+
+import base64
+import shutil
+import struct
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ....gbuffer.gl.shader import ShaderError, Source
+from ...ground.output import cache as kept
+from ...ground.output.errors import MissingError
+
+COMPILER, OPTIMISER = "glslangValidator", "spirv-opt"
+NO_COMPILER = f"no GLSL compiler: {COMPILER} is not on the path; install it (Debian: apt-get install glslang-tools)"
+NO_OPTIMISER = f"no SPIR-V counts: {OPTIMISER} is not on the path; install it (Debian: apt-get install spirv-tools)"
+SECONDS = 20
+MAGIC = struct.pack("<I", 0x07230203)
+HEADER, FUNCTION, FUNCTION_END, LOOP_MERGE = 5, 54, 56, 246
+UNROLL, DONT_UNROLL = 1, 2
+
+
+@dataclass(frozen=True)
+class Module:
+    """A shader as SPIR-V, and how many instructions its functions have once optimised.
+
+    Those are None without spirv-opt, and where a loop is left, which would count once however often it runs.
+    """
+
+    binary: bytes
+    instructions: int | None
+
+
+@cache
+def version(tool: str) -> str | None:
+    """All that a tool says of its version; None where it is not there."""
+    if not shutil.which(tool):
+        return None
+    try:
+        done = subprocess.run([tool, "--version"], capture_output=True, text=True, timeout=SECONDS)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return f"{done.stdout}{done.stderr}".strip() or "of no version"
+
+
+def compiler() -> str:
+    """The GLSL compiler's version. Raises MissingError, one line that names the package."""
+    said = version(COMPILER)
+    if said is None:
+        raise MissingError(NO_COMPILER)
+    return said
+
+
+class ToolError(ShaderError):
+    """A tool that crashes or does not end, whatever it is given."""
+
+
+def title(said: str) -> str:
+    """The name of a compiler's version, in a few words."""
+    return "glslang " + said.splitlines()[0].split(":")[-1].strip()
+
+
+def titles() -> str:
+    """The compiler and the optimiser that counts are by, in a few words. Raises MissingError as `compiler`."""
+    optimiser = version(OPTIMISER)
+    return title(compiler()) + (f", {OPTIMISER} {_number(optimiser)}" if optimiser else "")
+
+
+def _number(said: str) -> str:
+    """The first word of a version that is a number: "SPIRV-Tools v2023.1 v2022.4 ..." """
+    return next((word for word in said.split() if word.strip("v")[:1].isdigit()), said.splitlines()[0])
+
+
+def compiled(source: Source, stage: str, counted: bool = True) -> Module:
+    """A source as SPIR-V; `stage` is "vert", "frag" or "comp". Kept by its text and the tools' versions.
+
+    Its instructions are counted if that is asked for and there is spirv-opt.
+
+    Raises:
+        MissingError: there is no compiler.
+        ShaderError: it does not compile; the message names the file and the line.
+    """
+    optimiser = version(OPTIMISER) if counted else None
+    ours = Path(__file__).read_text(encoding="utf-8")
+    key = kept.key_of("spirv", source.text, stage, compiler(), optimiser or "", ours)
+    found = _as_module(kept.read(key))
+    if found:
+        return found
+    binary = _by_glslang(source, stage)
+    optimised = _optimised(binary) if optimiser else None
+    module = Module(binary, _count(optimised) if optimised else None)
+    if optimised or not optimiser:
+        kept.write(key, {"binary": base64.b64encode(binary).decode(), "instructions": module.instructions})
+    return module
+
+
+def _as_module(value: dict[str, Any] | None) -> Module | None:
+    """What was kept; None where it is anything else."""
+    try:
+        binary, count = base64.b64decode((value or {})["binary"], validate=True), (value or {})["instructions"]
+    except (KeyError, TypeError, ValueError):
+        return None
+    is_sound = _is_spirv(binary) and (count is None or isinstance(count, int))
+    return Module(binary, count) if is_sound else None
+
+
+def _is_spirv(binary: bytes) -> bool:
+    return len(binary) > 4 * HEADER and len(binary) % 4 == 0 and binary.startswith(MAGIC)
+
+
+def _by_glslang(source: Source, stage: str) -> bytes:
+    # A file without a name: nothing is left of it, however this process ends.
+    with tempfile.TemporaryFile() as out:
+        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", f"/dev/fd/{out.fileno()}"]
+        done = _run([COMPILER, *options], source.text.encode(), out.fileno())
+        out.seek(0)
+        binary = out.read()
+    if done.returncode == 0 and _is_spirv(binary):
+        return binary
+    said = done.stdout.decode(errors="replace").splitlines()
+    errors = [line.removeprefix("ERROR: ") for line in said if line.startswith("ERROR: ")]
+    if not errors:
+        raise ToolError(f"{COMPILER} ended with status {done.returncode} and said nothing")
+    raise ShaderError(source.explain(errors[0]))
+
+
+def _optimised(binary: bytes) -> bytes | None:
+    """The module with loops of a known length unrolled, so that a polynomial counts as long as it is; None where the
+    optimiser fails, for the compilers do without it."""
+    try:
+        done = _run([OPTIMISER, "-O", "-", "-o", "-"], _asking_to_unroll(binary))
+    except ToolError:
+        return None
+    return done.stdout if done.returncode == 0 and _is_spirv(done.stdout) else None
+
+
+def _run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
+    """A tool over its standard input. Raises ToolError where it does not end."""
+    try:
+        return subprocess.run(command, input=given, capture_output=True, timeout=SECONDS, pass_fds=files)
+    except subprocess.TimeoutExpired as error:
+        raise ToolError(f"{command[0]} took longer than {SECONDS} s") from error
+
+
+def _words(binary: bytes) -> list[int]:
+    return list(struct.unpack(f"<{len(binary) // 4}I", binary))
+
+
+def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
+    """(place, opcode) of each instruction of a module."""
+    place = HEADER
+    while place < len(words):
+        yield place, words[place] & 0xFFFF
+        place += words[place] >> 16
+
+
+def _asking_to_unroll(binary: bytes) -> bytes:
+    """The module with the hint to unroll on every loop, which GLSL has no word for without an extension."""
+    words = _words(binary)
+    for place, opcode in _instructions(words):
+        if opcode == LOOP_MERGE:
+            words[place + 3] = words[place + 3] & ~DONT_UNROLL | UNROLL
+    return struct.pack(f"<{len(words)}I", *words)
+
+
+def _count(binary: bytes) -> int | None:
+    """Instructions from each OpFunction to its OpFunctionEnd; None with a loop among them."""
+    inside, count = False, 0
+    for _, opcode in _instructions(_words(binary)):
+        if opcode == LOOP_MERGE:
+            return None
+        inside = inside or opcode == FUNCTION
+        count += inside
+        inside = inside and opcode != FUNCTION_END
+    return count

@@ -1,0 +1,58 @@
+"""A file of WGSL on a Vulkan device, in a process that may end: naga panics at some files.
+
+    python -m normalbench.bench.shaders.languages.by_naga FOLDER
+
+given.wgsl of the folder makes made.bin of given.bin: rows of four numbers, three given and two made for each normal.
+Where that cannot be, the last line says why, and the status is not 0.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...ground.machine.vulkan import NO_DRIVER, adapters
+from ...ground.output.errors import MissingError
+
+ENTRY, GROUP, ROW = "normalbench_second", 64, 16
+
+
+def main(folder: Path) -> None:
+    """What the command does."""
+    import wgpu
+
+    found = adapters()
+    if not found:
+        raise MissingError(NO_DRIVER)
+    given = np.fromfile(folder / "given.bin", "<f4")
+    count = len(given) // 12
+    gpu = found[0].request_device_sync()
+    module = gpu.create_shader_module(code=(folder / "given.wgsl").read_text(encoding="utf-8"))
+    program = gpu.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": ENTRY})
+    storage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
+    source = gpu.create_buffer_with_data(data=given, usage=storage)
+    made = gpu.create_buffer(size=2 * count * ROW, usage=storage)
+    entries: list[Any] = [{"binding": at, "resource": {"buffer": one}} for at, one in enumerate((source, made))]
+    group = gpu.create_bind_group(layout=program.get_bind_group_layout(0), entries=entries)
+    commands = gpu.create_command_encoder()
+    compute = commands.begin_compute_pass()
+    compute.set_pipeline(program)
+    compute.set_bind_group(0, group)
+    compute.dispatch_workgroups(-(-count // GROUP))
+    compute.end()
+    gpu.queue.submit([commands.finish()])
+    (folder / "made.bin").write_bytes(gpu.queue.read_buffer(made))
+
+
+if __name__ == "__main__":
+    try:
+        main(Path(sys.argv[1]))
+    except ImportError as error:
+        print(f"WGSL needs wgpu ({error})", file=sys.stderr)
+        sys.exit(1)
+    except Exception as error:  # whatever wgpu raises
+        print(" ".join(str(error).split())[:200], file=sys.stderr)
+        sys.exit(1)

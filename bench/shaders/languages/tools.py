@@ -1,0 +1,107 @@
+"""The compilers that translate: where they are, what to install where they are not, and how they are run."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import IO, Any
+
+from ...ground.output.errors import MissingError
+
+GLSLANG, SPIRV_CROSS, SLANG = "glslangValidator", "spirv-cross", "slangc"
+# What to install.
+MISSING: Mapping[str, str] = MappingProxyType(
+    {
+        GLSLANG: f"no HLSL: {GLSLANG} is not on the path; install it (Debian: apt-get install glslang-tools)",
+        SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it (Debian: apt-get install spirv-cross)",
+        SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
+    }
+)
+# Python packages that have a tool in their folder bin.
+_WHEELS: Mapping[str, str] = MappingProxyType({SLANG: "slangtorch"})
+# What they say their version by.
+_ASKED: Mapping[str, str] = MappingProxyType({GLSLANG: "--version", SPIRV_CROSS: "--revision", SLANG: "-v"})
+SECONDS = 20
+
+
+class ToolError(Exception):
+    """A tool that crashes or does not end, whatever it is given."""
+
+
+def path_of(tool: str) -> Path:
+    """Where a tool is: on the path, or in a package that has it.
+
+    Raises:
+        MissingError: one line that says what to install.
+    """
+    found = shutil.which(tool) or _in_a_wheel(tool)
+    if not found:
+        raise MissingError(MISSING[tool])
+    return Path(found)
+
+
+def _in_a_wheel(tool: str) -> str | None:
+    # The package itself is not imported: it needs what is not installed.
+    spec = importlib.util.find_spec(_WHEELS[tool]) if tool in _WHEELS else None
+    folders = (spec and spec.submodule_search_locations) or []
+    return next((found for folder in folders if (found := shutil.which(tool, path=str(Path(folder) / "bin")))), None)
+
+
+@cache
+def version(tool: str) -> str:
+    """A tool's own word for its version, or what to install."""
+    try:
+        path = path_of(tool)
+        done = subprocess.run([path, _ASKED[tool]], capture_output=True, text=True, timeout=SECONDS)
+    except MissingError as error:
+        return str(error)
+    except (OSError, subprocess.TimeoutExpired):
+        return f"{tool} does not say its version"
+    said = f"{done.stdout}{done.stderr}".strip().splitlines()
+    return f"{tool} {said[0] if said else 'of no version'}"
+
+
+def stamp(tool: str) -> str:
+    """What tells one build of a tool from another: its place, size and time. Raises MissingError."""
+    found = path_of(tool).resolve()
+    status = found.stat()
+    return f"{found} {status.st_size} {status.st_mtime_ns}"
+
+
+def run(tool: str, words: Sequence[str], folder: Path) -> tuple[int, str]:
+    """A tool's status, and all that it printed: as `run_apart`."""
+    status, out, err = run_apart(tool, words, folder)
+    return status, out + err
+
+
+def run_apart(tool: str, words: Sequence[str], folder: Path) -> tuple[int, str, str]:
+    """A tool's status, and what it printed to standard output and to standard error.
+
+    It runs in a folder, and may use as much memory and time as this process.
+
+    Raises:
+        MissingError: there is no such tool.
+        ToolError: it crashes or does not end.
+    """
+    command = [str(path_of(tool)), *words]
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        try:
+            files: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}
+            status = subprocess.run(command, **files, timeout=SECONDS, cwd=folder).returncode
+        except subprocess.TimeoutExpired as error:
+            raise ToolError(f"{tool} did not end within {SECONDS} s") from error
+        if status < 0:
+            raise ToolError(f"{tool} was ended by {signal.Signals(-status).name}: this is too much for it")
+        return status, _text(out), _text(err)
+
+
+def _text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode(errors="replace")

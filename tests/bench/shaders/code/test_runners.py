@@ -1,0 +1,159 @@
+"""Every language runs the same hand-written files, and gives what NumPy gives."""
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.shaders.code.run import LANGUAGES, c, interface, runner
+from normalbench.bench.shaders.code.run.interface import Interface, Ran
+from normalbench.gbuffer.gl.device import NoDeviceError
+from normalbench.gbuffer.gl.shader import ShaderError
+
+pytestmark = pytest.mark.slow
+
+FOLDER = Path(__file__).parents[2] / "inputs" / "code"
+ENDINGS = {"python": "py", "msl": "metal"}
+STEPS = np.array([[[3.0, 0.5], [5.0, 0.25]]], np.float32)
+SPHEREMAP = Interface("spheremap_rg8", 2, 0, 1, False)
+SCALED = Interface("scaled_rg32f", 3, 1, 2, True, {"scaled_steps": STEPS})
+OTHERS = [name for name in LANGUAGES if name != "python"]
+
+
+def file_of(what: Interface, language: str) -> Path:
+    return FOLDER / f"{what.prefix}.{ENDINGS.get(language, language)}"
+
+
+def given(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unit normals, among them the axes, views in sixteenths, and texels."""
+    random = np.random.default_rng(7)
+    n = random.normal(size=(count, 3))
+    n = (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32)
+    n[:6] = np.concatenate([np.eye(3), -np.eye(3)])
+    view = (random.integers(-16, 16, (count, 3)) / 16).astype(np.float32)
+    return n, view, random.random((count, 4), np.float32)
+
+
+def ran(language: str, what: Interface, arrays) -> Ran:
+    try:
+        return runner(language).run(file_of(what, language), what, *arrays)
+    except (MissingError, NoDeviceError) as error:
+        if os.environ.get("CI"):
+            raise
+        pytest.skip(str(error))
+
+
+@pytest.mark.parametrize("language", OTHERS)
+def test_a_plain_code_gives_what_numpy_gives(language):
+    """Spheremap in RG8: the same words, and numbers within 4 units in the last place of 1."""
+    arrays = given(4096)
+    expected, found = ran("python", SPHEREMAP, arrays), ran(language, SPHEREMAP, arrays)
+    differ = np.flatnonzero((expected.words != found.words).any(axis=1))
+    assert not len(differ), f"{len(differ)} words differ, the first at {arrays[0][differ[0]]}"
+    for name, a, b in zip(Ran._fields, expected, found, strict=True):
+        assert a.shape == b.shape, name
+        worst = np.abs(a.astype(np.float64) - b).max()
+        assert worst <= 4 * 2.0**-23, f"{name} differs by {worst}"
+
+
+@pytest.mark.parametrize("language", OTHERS)
+def test_views_tables_signs_and_words_reach_the_functions(language):
+    """A code that takes a view, a table, a sign and two words gives the same words and signs, in every language."""
+    arrays = given(1000)
+    expected, found = ran("python", SCALED, arrays), ran(language, SCALED, arrays)
+    for name, a, b in zip(Ran._fields, expected, found, strict=True):
+        differ = np.count_nonzero(a != b)
+        assert a.shape == b.shape and not differ, f"{differ} {name} differ"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_blocks_are_put_together_in_order(language, monkeypatch):
+    """A run in blocks of 300 is the run in one block, bit for bit; and nothing gives nothing."""
+    arrays = given(1000)
+    whole = ran(language, SPHEREMAP, arrays)
+    monkeypatch.setattr(interface, "BLOCK", 300)
+    for name, a, b in zip(Ran._fields, whole, ran(language, SPHEREMAP, arrays), strict=True):
+        assert np.array_equal(a, b), name
+    none = ran(language, SPHEREMAP, [array[:0] for array in arrays])
+    assert none.words.shape == (0, 1) and none.decoded.shape == (0, 3)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
+    """A file that does not compile is a ShaderError of one line, not a crash."""
+    ran(language, SPHEREMAP, given(8))
+    broken = tmp_path / "broken.txt"
+    broken.write_text("float broken() { return unknown_name; }\n")
+    with pytest.raises(ShaderError) as error:
+        runner(language).run(broken, SPHEREMAP, *given(8))
+    assert "\n" not in str(error.value) and "broken.txt" in str(error.value), str(error.value)
+
+
+# What a file may do, and how the process that it is in ends.
+ENDS = {
+    "reads what is not there": ("return *(volatile float *)8;", "SIGSEGV"),
+    "never ends": ("for (volatile int i = 0;; ++i) ; return 0.0f;", "SIGXCPU|SIGKILL|did not end"),
+    # One page of each block is touched: a busy machine does not reach the limit of seconds first.
+    "wants all memory": ("for (;;) *(volatile char *)calloc(1u << 28, 1) = 1;", "SIGSEGV|SIGKILL"),
+}
+
+
+@pytest.mark.parametrize("what", ENDS)
+@pytest.mark.parametrize("language", ["c", "msl"])
+def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypatch):
+    """One line says how it ended; this process lives."""
+    ran(language, SPHEREMAP, given(8))
+    monkeypatch.setitem(c.LIMITS, "RUN_SECONDS", 1)
+    body, how = ENDS[what]
+    head = "#include <stdlib.h>\n" if "calloc" in body else ""
+    text = file_of(SPHEREMAP, language).read_text()
+    name = re.search(r"\bspheremap_rg8_encode\(\w+ (\w+)\) \{", text)
+    assert name, text
+    trap = f"static float trap(void) {{ {body} }}\n"
+    hurt = text.replace(name[0], f"{name[0]} if ({name[1]}.x > -2.0f) {name[1]}.x = trap();")
+    before, mark, rest = hurt.partition("\ninline " if language == "msl" else "\nstatic inline ")
+    (tmp_path / "hurt.txt").write_text(f"{head}{before}\n{trap}{mark}{rest}")
+    with pytest.raises(ShaderError, match=how) as error:
+        runner(language).run(tmp_path / "hurt.txt", SPHEREMAP, *given(8))
+    assert "\n" not in str(error.value) and "hurt.txt" in str(error.value)
+
+
+def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):
+    """A choice between vectors by a constant: naga ends its process, and no other."""
+    ran("wgsl", SPHEREMAP, given(8))
+    foreign = replace(SPHEREMAP, is_ours=False)
+    assert len(runner("wgsl").run(file_of(SPHEREMAP, "wgsl"), foreign, *given(8)).words) == 8
+    panics = (
+        "fn p() -> vec3f { return select(vec3f(vec2f(2.0, 1.0), 1.0), vec3f(1.0), FLIP); }\nconst FLIP: bool = true;\n"
+    )
+    (tmp_path / "panics.wgsl").write_text(file_of(SPHEREMAP, "wgsl").read_text() + panics)
+    with pytest.raises(ShaderError, match=r"panics\.wgsl: naga does not survive it \(SIGABRT\)"):
+        runner("wgsl").run(tmp_path / "panics.wgsl", foreign, *given(8))
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_runner_says_by_what_it_ran(language):
+    """`how` is one line with a version."""
+    ran(language, SPHEREMAP, given(8))
+    said = runner(language).how()
+    assert "\n" not in said and any(c.isdigit() for c in said), said
+
+
+@pytest.mark.parametrize(
+    ("language", "tool"), [("c", "gcc"), ("msl", "clang"), ("hlsl", "glslang-tools"), ("slang", "slangtorch")]
+)
+def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
+    """Without compilers on the path a runner says what to install."""
+    from normalbench.bench.shaders.isa import spirv
+
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr(spirv, "version", lambda _: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    if language == "slang":
+        monkeypatch.setattr("normalbench.bench.shaders.code.run.slang.find_spec", lambda _: None)
+    with pytest.raises(MissingError, match=tool):
+        runner(language).run(file_of(SPHEREMAP, language), SPHEREMAP, *given(8))

@@ -1,0 +1,89 @@
+"""The quality table by WGSL on Vulkan."""
+
+import itertools
+
+import pytest
+
+from normalbench.bench.codecs.names import codecs_named
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.normals import normal_sets
+from normalbench.bench.shaders.code.run import wgsl
+from normalbench.bench.tables.quality import measure
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.variants import in_half
+from normalbench.encodings.storages.storage import STORAGES
+
+# Numbers of more bits than a float32's mantissa holds twice over are not compared by their PSNR.
+TO_16_BITS = ",".join(name for name in STORAGES if name != "rgba32f")
+
+
+@pytest.fixture
+def vulkan():
+    try:
+        wgsl.device()
+    except MissingError as error:
+        pytest.skip(str(error))
+
+
+def row_of(codec, backend: str, normals=None) -> dict:
+    return measure.measure(measure.Case(codec, normals or normal_sets.axes(), backend))
+
+
+@pytest.mark.usefixtures("vulkan")
+@pytest.mark.parametrize("name", ["spheremap/rg8", "octahedral_precise/rgb10a2", "spherical_lut/rg8", "xy_sign/rg16f"])
+def test_a_row_by_wgsl_has_the_figures_of_jax(name):
+    """The same errors to a millionth, by the shader's rounding, on the Vulkan device."""
+    (codec,) = codecs_named(*name.split("/"), "nearest")
+    found, expected = row_of(codec, "wgsl"), row_of(codec, "jax")
+    assert not found["skipped"] and found["rounded_by"] == "shader" and "Vulkan" in found["device"]
+    for column in ("mse", "angle_mean_deg", "angle_max_deg"):
+        assert found[column] == pytest.approx(expected[column], rel=1e-5, abs=1e-12), column
+    assert found["count"] == expected["count"] and not found["invalid"]
+
+
+@pytest.mark.nightly("bench/shaders/code/test_wgsl_backend.py::test_a_row_by_wgsl_has_the_figures_of_jax")
+@pytest.mark.usefixtures("vulkan", "gl")
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_three_back_ends_agree_within_two_hundredths_of_a_decibel(encoding):
+    """Every storage of 16 bits or fewer a number, on uniform directions."""
+    apart = []
+    sets = normal_sets.NORMAL_SETS["hemisphere" if ENCODINGS[encoding].domain == "hemisphere" else "sphere"]
+    normals = sets(2**14, 0)
+    for codec in (codec for codec in codecs_named(encoding, TO_16_BITS, "nearest") if codec.fits):
+        rows = [row_of(codec, backend, normals) for backend in ("jax", "glsl", "wgsl")]
+        for one, other in itertools.combinations(rows, 2):
+            if abs(one["psnr_db"] - other["psnr_db"]) > 0.02:
+                apart.append((codec.name, one["backend"], one["psnr_db"], other["backend"], other["psnr_db"]))
+    assert not apart, apart
+
+
+@pytest.mark.usefixtures("vulkan")
+def test_half_arithmetic_is_refused_in_a_line():
+    """The row says why it has no figures."""
+    (codec,) = codecs_named("spheremap", "rg8", "nearest")
+    halved = type(codec)(in_half(ENCODINGS["spheremap"]), codec.storage)
+    row = row_of(halved, "wgsl")
+    assert "half" in row["skipped"] and row["mse"] is None
+
+
+def test_without_wgpu_the_row_says_what_to_install(monkeypatch):
+    """`pip install wgpu`."""
+
+    def missing():
+        raise ImportError("No module named 'wgpu'")
+
+    wgsl.device.cache_clear()
+    monkeypatch.setattr(wgsl, "adapters", missing)
+    (codec,) = codecs_named("spheremap", "rg8", "nearest")
+    assert "pip install wgpu" in row_of(codec, "wgsl")["skipped"]
+    wgsl.device.cache_clear()
+
+
+def test_a_table_without_wgsl_measures_by_the_others_and_says_so(run):
+    """`run --backend jax,wgsl` must not fail for the tables that have no WGSL; alone it is an error."""
+    arguments = ("depth", "--depth", "linear", "--storage", "r16f", "--count", "1024", "--backend")
+    status, out, err = run(*arguments, "jax,wgsl")
+    assert status == 0 and "linear" in out
+    assert err == "normalbench: left out: wgsl: this table measures by jax and glsl\n"
+    status, out, err = run(*arguments, "wgsl")
+    assert (status, out, err) == (2, "", "normalbench: wgsl: this table measures by jax and glsl\n")

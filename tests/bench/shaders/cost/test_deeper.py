@@ -1,0 +1,108 @@
+"""What listings say beyond counts: loops, waves, half arithmetic."""
+
+import pytest
+
+from normalbench.bench.codecs.half.kernels import half_operation
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.shaders.isa import disassembly, intel_disassembly, isa, occupancy
+from normalbench.bench.shaders.isa.compiler import uses_halves
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.variants import in_half
+from normalbench.gbuffer.gl.shader import ShaderError
+
+OCTAHEDRAL = ENCODINGS["octahedral"]
+
+
+def test_what_lies_between_a_label_and_the_jump_back_to_it_is_in_a_loop():
+    """Of two loops, one in the other, both are found; a jump ahead makes no loop."""
+    lines = ["BB0:", "\tv_a", "\ts_cbranch_vccz BB4", "BB1:", "\tv_b", "BB2:", "\tv_c", "\t(then repeated 2 times)"]
+    lines += ["\ts_cbranch_scc1 BB2", "\ts_branch BB1", "BB4:", "\ts_endpgm"]
+    assert disassembly.loops("\n".join(lines)) == [range(3, 7), range(2, 8)]
+    assert disassembly.loops("\n".join(lines[:-4])) == []
+
+
+def test_intels_loops_end_with_while():
+    add = "add(16)  g1<1>F  g2<8,8,1>F  g3<8,8,1>F  { align1 1H };"
+    jump = "while(16)  JIP:  LABEL2  { align1 1H };"
+    broken = "(+f0.0) break(16) JIP:  LABEL1        UIP:  LABEL1    { align1 1H };"
+    listing = "\n".join([add, "LABEL2:", add, broken, add, "LABEL1:", jump, add])
+    assert intel_disassembly.loops(listing) == [range(1, 5)]
+    assert intel_disassembly.loops(listing.replace("while", "jmpi")) == []
+
+
+@pytest.mark.parametrize(
+    "family, registers, waves",
+    # 256 / 84, 512 / 40, 768 / 48 by hand; few registers leave the most there is.
+    [
+        ("vega10", 84, 3),
+        ("navi21", 40, 12),
+        ("navi31", 48, 16),
+        ("navi31", 96, 8),
+        ("navi10", 16, 20),
+        ("skl", None, 7),
+    ],
+)
+def test_waves_are_by_registers_and_at_most_what_a_simd_holds(family, registers, waves):
+    assert occupancy.waves(family, registers) == waves
+
+
+def test_every_family_but_those_of_no_rule_has_waves():
+    assert set(occupancy.OCCUPANCY) <= set(FAMILIES)
+    assert occupancy.waves("another", 16) is None and occupancy.waves("navi21", None) is None
+
+
+@pytest.mark.usefixtures("radv")
+def test_polaris_and_vega_hold_as_many_waves_as_radv_says():
+    """Of RDNA's it says twice as many: what two SIMDs hold."""
+    prepared = cost.prepare(cost.cases([ENCODINGS["octahedral_precise"]], [], ["encode"])[0], "compute")
+    for family, outcome in compiled(prepared.job, CHOICES["radeon"]).items():
+        said = outcome.kernels[0].statistics
+        twice = 1 if family in ("polaris10", "vega10") else 2
+        assert said["Subgroups per SIMD"] == twice * occupancy.waves(family, said["VGPRs"]), family
+
+
+def compiled(job, families) -> dict:
+    return {family: outcome for (family, _), outcome in isa.compile_all([job], families, cost.nobody).items()}
+
+
+@pytest.mark.usefixtures("radv")
+def test_half_arithmetic_is_compiled_in_halves_and_doing_nothing_costs_nothing():
+    rows = [
+        row
+        for row, _ in cost.isa_rows(
+            cost.cases(map(in_half, (OCTAHEDRAL, ENCODINGS["xyz"])), [], ["encode", "decode"]),
+            ["fragment", "compute"],
+            ["vega10", "navi31"],
+            [],
+            cost.nobody,
+        )
+    ]
+    assert len(rows) == 16 and not [row["skipped"] for row in rows if row["skipped"]]
+    for row in rows:
+        assert sum(row[kind] for kind in disassembly.KINDS) == row["instructions"]
+        assert (row["instructions"] == 0) == (row["encoding"] == "xyz:arithmetic=half"), row
+        assert (row["packed"] > 0) == (row["instructions"] > 0), row
+
+
+@pytest.mark.usefixtures("radv")
+def test_a_gpu_without_16_bits_says_so_and_the_others_are_measured():
+    prepared = cost.prepare(cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])[0], "fragment")
+    assert uses_halves(prepared.job.code) and not uses_halves(prepared.job.vertex)
+    found = compiled(prepared.job, ["polaris10", "vega10"])
+    assert found["polaris10"].reason == "Null hardware (RADV POLARIS10) computes no shaders in 16 bits"
+    assert found["vega10"].kernels
+
+
+@pytest.mark.usefixtures("terascale", "nvidia")
+def test_half_arithmetic_that_is_not_counted_is_said_in_a_line():
+    chosen = cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])
+    rows = [row for row, _ in cost.isa_rows(chosen, ["fragment", "compute"], ["rv670", "sm_86"], [], cost.nobody)]
+    said = {row["family"]: row["skipped"] for row in rows if row["family"]}
+    assert "computes no shaders in 16 bits" in said["rv670"] and "\n" not in said["rv670"]
+    assert said["sm_86"] == "octahedral:arithmetic=half encode: half arithmetic is not counted for NVIDIA"
+
+
+def test_precise_rounding_in_halves_is_refused_in_a_line():
+    with pytest.raises(ShaderError, match=r"octahedral_precise.*: precise rounding is not counted in half arithmetic"):
+        half_operation(in_half(ENCODINGS["octahedral_precise"]), "encode")

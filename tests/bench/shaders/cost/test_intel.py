@@ -1,0 +1,270 @@
+"""Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from vendors import INTEL, every_or_some
+
+from normalbench.bench.ground.options import gpu_families as families
+from normalbench.bench.ground.options.gpu_families import FAMILIES
+from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.results.machine import require_intel
+from normalbench.bench.shaders.isa import intel_disassembly, null_device
+from normalbench.bench.shaders.isa.isa import Compiled, Kernel
+from normalbench.bench.suite import report
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.cost.work import chosen_families
+from normalbench.bench.tables.registry import TABLES
+
+LISTINGS = Path(__file__).with_name("listings")
+# By hand, line by line, of listings that Mesa 22.3.6 wrote for 16 lanes.
+COUNTED = {
+    "hsw-spheremap-encode": {"other_alu": 16, "transcendental": 1, "scalar": 3, "memory": 3},
+    "bdw-spheremap-encode": {"other_alu": 16, "transcendental": 1, "scalar": 3, "memory": 3},
+    "skl-spheremap-encode": {"other_alu": 15, "transcendental": 1, "scalar": 3, "memory": 3},
+    "tgl-spheremap-encode": {"other_alu": 23, "transcendental": 1, "scalar": 1, "memory": 3, "waiting": 3},
+    "adl-spheremap-encode": {"other_alu": 23, "transcendental": 1, "scalar": 1, "memory": 3, "waiting": 3},
+    "dg2-spheremap-encode": {"other_alu": 23, "transcendental": 1, "scalar": 1, "memory": 3, "waiting": 4},
+    "hsw-12-12-pack": {"other_alu": 21, "conversion": 5, "scalar": 3, "memory": 3},
+    "bdw-12-12-pack": {"other_alu": 21, "conversion": 5, "scalar": 3, "memory": 3},
+    "skl-12-12-pack": {"other_alu": 20, "conversion": 5, "scalar": 3, "memory": 3},
+    "tgl-12-12-pack": {"other_alu": 27, "conversion": 5, "scalar": 1, "memory": 3, "waiting": 3},
+    "adl-12-12-pack": {"other_alu": 27, "conversion": 5, "scalar": 1, "memory": 3, "waiting": 3},
+    "dg2-12-12-pack": {"other_alu": 27, "conversion": 5, "scalar": 1, "memory": 3, "waiting": 4},
+    "skl-compute-xy-decode": {"other_alu": 23, "transcendental": 1, "memory": 14, "control_flow": 2},
+}
+EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8", "--stage", "fragment"]
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_the_kinds_of_a_recorded_listing_are_those_counted_by_hand(name):
+    counts = dict.fromkeys(intel_disassembly.KINDS, 0) | COUNTED[name]
+    assembly = (LISTINGS / f"{name}.asm").read_text()
+    assert intel_disassembly.kinds(assembly, sum(counts.values())) == counts
+
+
+def test_every_recorded_listing_is_counted():
+    assert {path.stem for path in LISTINGS.iterdir()} == set(COUNTED)
+
+
+@pytest.mark.parametrize(
+    "line, kind",
+    [
+        ("mov(16)         g24<1>D         g22<8,8,1>F   { align1 1H };", "conversion"),
+        ("mov.sat(8)      g24<1>HF        g22<8,8,1>F   { align1 1Q };", "conversion"),
+        ("mov(8)          g24<1>F         g22<8,8,1>UB  { align1 1Q };", "conversion"),
+        ("mov(16)         g5<1>D          g2<8,8,1>UW   { align1 1H };", "other_alu"),
+        ("mov(16)         g5<1>F          0x3f800000F  /* 1F */ { align1 1H };", "other_alu"),
+        ("mov(8)          g5<1>UD         g2<8,8,1>F    { align1 WE_all 1Q };", "conversion"),
+        ("math pow(8)     g5<1>F          g2<8,8,1>F    g3<8,8,1>F { align1 1Q };", "transcendental"),
+        ("mov(1)          g5<1>D          1090519040D   { align1 WE_all 1N };", "scalar"),
+        ("(-f0.1.any16h) halt(16) JIP: LABEL1 UIP: LABEL2 { align1 1H };", "control_flow"),
+        ("sync allrd(1)                   null<0,1,0>UB { align1 WE_all 1N };", "waiting"),
+        ("send(8)         nullUD          g2UD          nullUD 0x0 { align1 1Q };", "memory"),
+    ],
+)
+def test_an_instruction_has_its_kind(line, kind):
+    (found,) = intel_disassembly.instructions(line)
+    assert intel_disassembly.kind(found) == kind
+
+
+def test_a_listing_that_is_not_understood_has_no_kinds():
+    """Of an unknown instruction, and of another number of instructions than the driver says."""
+    text = "add(8) g1<1>F g2<8,8,1>F g3<8,8,1>F { align1 1Q };\n"
+    assert intel_disassembly.kinds(text, 1) and not intel_disassembly.kinds(text, 2)
+    assert intel_disassembly.kinds(text + text.replace("add", "frobnicate"), 2) is None
+
+
+def test_a_mesa_that_counts_no_waits_is_understood():
+    text = "add(8) g1<1>F g2<8,8,1>F g3<8,8,1>F { align1 1Q };\nsync nop(1) null<0,1,0>UB { align1 };\nnop ;\n"
+    with_waits, without = (intel_disassembly.kinds(text, total) for total in (2, 1))
+    assert (with_waits["waiting"], without["waiting"], without["other_alu"]) == (1, 0, 1)
+
+
+def test_loops_and_branches_are_told():
+    text = "(+f0.0) if(8) JIP: L { };\nelse(8) JIP: L { };\nendif(8) JIP: L { };\n(-f0.0) while(8) JIP: L { };\n"
+    assert intel_disassembly.jumps(text) == (1, 1)
+
+
+def kernel(width: int, spills: int = 0) -> Kernel:
+    return Kernel(width, {"Instruction Count": 10 * width, "Spill Count": spills, "Fill Count": spills}, "")
+
+
+def test_the_widest_kernel_that_does_not_spill_is_compared_with_the_empty_one_of_its_width():
+    empties = [kernel(8), kernel(16)]
+    found = [
+        cost.alike(kernels, empties)
+        for kernels in (
+            [kernel(8), kernel(16), kernel(32)],
+            [kernel(8), kernel(16, 3)],
+            [kernel(8, 1), kernel(16, 3)],
+            [kernel(32)],
+        )
+    ]
+    assert [pair and (pair[0].simd_width, pair[1].simd_width) for pair in found] == [(16, 16), (8, 8), (16, 16), None]
+
+
+def test_kernels_of_no_common_width_have_no_counts():
+    row = TABLES["cost"].empty() | {"family": "skl"}
+    ours, empty = (Compiled("skl", "a device", "1.2.3", (kernel(width),)) for width in (8, 16))
+    found, _ = cost._figures(row, ours, empty)
+    assert found["instructions"] is None and found["skipped"].startswith("compiled for 8 lanes, where the empty kernel")
+
+
+def test_figures_are_by_the_drivers_own_names_and_what_a_radeon_has_is_empty():
+    row = TABLES["cost"].empty() | {"family": "skl"}
+    text = "add(16) g1<1>F g2<8,8,1>F g3<8,8,1>F { };\n"
+    statistics = {"Instruction Count": 3, "Cycle Count": 40, "Spill Count": 2, "Fill Count": 1}
+    ours = Compiled("skl", "a device", "1.2.3", (Kernel(16, statistics, 3 * text),))
+    nothing = {"Instruction Count": 1, "Cycle Count": 9, "Spill Count": 0, "Fill Count": 0}
+    found, _ = cost._figures(row, ours, Compiled("skl", "a device", "1.2.3", (Kernel(16, nothing, text),)))
+    assert (found["instructions"], found["other_alu"], found["spills"], found["kernel_latency"]) == (2, 2, 3, 40)
+    assert found["simd_width"] == 16
+    for column in ("issue_slots", "full_rate", "quarter_rate", "vgprs", "sgprs", "code_bytes", "kernel_vgprs"):
+        assert found[column] is None, column
+
+
+def test_vendors_stand_for_their_families():
+    assert chosen_families("intel") == ["hsw", "bdw", "skl", "tgl", "adl", "dg2"]
+    assert chosen_families("AMD") == chosen_families("radeon") == list(FAMILIES)[:5]
+    assert chosen_families("radeon,intel,skl") == list(FAMILIES)[:11]
+    assert set(chosen_families("all")) >= set(chosen_families("radeon,intel"))
+    with pytest.raises(UsageError, match=r"unknown family 'icl'.* known: all, polaris10, .*dg2, .*radeon, intel"):
+        chosen_families("icl")
+
+
+def test_a_page_speaks_of_the_first_vendors_last_family():
+    rows = [
+        {"family": name, "stage": "fragment", "instructions": 3} for name in ("navi21", "navi31", "skl", "dg2", "new")
+    ]
+    assert report.usual_family({"cost": rows}) == "navi31"
+    assert report.usual_family({"cost": rows[2:]}) == "dg2"
+    assert report.usual_family({}) == ""
+
+
+# What a process with the null device finds: errno of each try, 0 where it works.
+TRIES = """
+import fcntl, json, os, struct
+def tried(what):
+    try:
+        what()
+    except OSError as error:
+        return error.errno
+    return 0
+capability = 0xC010640C
+zero, null, pipe = os.open("/dev/zero", os.O_RDWR), os.open("/dev/null", os.O_RDWR), os.pipe()[0]
+print(json.dumps([
+    tried(lambda: fcntl.ioctl(zero, capability, bytes(16))),
+    tried(lambda: fcntl.ioctl(null, capability, bytes(16))),
+    tried(lambda: os.open("/dev/dri/renderD128", os.O_RDWR)),
+    tried(lambda: os.open("/dev/dri/card0", os.O_RDWR)),
+    tried(lambda: fcntl.ioctl(pipe, 0x541B, bytes(4))),
+]))
+"""
+NO_DEVICE = 19  # ENODEV
+
+
+def tried(**told: str) -> list[int]:
+    done = subprocess.run([sys.executable, "-c", TRIES], capture_output=True, text=True, env=os.environ | told)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.usefixtures("intel", "own_cache")
+def test_the_null_device_answers_for_itself_alone():
+    """DRM requests on other files and the opening of real devices are refused; other requests pass."""
+    told = null_device.variables(FAMILIES["skl"].null_device)
+    assert tried(**told) == [0, NO_DEVICE, NO_DEVICE, NO_DEVICE, 0]
+    assert tried(LD_PRELOAD=told["LD_PRELOAD"]) == [NO_DEVICE] * 4 + [0]
+
+
+@pytest.mark.usefixtures("intel")
+def test_the_null_device_is_built_once_and_again_where_it_is_damaged(own_cache, monkeypatch):
+    path = null_device.library()
+    made = path.stat().st_mtime_ns
+    assert path.parent == own_cache / "normalbench" and null_device.library().stat().st_mtime_ns == made
+    whole = path.read_bytes()
+    path.write_bytes(whole[:100])
+    assert null_device.library().read_bytes() == whole
+    monkeypatch.setattr(null_device, "SOURCE", own_cache / "null_i915.c")
+    (own_cache / "null_i915.c").write_text("int nothing;\n")
+    assert null_device.library().name[:26] != path.name[:26]
+    assert not [file for file in path.parent.iterdir() if file.suffix != ".so"]
+
+
+def without_cc(monkeypatch, _):
+    monkeypatch.setattr(null_device, "COMPILER", "no-such-cc")
+
+
+def with_a_broken_cc(monkeypatch, folder):
+    (folder / "cc").write_text("#!/bin/sh\necho 'stdio.h: no such file' >&2\nexit 1\n")
+    (folder / "cc").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+
+
+@pytest.mark.usefixtures("intel", "own_cache")
+@pytest.mark.parametrize(
+    "take, status, said",
+    [(without_cc, 3, "apt-get install gcc"), (with_a_broken_cc, 0, "stdio.h: no such file; the headers of libc")],
+)
+def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
+    take(monkeypatch, tmp_path)
+    found, out, err = run(*EVERY, "--family", "navi21,skl")
+    rows = json.loads(out)
+    assert (found, err.count("\n")) == (status, 1) and said in err, err
+    (lost,) = [row for row in rows if row["skipped"]]
+    assert lost["family"] == "skl" and said in lost["skipped"] and lost["instructions"] is None
+    counted = [row for row in rows if row["family"] == "navi21"]
+    assert len(counted) == 6 and all(row["instructions"] > 0 for row in counted)
+
+
+@pytest.mark.usefixtures("intel", "own_cache")
+def test_doctor_says_what_intels_counts_lack(monkeypatch):
+    require_intel()
+    monkeypatch.setattr(null_device, "COMPILER", "no-such-cc")
+    null_device.library().unlink()
+    with pytest.raises(MissingError, match="apt-get install gcc"):
+        require_intel()
+
+
+def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    with pytest.raises(null_device.NullDeviceError, match="XDG_CACHE_HOME names another one") as error:
+        null_device.library()
+    assert not error.value.is_missing
+
+
+# To encode octahedral, by hand; Tiger Lake's wait is one more (Mesa 22.3.6).
+OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
+
+
+@every_or_some("bench/shaders/cost/test_intel.py::test_known_counts_of_intels_compilers")
+@pytest.mark.slow
+def test_known_counts_of_intels_compilers(vendor_rows, is_every):
+    rows = vendor_rows(INTEL, is_every)
+    assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}
+    if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:
+        pytest.skip("counts hold for one Mesa")
+    for name in INTEL.families(is_every):
+        asked = (name, "fragment", "encode")
+        chosen = [row for row in rows if (row["family"], row["stage"], row["operation"]) == asked]
+        found = {row["encoding"]: row["instructions"] for row in chosen}
+        assert found["octahedral"] == OCTAHEDRAL[name], name
+        order = [found[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
+        assert order == sorted(set(order)), name
+
+
+@pytest.mark.slow
+def test_no_kernel_of_intels_spills(vendor_rows):
+    assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
+
+
+def test_every_family_has_a_title_and_a_driver():
+    for name, family in FAMILIES.items():
+        assert family.library in families.TITLES and family.title and family.names, name
+        assert (family.vendor in ("radeon", "nvidia")) == (not family.null_device), name

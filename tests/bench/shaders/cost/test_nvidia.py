@@ -1,0 +1,393 @@
+"""Instructions by NVIDIA's compiler of CUDA: what listings hold, what is compiled, and what a machine may lack."""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from vendors import NVIDIA, every_or_some
+
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.results.machine import require_nvidia
+from normalbench.bench.shaders.isa import isa
+from normalbench.bench.shaders.isa.compiler import DriverError
+from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, tools
+from normalbench.bench.shaders.isa.nvidia.child import statistics
+from normalbench.bench.shaders.isa.nvidia.cubin import Kernel
+from normalbench.bench.suite import report
+from normalbench.bench.tables.cost.work import chosen_families
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.vec import Vec2, Vec3
+from normalbench.gbuffer.defines import kernels
+from normalbench.gbuffer.defines.packings import PACKINGS
+from normalbench.gbuffer.gl.shader import ShaderError
+
+LISTINGS = Path(__file__).with_name("nvidia_listings")
+# By hand, line by line, of listings that NVRTC 12.9.86 and nvdisasm 13.5.37 wrote.
+COUNTED = {
+    "sm_75-spheremap-encode": {"other_alu": 15, "transcendental": 2, "memory": 14, "control_flow": 3},
+    "sm_86-xy-decode": {"other_alu": 11, "transcendental": 1, "memory": 14, "control_flow": 3},
+    "sm_90-rgba8-depth-8-8-pack": {"other_alu": 13, "conversion": 3, "memory": 15, "control_flow": 3},
+    "sm_120-spherical_lut-decode": {"other_alu": 12, "conversion": 2, "scalar": 1, "memory": 18, "control_flow": 3},
+}
+EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]
+# What the figures below hold for.
+VERSIONS = "NVRTC 12.9.86 (CUDA's compiler, not the graphics driver's), nvdisasm 13.5.37"
+
+
+def line(code: str, place: int = 0, control: int = 0x000FE40000000F00) -> str:
+    """An instruction as nvdisasm prints it."""
+    return f"        /*{place:04x}*/   {code} ;   /* 0x0000000000000000 */\n    /* {control:#018x} */\n"
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_the_kinds_of_a_recorded_listing_are_those_counted_by_hand(name):
+    counts = dict.fromkeys(sass.KINDS, 0) | COUNTED[name]
+    assembly = (LISTINGS / f"{name}.asm").read_text()
+    assert sass.kinds(assembly, sum(counts.values())) == counts
+
+
+def test_every_recorded_listing_is_counted():
+    assert {path.stem for path in LISTINGS.iterdir()} == set(COUNTED)
+
+
+@pytest.mark.parametrize(
+    "code, kind",
+    [
+        ("@!P0 FADD.FTZ R17, -R17, -RZ", "other_alu"),
+        ("HFMA2 R13, -RZ, RZ, 1.75, 0", "other_alu"),
+        ("S2R R2, SR_TID.X", "other_alu"),
+        ("FRND.FTZ.FLOOR R4, R4", "conversion"),
+        ("I2FP.F32.S32 R4, R5", "conversion"),
+        ("MUFU.RSQ R4, R4", "transcendental"),
+        ("R2UR UR4, R2", "scalar"),
+        ("@UP0 UMOV UR5, URZ", "scalar"),
+        ("LDCU.64 UR6, c[0x0][0x358]", "memory"),
+        ("TLD.LZ RZ, R12, R12, UR4, 2D, 0x3", "memory"),
+        ("BSSY.RECONVERGENT B0, 0x210", "control_flow"),
+        ("BAR.SYNC.DEFER_BLOCKING 0x0", "waiting"),
+    ],
+)
+def test_an_instruction_has_its_kind(code, kind):
+    assert sass.kinds(line(code), 1) == dict.fromkeys(sass.KINDS, 0) | {kind: 1}
+
+
+def test_a_listing_that_is_not_understood_has_no_kinds():
+    """Of an unknown instruction, of doubles, and of another number of instructions than there are."""
+    text = line("FADD R1, R2, R3")
+    assert sass.kinds(text, 1) and not sass.kinds(text, 2)
+    assert sass.kinds(text + line("FROB R1, R2"), 2) is None and sass.kinds(line("DADD R2, R2, R4"), 1) is None
+
+
+def test_padding_behind_the_end_is_no_instruction():
+    text = line("NOP") + line("EXIT", 16) + line("BRA 0x20", 32) + line("NOP", 48) + line("NOP", 64)
+    assert sass.names(text) == ["NOP", "EXIT", "BRA"]
+
+
+def test_loops_and_branches_are_told():
+    """A jump ahead under a condition, one without, one back, and the last one, to itself."""
+    code = ["@P0 BRA 0x20", "BRA 0x30", "@!P1 BRA 0x10", "BRA P2, 0x40", "BRA 0x40"]
+    assert sass.jumps("".join(line(text, 16 * at) for at, text in enumerate(code))) == (2, 1)
+
+
+def test_stalls_are_read_from_the_second_word():
+    """The 4 bits from bit 105 of an instruction's 128 on: 2, 13 and 4 cycles of the words 0x000fe4..., 0x010fda... and
+    0x004fc8..., whose upper halves shifted by 9 are 0x7f2, 0x87ed and 0x27e4."""
+    words = (0x000FE400078E00FF, 0x010FDA0003F05270, 0x004FC800078E9607)
+    assert [sass.stall_cycles(line("MOV R1, R2", 0, word)) for word in words] == [2, 13, 4]
+    assert sass.stall_cycles(line("MOV R1, R2", 0, 0)) is None
+
+
+def test_a_sum_waits_for_the_product_it_needs():
+    """In the recorded decoder of sm_86: 4 cycles from FMUL R4 to FFMA, which reads it, the latency that microbenchmarks
+    find on Volta and later (Jia et al., 2018); 13 from a compare to the jump under its predicate."""
+    found = sass.instructions((LISTINGS / "sm_86-xy-decode.asm").read_text())
+    names = [one.name for one in found]
+    stalls = [one.control >> 41 & 15 for one in found]
+    first, second = names.index("FMUL"), names.index("FFMA")
+    assert sum(stalls[first:second]) == 4 and stalls[names.index("ISETP")] == 13
+    assert sum(stalls) == sass.stall_cycles((LISTINGS / "sm_86-xy-decode.asm").read_text()) == 92
+
+
+def test_listings_of_several_kernels_are_parted_and_begin_at_0():
+    """A jump names a place in its own kernel."""
+    lines = "".join(
+        line(code, 16 * at) for at, code in enumerate(["MOV R1, R2", "BRA 0x10", "@P0 BRA 0x40", "NOP", "EXIT"])
+    )
+    first, second = listing._parted(["\t.headerflags", *lines.splitlines()], [32, 48])
+    assert sass.names(first) == ["MOV", "BRA"] and sass.jumps(first) == (0, 0)
+    assert sass.names(second) == ["BRA", "NOP", "EXIT"] and sass.jumps(second) == (1, 0)
+    assert sass.every(second)[0].operands == "0x20"
+    with pytest.raises(DriverError, match="did not list all"):
+        listing._parted(lines.splitlines(), [32, 64])
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x7fELF\x01" + bytes(100), b"\x7fELF\x02" + bytes(10), b"\x7fELF\x02" + b"\xff" * 100]
+)
+def test_what_is_no_elf_file_is_one_line(data):
+    with pytest.raises(DriverError, match=r"not an ELF file|holds 0 functions"):
+        cubin.kernel_of(data)
+
+
+def test_figures_are_of_the_code_without_padding():
+    text = line("MOV R1, R2") + line("EXIT", 16) + line("NOP", 32)
+    found = statistics(Kernel(bytes(48), 16, 0), text)
+    assert found == {
+        "Instructions": 2,
+        "Registers": 16,
+        "Code size": 32,
+        "Stall cycles": 4,
+        "Spill Count": 0,
+        "Fill Count": 0,
+    }
+    assert "Spill Count" not in statistics(Kernel(bytes(48), None, 8), text)
+
+
+def test_vendors_stand_for_their_families():
+    assert chosen_families("nvidia") == ["sm_75", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"]
+    assert chosen_families("Turing,SM 86,Blackwell") == ["sm_75", "sm_86", "sm_120"]
+    assert CHOICES["nvidia"] == tuple(name for name in FAMILIES if name.startswith("sm_"))
+
+
+def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatch):
+    """NVIDIA's by name or by vendor are asked for wherever."""
+    monkeypatch.setattr(tools, "missing", lambda: "nothing is installed")
+    assert not set(chosen_families("all")) & set(CHOICES["nvidia"])
+    assert set(chosen_families("all,sm_86")) >= {"navi31", "sm_86"}
+    monkeypatch.setattr(tools, "missing", lambda: "")
+    assert {*CHOICES["radeon"], *CHOICES["nvidia"]} <= set(chosen_families("all"))
+    monkeypatch.setattr(isa, "missing", lambda _: "")
+    assert chosen_families("all") == list(FAMILIES)
+
+
+def test_a_page_speaks_of_the_family_that_has_fragment_shaders():
+    """And draws both."""
+    stages = {"sm_120": "compute", "navi31": "fragment"}
+    rows = [{"family": name, "stage": stage, "instructions": 3} for name, stage in stages.items()]
+    assert report.usual_family({"cost": rows}) == "navi31"
+    assert [row["family"] for row in report._counted({"cost": rows})] == [*stages]
+
+
+def taken(folder: Path) -> list[str]:
+    """What of a folder of CUDA's is found."""
+    return [path.relative_to(folder).as_posix() for path in (tools.library(), tools.disassembler()) if path]
+
+
+def test_an_installed_cuda_is_found_by_its_variable(monkeypatch, tmp_path):
+    monkeypatch.setattr(tools, "find_spec", lambda _: None)
+    monkeypatch.setenv("CUDA_HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", "")
+    assert taken(tmp_path) == [] and tools.missing() == tools.NO_COMPILER
+    (tmp_path / "lib64").mkdir()
+    for name in ("libnvrtc-builtins.so.12.9", "libnvrtc.alt.so.12", "libnvrtc.so.12.9.86", "libnvrtc.so.12"):
+        (tmp_path / "lib64" / name).write_text("")
+    assert taken(tmp_path) == ["lib64/libnvrtc.so.12"] and tools.missing() == tools.NO_DISASSEMBLER
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "nvdisasm").write_text("")
+    (tmp_path / "bin" / "nvdisasm").chmod(0o755)
+    assert taken(tmp_path) == ["lib64/libnvrtc.so.12", "bin/nvdisasm"] and not tools.missing()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatch):
+    monkeypatch.setattr(tools, "library", lambda: None)
+    status, out, err = run(*EVERY, "--family", "navi21,sm_86")
+    (lost,) = [row for row in json.loads(out) if row["skipped"]]
+    assert status == 3 and err.count("\n") == 1 and "pip install 'normalbench[nvidia]'" in err
+    assert lost["family"] == "sm_86" and "normalbench[nvidia]" in lost["skipped"]
+    assert sum(row["family"] == "navi21" for row in json.loads(out)) == 12
+    with pytest.raises(MissingError, match=r"normalbench\[nvidia\]"):
+        require_nvidia()
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
+    """CUDA has none; other vendors' rows are there."""
+    monkeypatch.setattr(tools, "missing", lambda: "")
+    status, out, _ = run(*EVERY, "--family", "navi21,sm_86", "--stage", "fragment")
+    (lost,) = [row for row in json.loads(out) if row["skipped"]]
+    assert status == 0 and lost["family"] == "sm_86" and "ask for --stage compute" in lost["skipped"]
+    assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6
+
+
+def test_glsl_that_cannot_be_translated_is_named_with_its_place(tmp_path):
+    file = tmp_path / "mine.glsl"
+    file.write_text(
+        "// Mine.\nMADE kernel_operation(GIVEN given, BESIDE beside) {\n    return given.yx * frob(beside);\n}\n"
+    )
+    operation = kernels.Operation("kernel_empty.glsl", 2, 3, 2, own_names={})
+    with pytest.raises(ShaderError, match=rf"{re.escape(str(file))}:3: frob is not a function.*CUDA"):
+        source.functions_of(_Operation(operation, file))
+
+
+class _Operation:
+    """An operation of a file that is not one of the program's."""
+
+    def __init__(self, operation, file):
+        self.defines, self._file, self._operation = operation.defines, file, operation
+
+    def source(self, shader):
+        from normalbench.gbuffer.gl.shader import Source
+
+        return Source(shader, self.defines, {"OPERATION": self._file})
+
+
+# The machine's own C++ in place of CUDA's: what glsl.cuh takes from CUDA, less what is written in machine code.
+HOST = """
+#include <cmath>
+#include <cstring>
+#define __forceinline__ inline
+#define __constant__ static
+static inline float rsqrtf(float x) { return 1.0f / sqrtf(x); }
+static inline int __float_as_int(float x) { int y; memcpy(&y, &x, 4); return y; }
+static inline unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
+static inline float __int_as_float(int x) { float y; memcpy(&y, &x, 4); return y; }
+static inline float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
+static inline int min(int a, int b) { return a < b ? a : b; }
+static inline int max(int a, int b) { return a > b ? a : b; }
+static inline unsigned umin(unsigned a, unsigned b) { return a < b ? a : b; }
+static inline unsigned umax(unsigned a, unsigned b) { return a > b ? a : b; }
+"""
+CALL = """
+extern "C" void call_{at}(const float *given, const float *beside, float *made, int count) {{
+    for (int i = 0; i < count; ++i) {{
+        glsl::vec{given} g;
+        glsl::vec{beside} b;
+        for (int k = 0; k < {given}; ++k) g[k] = given[i * {given} + k];
+        for (int k = 0; k < {beside}; ++k) b[k] = beside[i * {beside} + k];
+        auto m = glsl::own_{at}::kernel_operation(g, b);
+        for (int k = 0; k < {made}; ++k) made[i * {made} + k] = m[k];
+    }}
+}}
+"""
+# Encodings that read no texture, which the machine's C++ has none of.
+PLAIN = [encoding for encoding in ENCODINGS.values() if not encoding.tables()]
+PACKED = ("rgba8", "12:12", "16:16", "11:10:11", "11:11", "rgba8_snorm")
+
+
+@pytest.fixture(scope="module")
+def called(shared):
+    """Every operation's CUDA as the machine's own C++ compiles it: (operation, given, beside) to what is made."""
+    import ctypes
+
+    operations = [kernels.encode(e) for e in PLAIN] + [kernels.decode(e) for e in PLAIN]
+    operations += [made for name in PACKED for p in PACKINGS[name] for made in (p.pack(), p.unpack())]
+    language = source.LANGUAGE.read_text().replace('asm("abs.f32 %0, %1;" : "=f"(made) : "f"(x));', "made = fabsf(x);")
+    text = HOST + re.sub(r"    asm\(.*?\);\n", "", language, flags=re.S)
+    for at, operation in enumerate(operations):
+        text += f"namespace own_{at} {{\n{source.functions_of(operation)}}}\n"
+    text += "}\n"
+    sizes = [{"at": at, "given": o.given, "beside": o.beside, "made": o.made} for at, o in enumerate(operations)]
+    text += "".join(CALL.format(**size) for size in sizes)
+    command = ["c++", "-std=c++17", "-O1", "-w", "-ffp-contract=off", "-shared", "-fPIC", "-o", "all.so", "all.cpp"]
+    with shared("cuda") as folder:
+        if not (folder / "all.so").exists():
+            (folder / "all.cpp").write_text(text)
+            try:
+                done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+            except FileNotFoundError:
+                pytest.skip("no C++ compiler: c++ is not on the path")
+            assert done.returncode == 0, done.stderr[:2000]
+    library = ctypes.CDLL(str(folder / "all.so"))
+
+    def call(at: int, given: np.ndarray, beside: np.ndarray) -> np.ndarray:
+        made = np.zeros((len(given), sizes[at]["made"]), np.float32)
+        kept = [np.ascontiguousarray(a, np.float32) for a in (given, beside)]
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in kept]
+        getattr(library, f"call_{at}")(*pointers, made.ctypes.data_as(ctypes.c_void_p), len(given))
+        return made
+
+    return call
+
+
+def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Unit normals in front, the axes among them, and places before the camera."""
+    random = np.random.default_rng(7)
+    n = random.normal(size=(count, 3))
+    n[:5] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0]]
+    n[:, 2] = np.abs(n[:, 2])
+    view = random.uniform((-1, -1, -4), (1, 1, -2), (count, 3))
+    return (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32), view.astype(np.float32)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("at", range(len(PLAIN)), ids=[encoding.name for encoding in PLAIN])
+def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
+    """As Python's twin has it: codes of normals to 2^-19, and the normals of these codes."""
+    encoding, (n, view) = PLAIN[at], normals(2000)
+    codes = called(at, n, view)
+    found = called(len(PLAIN) + at, codes, view)
+    expected = np.stack(encoding.encode(Vec3(*n.T), Vec3(*view.T)), axis=-1)
+    code = (Vec2 if codes.shape[1] == 2 else Vec3)(*codes.T)
+    back = np.stack(encoding.decode(code, Vec3(*view.T)), axis=-1)
+    if not encoding.is_precise:
+        apart = np.abs(codes - expected).max(axis=1)
+        # A code on a seam may be either of two.
+        assert np.mean(apart > 2.0**-19) < 0.005, f"{apart.max()} of {n[apart.argmax()]}"
+    apart = np.abs(found - back).max(axis=1)
+    assert apart.max() < 2.0**-18, f"{apart.max()} of {codes[apart.argmax()]}"
+
+
+@pytest.mark.parametrize("name", PACKED)
+def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
+    """To a step of the channel that has the fewest bits, 8."""
+    first = 2 * len(PLAIN) + 2 * sum(len(PACKINGS[other]) for other in PACKED[: PACKED.index(name)])
+    random = np.random.default_rng(7)
+    for at, packing in enumerate(PACKINGS[name]):
+        size = packing.unpack().made
+        given = random.uniform(-1, 1, (500, size)).astype(np.float32)
+        texels = called(first + 2 * at, given, np.zeros((500, 3)))
+        back = called(first + 2 * at + 1, texels, np.zeros((500, 3)))
+        assert np.abs(back - given).max() < 1 / 127, packing.name
+
+
+@pytest.mark.usefixtures("nvidia", "own_cache")
+def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
+    monkeypatch.setattr(isa, "FAMILIES", FAMILIES | {"sm_120": FAMILIES["sm_90"]})
+    monkeypatch.setattr(isa, "_variables", lambda *_: {isa.ARCHITECTURE: "sm_999"})
+    status, out, _ = run(*EVERY, "--family", "sm_120")
+    row = json.loads(out)[0]
+    assert status == 0 and row["family"] == "sm_120"
+    assert re.match(r"NVRTC [\d.]+ does not compile for sm_999; it knows sm_", row["skipped"])
+
+
+# To encode octahedral: one fewer on Blackwell than before, as on a Radeon.
+OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, "sm_120": 14}
+
+
+@every_or_some("bench/shaders/cost/test_nvidia.py::test_known_counts_of_nvidias_compiler")
+def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
+    """The order of cheap encodings is a Radeon's."""
+    rows = vendor_rows(NVIDIA, is_every)
+    if {row["driver"] for row in rows} != {VERSIONS}:
+        pytest.skip("counts hold for one version")
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    for name in NVIDIA.families(is_every):
+        assert (found["octahedral", "encode", name], found["octahedral", "decode", name]) == (OCTAHEDRAL[name], 17), (
+            name
+        )
+        order = [found[encoding, "encode", name] for encoding in ("xy", "stereographic", "spheremap")]
+        assert order == [0, 8, 10], name
+
+
+@every_or_some("bench/shaders/cost/test_nvidia.py::test_an_instruction_of_nvidias_is_16_bytes_and_none_spills")
+def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every):
+    for row in vendor_rows(NVIDIA, is_every):
+        assert (row["code_bytes"], row["spills"]) == (16 * row["instructions"], 0), row
+        if row["encoding"] == "octahedral":
+            assert (row["transcendental"], row["branches"], row["memory"]) == (1, 0, 0), row
+
+
+def test_the_compiler_is_told_from_the_graphics_driver(nvidia, monkeypatch):  # noqa: ARG001 (asks for the compiler)
+    """By name and version, wherever a row or `doctor` names it; a library that pip did not bring by its own number."""
+    assert re.match(
+        r"NVRTC [\d.]+ \(CUDA's compiler, not the graphics driver's\), nvdisasm [\d.]+$", tools.title("1.2")
+    )
+    monkeypatch.setattr(tools, "_package_version", lambda _: "")
+    assert tools.title("1.2").startswith("NVRTC 1.2 (CUDA's")
+    assert isa.driver_versions()["NVIDIA NVRTC"].startswith("NVRTC ")

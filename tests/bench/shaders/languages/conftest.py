@@ -1,0 +1,34 @@
+"""Compilers of the languages; where CI is set, a machine without them fails the tests that need them."""
+
+import os
+
+import pytest
+
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.shaders.languages.language import require_language
+
+
+def _there(name):
+    try:
+        require_language(name)
+    except MissingError as error:
+        if os.environ.get("CI"):
+            raise
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="session")
+def hlsl():
+    _there("HLSL")
+
+
+@pytest.fixture(scope="session")
+def slang():
+    _there("Slang")
+
+
+@pytest.fixture(params=["hlsl", "slang"])
+def ending(request):
+    """Each language by what its files end in."""
+    request.getfixturevalue(request.param)
+    return request.param

@@ -1,0 +1,93 @@
+"""The encoder and the decoder of a file, by their types and their names."""
+
+import pytest
+
+from normalbench.bench.shaders.languages.pairs import Function, NoPairError, functions, pair_of, role, stem
+
+OF = "{ return 0; }"
+BACK = f"float3 DecodeNormal(float2 e) {OF}"
+
+
+def pair(text: str, asked=None) -> str:
+    return pair_of(functions(text), asked, "mine.hlsl").named
+
+
+@pytest.mark.parametrize(
+    "text, named",
+    [
+        (f"float2 EncodeNormal(float3 n) {OF} {BACK}", "EncodeNormal:DecodeNormal"),
+        (
+            f"half2 EncodeNormal(in half3 n : NORMAL, const float3 view) : SV_Target {OF} {BACK}",
+            "EncodeNormal:DecodeNormal",
+        ),
+        (
+            f"float2 PackNormalOctRectEncode(float3 n) {OF} float3 UnpackNormalOctRectEncode(float2 f) {OF}",
+            "PackNormalOctRectEncode:UnpackNormalOctRectEncode",
+        ),
+        (f"vector<float, 2> f(vector<float,3> n) {OF} float3 g(float2 e, float3 v) {OF}", "f:g"),
+        (f"typedef float3 Normal; float2 oct(Normal n) {OF} Normal ndir(float2 e) {OF}", "oct:ndir"),
+        (
+            f"float3 PackNormal(float3 n) {OF} float3 UnpackNormal(float3 c) {OF} float3 rotate(float3 v) {OF}",
+            "PackNormal:UnpackNormal",
+        ),
+        (f"func enc(n : float3) -> float2 {{ }} func dec(e : float2) -> float3 {OF}", "enc:dec"),
+        (
+            f"float2 EncodeNormal(float3 n) {OF} float2 EncodeNormal(float3 n, float3 v) {OF} {BACK}",
+            "EncodeNormal:DecodeNormal",
+        ),
+        (
+            f"struct S {{ float2 EncodeOther(float3 n) {OF} }}; float2 EncodeNormal(float3 n) {OF} {BACK}",
+            "EncodeNormal:DecodeNormal",
+        ),
+        (
+            f"float2 mine_encode(float3 n) {OF} float3 mine_decode(float2 e) {OF} float2 OctWrap(float2 v) {OF}",
+            "mine_encode:mine_decode",
+        ),
+    ],
+)
+def test_the_pair_of_a_file_is_found(text, named):
+    assert pair(text) == named
+
+
+@pytest.mark.parametrize(
+    "text, asked, said",
+    [
+        ("", None, "no encoder and decoder found; the two functions must be float2 (or float3) ENCODE(float3 n)"),
+        (f"float2 EncodeNormal(float3 n) {OF}", None, "EncodeNormal has no decoder"),
+        (BACK, None, "DecodeNormal has no encoder"),
+        (
+            f"void EncodeNormal(float3 n, out float2 e) {OF} {BACK}",
+            None,
+            "EncodeNormal returns nothing; write a function",
+        ),
+        (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal gives a uint, but a code is two or three numbers"),
+        (
+            "".join(f"float2 Encode{x}(float3 n) {OF} float3 Decode{x}(float2 e) {OF}" for x in "AB"),
+            None,
+            "several encoders; name one: mine.hlsl:EncodeA:DecodeA, mine.hlsl:EncodeB:DecodeB",
+        ),
+        (
+            f"float2 EncodeA(float3 n) {OF} {BACK}",
+            ("EncodeA", "DecodeB"),
+            "no function is named DecodeB; there are: EncodeA, DecodeNormal",
+        ),
+        (f"float3 EncodeA(float3 n) {OF} {BACK}", ("EncodeA", "DecodeNormal"), "EncodeA must take a float3"),
+    ],
+)
+def test_a_file_without_one_pair_says_what_it_has(text, asked, said):
+    with pytest.raises(NoPairError, match=said.replace("(", r"\(").replace(")", r"\)")):
+        pair(text, asked)
+
+
+def test_a_pair_is_told_by_its_name_where_types_cannot():
+    """A code of three numbers has the types of its decoder."""
+    assert [role(name) for name in ("UnpackNormalOctRectEncode", "PackNormalOctRectEncode", "Wrap")] == [
+        "decode",
+        "encode",
+        "",
+    ]
+    assert stem("UnpackNormalOctRectEncode") == stem("PackNormalOctRectEncode") == "normaloctrect"
+
+
+def test_types_are_numbers_of_components():
+    assert functions(f"min16float2 f(float3 n, uint k) {OF}") == [Function("f", 2, (3, 0))]

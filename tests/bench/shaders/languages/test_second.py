@@ -1,0 +1,143 @@
+"""A translation is measured once a second compiler has given the same."""
+
+import re
+
+import numpy as np
+import pytest
+from attack.translations import translated_here
+from everyday import WGSL
+from languages import require_runner
+
+from normalbench.bench.codecs import second_look
+from normalbench.bench.codecs.first_look import first_look
+from normalbench.bench.codecs.user_encodings import read_encoding
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.ground.directions import directions
+from normalbench.bench.ground.output import cache as kept
+from normalbench.bench.shaders.languages import second
+from normalbench.bench.shaders.languages.translated import translated
+from normalbench.bench.shaders.translator.wgsl_parser import WgslParser
+from normalbench.gbuffer.codecs.codec_passes import exact_values
+from normalbench.gbuffer.gl.device import device
+
+pytestmark = pytest.mark.usefixtures("gl")
+
+DECODE = "float3 MineDecode(float2 e) { return normalize(float3(e, 1.0 - abs(e.x) - abs(e.y))); }"
+SUM = "n /= abs(n.x) + abs(n.y) + abs(n.z);"
+# HLSL that glslang reads otherwise than HLSL defines, beside the same written out.
+MISREAD = {
+    "fmod": ("return fmod(n.xy * 1.5, 1.0);", "return n.xy * 1.5 - trunc(n.xy * 1.5);"),
+    "remainder": ("return (n.xy * 1.5) % 1.0;", "return n.xy * 1.5 - trunc(n.xy * 1.5);"),
+    "product of matrices": ("return mul(A * B, n.xy);", "return mul(float2x2(1, 0, 0, 0.5), n.xy);"),
+}
+MATRICES = "static const float2x2 A = { 1, 5, 5, 1 };\nstatic const float2x2 B = { 1, 0, 0, 0.5 };\n"
+
+
+@pytest.fixture(autouse=True)
+def empty_cache(tmp_path, monkeypatch):
+    """What was found before is not what these tests find."""
+    monkeypatch.setattr(kept, "folder", lambda: tmp_path / "cache")
+
+
+def codes(path, by=""):
+    n = np.pad(directions(), ((0, 0), (0, 1)))
+    return exact_values(device(), read_encoding(path, "", by=by), n, n, n)[0][:, :2]
+
+
+def hlsl_of(folder, name, body):
+    path = folder / f"{name}.hlsl"
+    path.write_text(f"{MATRICES}float2 MineEncode(float3 n) {{ {SUM} {body} }}\n{DECODE}\n")
+    return path
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+@pytest.mark.parametrize("name", MISREAD)
+def test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it(name, tmp_path):
+    """A line names the function, the normal and the two codes; the codes are those of the same written out."""
+    misread, plain = (hlsl_of(tmp_path, f"f{at}", body) for at, body in enumerate(MISREAD[name]))
+    found = first_look(misread)
+    assert found["by"] == "Slang"
+    (said,) = found["notes"]
+    assert said.startswith("MineEncode of [") and " by glslang and [" in said and "by slangc; the latter" in said
+    assert "by" not in first_look(plain) and "notes" not in first_look(plain)
+    assert np.allclose(codes(misread, "Slang"), codes(plain), atol=2e-6)
+    assert not np.allclose(codes(misread), codes(plain), atol=0.1)
+
+
+def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
+    """With a fault put into the translator: the remainder of a negative number has the divisor's sign."""
+    require_runner("wgsl")
+    path = tmp_path / "mine.wgsl"
+    path.write_text(WGSL["remainder of floats"])
+    assert "error" not in first_look(path)
+    path.write_text(WGSL["remainder of floats"] + "\n")
+    own = WgslParser._modulus
+    monkeypatch.setattr(WgslParser, "_modulus", lambda self, _, x, y: own(self, "floor", x, y))
+    monkeypatch.setattr("normalbench.bench.shaders.languages.translated._by_child", translated_here)
+    said = first_look(path)["error"]
+    assert "two compilers disagree: mine_encode of [" in said and " by this program and [" in said and "by naga" in said
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_the_second_way_is_gone_once(tmp_path, monkeypatch):
+    """What it found is kept by the text; another text is looked at again."""
+    path, ways = hlsl_of(tmp_path, "mine", "return n.xy;"), []
+    own = second.second_way
+    monkeypatch.setattr(second_look, "second_way", lambda *given: ways.append(given) or own(*given))
+    for count in (1, 1):
+        first_look(path)
+        assert len(ways) == count
+    hlsl_of(tmp_path, "mine", "return n.yx;")
+    first_look(path)
+    assert len(ways) == 2
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_without_a_second_compiler_a_line_says_so(tmp_path, monkeypatch):
+    """It is measured as it was, and asked again the next time."""
+    path, which = hlsl_of(tmp_path, "mine", "return n.xy;"), second.shutil.which
+    with monkeypatch.context() as patched:
+        patched.setattr(second.shutil, "which", lambda name, **given: None if "++" in name else which(name, **given))
+        (said,) = first_look(path)["notes"]
+    assert said.startswith("no second compiler has checked its translation: no compiler of C++")
+    assert "notes" not in first_look(path)
+
+
+def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
+    """-0 and 0, and normals that rounding moves across a seam, are on either side of it; a changed constant is not."""
+    n = directions()
+
+    def folded(given):
+        return np.where(given[:, 2:] < 0, given[:, :2] * 0.5, given[:, :2])
+
+    moved = n.copy()
+    moved[np.abs(n[:, 2]) < 1e-7, 2] *= -1
+    assert second_look._first_apart(folded, n, folded(n), folded(moved), 2.0**-16) is None
+    at = second_look._first_apart(folded, n, folded(n), folded(n) * 1.001, 2.0**-16)
+    assert at is not None and angles_deg(n[at : at + 1], n[at : at + 1])[0] == 0
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path):
+    """slangc refuses the silent truncation of a float3; without fmod a line says that it was not checked."""
+    plain = hlsl_of(tmp_path, "plain", "float2 p = n; return p;")
+    (said,) = first_look(plain)["notes"]
+    assert said.startswith("no second compiler has checked its translation: slangc does not read it"), said
+    said = first_look(hlsl_of(tmp_path, "misread", "float2 p = n; return fmod(p, 0.7);"))["error"]
+    assert "it uses fmod, which glslang reads otherwise than HLSL defines it" in said and "slangc does not" in said
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_hlsl_that_glslang_does_not_read_is_read_by_slangc(tmp_path):
+    """select() of HLSL 2021, as Unreal has it."""
+    path = hlsl_of(tmp_path, "mine", "return select(n.z >= 0.0, n.xy, n.yx);")
+    assert "error" not in first_look(path)
+    assert "it is read by Slang's compiler" in " ".join(translated(path).notes)
+    wrong = hlsl_of(tmp_path, "wrong", "return select(nothing, n.xy, n.yx);")
+    assert re.search(r"wrong\.hlsl:3:\d+: nothing", first_look(wrong)["error"])
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
+    said = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
+    assert said.endswith("it divides a whole number by 0, of some normal; its language does not define that")

@@ -1,0 +1,94 @@
+"""A file with what it includes: from its own folder, and each line with the place that it was written."""
+
+import contextlib
+import time
+
+import pytest
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages.source import Source, without_comments
+
+
+def written(folder, text, name="mine.hlsl"):
+    (folder / name).write_text(text)
+    return folder / name
+
+
+def test_lines_keep_their_file_and_number(tmp_path):
+    written(tmp_path, "one\ntwo", "part.hlsli")
+    path = written(tmp_path, '/* a\ncomment */ first\n#include "part.hlsli"\nlast')
+    source = Source(path)
+    assert source.text.split() == ["first", "one", "two", "last"]
+    assert [(line.path.name, line.number) for line in source.lines if line.text.strip()] == [
+        ("mine.hlsl", 2),
+        ("part.hlsli", 1),
+        ("part.hlsli", 2),
+        ("mine.hlsl", 4),
+    ]
+    # "last" stands once in its line, so its column is known.
+    assert source.explained(5, "wrong", "last") == f"{path}:4:1: wrong"
+    assert source.explained(99, "wrong") == f"{path}:4: at the end of the file: wrong"
+
+
+def test_a_file_is_included_once(tmp_path):
+    written(tmp_path, '#include "mine.hlsl"\npart', "part.hlsli")
+    assert Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split() == [
+        "part",
+        "mine",
+    ]
+
+
+@pytest.mark.parametrize(
+    "name, why",
+    [
+        ("/etc/hostname", "lies outside the folder of mine.hlsl"),
+        ("../outside.hlsli", "lies outside the folder of mine.hlsl"),
+        ("link.hlsli", "lies outside the folder of mine.hlsl"),
+        ("Packages/Common.hlsl", "is not next to mine.hlsl"),
+    ],
+)
+def test_what_lies_elsewhere_is_not_read(tmp_path, name, why):
+    """It becomes an #error, which does no harm in a branch that is left out."""
+    written(tmp_path, "secret", "outside.hlsli")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "link.hlsli").symlink_to(tmp_path / "outside.hlsli")
+    source = Source(written(folder, f'\n#include "{name}"'))
+    assert source.text == "\n#error not read\n" and "secret" not in source.text
+    assert source.explained(2, "#error :").startswith(f"{folder / 'mine.hlsl'}:2: {name} {why}")
+
+
+@pytest.mark.parametrize(
+    "text", ['#inc\\\nlude "part.hlsli"', "#define FILE <part.hlsli>\n#include FILE", '#/**/include "a" "b"']
+)
+def test_an_include_in_disguise_is_refused(tmp_path, text):
+    with pytest.raises(UsageError, match="in one line"):
+        Source(written(tmp_path, text))
+
+
+def test_comments_leave_every_column_where_it_is():
+    text = 'a /* b\nc */ d // e\n"// f" g'
+    bare = without_comments(text)
+    assert len(bare) == len(text) and bare == 'a     \n     d     \n"// f" g'
+
+
+def test_a_comment_without_an_end_is_named(tmp_path):
+    with pytest.raises(UsageError, match=r"mine\.hlsl:2: a comment that begins with /\* is not closed"):
+        Source(written(tmp_path, "float x;\n/* never"))
+
+
+@pytest.mark.parametrize("text", ["/* " * 10**6, '\\"' * 10**6, '"' * 10**6, "#include" * 10**5, " " * 10**6 + "#"])
+def test_reading_takes_as_long_as_the_text(tmp_path, text):
+    """No text makes it look at a letter again and again; it is read before anything limits it."""
+    path = written(tmp_path, text)
+    began = time.process_time()
+    with contextlib.suppress(UsageError):
+        Source(path)
+    assert time.process_time() - began < 2, f"{time.process_time() - began:.1f} s"
+
+
+def test_includes_are_nested_no_deeper_than_can_be_read(tmp_path):
+    for at in range(2000):
+        written(tmp_path, f'#include "{at + 1}.hlsli"', f"{at}.hlsli")
+    with pytest.raises(UsageError, match="nested too deep"):
+        Source(tmp_path / "0.hlsli")

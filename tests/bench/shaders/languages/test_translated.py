@@ -1,0 +1,318 @@
+"""Users' files in HLSL and Slang in every command, and what is wrong with one said in a line that spares the others."""
+
+import itertools
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from normalbench.bench.codecs.doctor.exact import is_unit
+from normalbench.bench.ground.directions import directions
+from normalbench.bench.results.measuring import files_of
+from normalbench.bench.shaders.languages import tools, translated
+from normalbench.bench.shaders.languages.plain import NotPlainError, plain
+from normalbench.bench.tables.quality.table import QualityOptions
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+
+pytestmark = pytest.mark.usefixtures("gl")
+TWIN = """
+from normalbench.encodings.vec import Vec2, Vec3, normalize
+
+
+def encode(n, view):
+    s = abs(n.x) + abs(n.y) + abs(n.z)
+    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
+
+
+def decode(e, view):
+    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
+    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
+"""
+MINE = """
+float2 EncodeNormal(float3 n) {
+    float2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return float2(p.x + p.y, p.x - p.y);
+}
+float3 DecodeNormal(float2 e) {
+    float2 p = float2(e.x + e.y, e.x - e.y) * 0.5;
+    return normalize(float3(p, 1.0 - abs(p.x) - abs(p.y)));
+}
+"""
+BOMB = "#define A0 s += sin(s);\n" + "".join(f"#define A{i + 1} A{i} A{i} A{i} A{i}\n" for i in range(14))
+QUICK = ("--storage", "rg8", "--normals", "hemisphere", "--backend", "glsl", "--count", "4096", "--format", "json")
+
+
+def changed(code: str) -> str:
+    """MINE with another end of its encoder."""
+    return MINE.replace("return float2(p.x + p.y, p.x - p.y);", code)
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    """Files are named without the folder of a test, which is another one in each run: what was translated is kept."""
+    monkeypatch.chdir(tmp_path)
+
+
+def written(folder, text, name) -> str:
+    (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    return name if folder == Path.cwd() else str(folder / name)
+
+
+@pytest.mark.slow
+def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
+    path = written(tmp_path, MINE, f"mine.{ending}")
+    status, out, err = run("quality", "--encoding", f"{path},hemi_octahedral", *QUICK)
+    own, catalogues = (row["angle_mean_deg"] for row in json.loads(out))
+    assert status == 0 and own == pytest.approx(catalogues, rel=1e-3) and err.count("\n") == 1, err
+    render = ("--size", "64x48", "--repeats", "1", "--format", "json")
+    status, out, _ = run("render", "--encoding", path, *render)
+    assert status == 0 and json.loads(out)[0]["encoding"] == f"mine.{ending}"
+    status, out, _ = run("doctor", path, "--format", "json")
+    assert status == 0 and "made for normals with z >= 0 alone" in json.loads(out)[0]["finding"]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("hlsl")
+def test_a_run_and_gates_take_it(run, tmp_path):
+    written(tmp_path, MINE, "mine.hlsl")
+    written(tmp_path, '[[gate]]\nencoding = "mine.hlsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 4096\n'
+            'angle_mean_deg = "at most 0.3"\n', "gates.toml")  # fmt: skip
+    assert run("check", "gates.toml")[0] == 0
+    status, _, err = run("run", "-o", "results", "--tables", "quality", "--encoding", "mine.hlsl", *QUICK[:-2])
+    assert status == 0 and "mine.hlsl" in (tmp_path / "results" / "quality.csv").read_text(), err
+
+
+PLAIN = ("octahedral", "signed_octahedral", "spheremap", "xyz_largest", "cryengine3", "xy_sign")
+# What encodings/vec.glsl has, in HLSL.
+OF_VEC = f"""
+#define TINY {vec.TINY!r}
+float sign_not_zero(float v) {{ return v < 0.0 ? -1.0 : 1.0; }}
+float2 sign_not_zero(float2 v) {{ return float2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0); }}
+float2 unit(float2 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float2(1.0, 0.0); }}
+float3 unit(float3 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float3(1.0, 0.0, 0.0); }}
+"""
+
+
+def in_hlsl(name: str) -> str:
+    """An encoding of the catalogue, word for word."""
+    text = ENCODINGS[name].glsl.read_text().replace(f"{name}_", f"own_{name}_")
+    return OF_VEC + re.sub(r"\bvec([23])", r"float\1", re.sub("#include.*", "", text))
+
+
+@pytest.mark.usefixtures("radv")
+def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
+    """To the instruction, on two generations of GPUs."""
+    # Slang is given HLSL's text, and takes a second for each.
+    names = PLAIN if ending == "hlsl" else PLAIN[:2]
+    files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in names]
+    row = ("--isa", "--stage", "fragment", "--family", "polaris10,navi21", "--storage", "rg8", "--format", "json")
+    _, out, _ = run("cost", "--encoding", ",".join([*files, *names]), *row)
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
+    for name, operation, family in itertools.product(names, ("encode", "decode"), ("polaris10", "navi21")):
+        own, glsl = (found[each, operation, family] for each in (f"own_{name}", name))
+        assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
+
+
+def test_functions_are_named_where_a_file_has_several(run, tmp_path, ending):
+    path = written(tmp_path, MINE + MINE.replace("Normal(", "Vector("), f"mine.{ending}")
+    status, _, err = run("quality", "--encoding", path, *QUICK)
+    assert status == 2 and f"name one: mine.{ending}:EncodeNormal:DecodeNormal, mine.{ending}:EncodeVector:" in err
+    both = f"{path}:EncodeNormal:DecodeNormal,{path}:EncodeVector:DecodeVector"
+    status, out, _ = run("quality", "--encoding", both, *QUICK)
+    assert [row["encoding"] for row in json.loads(out)] == [
+        f"mine.{ending}:{name}" for name in ("EncodeNormal", "EncodeVector")
+    ]
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_names_of_glsl_name_the_encoding(run, tmp_path):
+    path = written(
+        tmp_path, MINE.replace("EncodeNormal", "diamond_encode").replace("DecodeNormal", "diamond_decode"), "x.hlsl"
+    )
+    _, out, _ = run("quality", "--encoding", path, *QUICK)
+    assert json.loads(out)[0]["encoding"] == "diamond"
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
+    """What engines return is what an unsigned storage holds; a column says so in rows, and doctor in a line."""
+    text = changed("return float2(p.x + p.y, p.x - p.y) * 0.5 + 0.5;").replace(
+        "float2 p = float2(e", "e = e * 2.0 - 1.0; float2 p = float2(e"
+    )
+    one, other = written(tmp_path, MINE, "signed.hlsl"), written(tmp_path, text, "unsigned.hlsl")
+    _, out, err = run("quality", "--encoding", f"{one},{other}", *QUICK)
+    rows = json.loads(out)
+    first, second = (row["angle_mean_deg"] for row in rows)
+    assert first == pytest.approx(second, rel=1e-6)
+    assert [row["code_range"] for row in rows] == [None, "[0, 1]"] and "[0, 1]" not in err
+    _, out, _ = run("doctor", other, "--format", "json")
+    assert "its codes are in [0, 1]; every storage holds them as they are" in out
+
+
+def test_the_way_to_a_signed_number_and_back_moves_no_integer():
+    """docs/bring-your-own.md: at most 2^-26, which is less than half a step of any storage by far."""
+    half, one = np.float32(0.5), np.float32(1)
+    c = np.concatenate(
+        [np.arange(2**bits) / (2**bits - 1) for bits in (5, 8, 10, 11, 12, 16)] + [np.linspace(0, 1, 10**6)]
+    )
+    c = c.astype(np.float32)
+    back = (c * 2 - one) * half + half
+    assert back.dtype == np.float32 and np.abs(back - c.astype(np.float64)).max() <= 2**-26
+    for bits in (5, 8, 10, 11, 12, 16):
+        whole = np.arange(2**bits)
+        at = np.float32(whole / (2**bits - 1))
+        assert np.array_equal(np.rint(((at * 2 - one) * half + half) * np.float32(2**bits - 1)), whole)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("hlsl")
+def test_a_test_of_the_users_names_it(pytester):
+    """It is looked for next to the test, with the names of its functions or without."""
+    written(pytester.path, MINE, "mine.hlsl")
+    pytester.makepyfile(
+        """
+        def test_mine(normalbench):
+            for name in ("mine.hlsl", "mine.hlsl:EncodeNormal:DecodeNormal"):
+                row = normalbench.quality(encoding=name, storage="rg8", normals="hemisphere", count=4096)
+                row.assert_that(angle_mean_deg="at most 0.3")
+        """
+    )
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
+
+
+def test_codes_in_0_to_1_are_told_from_others():
+    n = directions()
+    assert is_unit(n * 0.5 + 0.5) and is_unit((n[:, :2] * 0.5 + 0.5) * 1.0000001)
+    assert not is_unit(n) and not is_unit(n * 0.25 + 0.5) and not is_unit(n[:, :1] * 0)
+    assert not is_unit(abs(n) * [1, 1, 1] - [0, 0, 0.2])
+
+
+ENDLESS = "float s = n.x; while (s < 2.0) s *= 0.5; return n.xy * s;"
+READS = "Texture2D<float4> T; SamplerState S;\n" + changed("return T.SampleLevel(S, n.xy, 0).xy;")
+# What is wrong, and what its line says.
+WRONG = {
+    "undeclared": (changed("\n return n.xy * strange;"), r":5:16: (strange: unknown variable|undefined.*'strange')"),
+    "cut": (MINE[:-3], "expected|at the end of the file"),
+    "stops": ("#error stop here\n" + MINE, "stop here"),
+    "missing": ('#include "gone.hlsli"\n' + MINE, ":1: gone.hlsli is not next to missing"),
+    "elsewhere": ('#include "/etc/hostname"\n' + MINE, "lies outside the folder of elsewhere"),
+    "empty": ("", "no encoder and decoder found"),
+    "half": (MINE.split("float3 Dec")[0], "EncodeNormal has no decoder"),
+    "binary": (bytes(range(256)) * 40, "not text in UTF-8"),
+    "nan": (changed("return sqrt(n.xy - 2.0);"), "no number"),
+    "endless": (changed(ENDLESS), "do not end here"),
+    "recurses": (changed("return EncodeNormal(n.yzx);"), "[Rr]ecursion"),
+    "reads": (READS, "read a texture or a constant buffer"),
+    "bomb": (BOMB + changed("float s = n.x; A14 return n.xy * s;"), "too much for it|did not end|killed"),
+    "deep": (changed(f"return {'(' * 30000}p{')' * 30000};"), "too much for it|did not end|killed"),
+}
+
+
+@pytest.mark.slow
+def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, ending):
+    """One line names the user's file, and the others' rows are measured."""
+    text = {name: text for name, (text, _) in WRONG.items()}
+    text |= {"large": "// " + "x" * 10_000_000 + "\n" + MINE, "good": MINE}
+    files = [str(tmp_path / written(tmp_path, each, f"{name}.{ending}")) for name, each in text.items()]
+    status, out, err = run("quality", "--encoding", ",".join([*files, "hemi_octahedral"]), *QUICK)
+    measured = {row["encoding"] for row in json.loads(out)}
+    assert status == 0 and measured == {f"large.{ending}", f"good.{ending}", "hemi_octahedral"}
+    said = [line for line in err.splitlines() if "left out: " in line]
+    assert len(said) == len(WRONG) and "Traceback" not in err
+    for name, (_, why) in WRONG.items():
+        (line,) = [line for line in said if f"/{name}.{ending}" in line.split(": ")[2]]
+        assert re.search(why, line), line
+
+
+def test_a_wrong_file_alone_is_one_line(run, tmp_path, ending):
+    path = written(tmp_path, changed("\n return n.xy * strange;"), f"mine.{ending}")
+    status, out, err = run("quality", "--encoding", path, *QUICK)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and f"{path}:5:16: " in err, err
+
+
+def test_a_missing_compiler_is_said_with_what_to_install(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(tools, "path_of", lambda tool: (_ for _ in ()).throw(tools.MissingError(tools.MISSING[tool])))
+    for ending, said in (("hlsl", "apt-get install glslang-tools"), ("slang", "pip install --no-deps slangtorch")):
+        status, out, err = run("quality", "--encoding", written(tmp_path, MINE, f"mine.{ending}"), *QUICK)
+        assert (status, out) == (3, "") and err.count("\n") == 1 and said in err, err
+    assert run("quality", "--encoding", f"{tmp_path / 'mine.hlsl'},xy", *QUICK)[0] == 0
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / written(tmp_path, "a file", "cache")))
+    status, out, _ = run("quality", "--encoding", written(tmp_path, MINE, "mine.hlsl"), *QUICK)
+    assert status == 0 and json.loads(out)[0]["angle_mean_deg"]
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_damaged_translation_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    made = translated.translated(written(tmp_path, MINE, "mine.hlsl")).glsl(False)
+    text = made.read_text()
+    made.write_text("damaged")
+    assert translated.translated(tmp_path / "mine.hlsl").glsl(False).read_text() == text
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_twin_next_to_it_is_measured_by_jax(run, tmp_path):
+    path = written(tmp_path, MINE, "mine.hlsl")
+    written(tmp_path, TWIN, "mine.py")
+    _, out, _ = run("quality", "--encoding", path, *QUICK[:4], *QUICK[6:])
+    by_jax, by_gl = (row["angle_mean_deg"] for row in json.loads(out))
+    assert by_jax == pytest.approx(by_gl, rel=1e-3)
+
+
+def test_rows_kept_from_before_know_what_a_file_includes(tmp_path):
+    """An interrupted command measures anew where an include or the twin is another."""
+    path, seen = written(tmp_path, '#include "part.hlsli"\n' + MINE, "mine.hlsl"), set()
+    for name, text in (
+        ("part.hlsli", "// one"),
+        ("part.hlsli", "// two"),
+        ("mine.py", "one = 1"),
+        ("mine.py", "two = 2"),
+    ):
+        written(tmp_path, text, name)
+        seen.add(files_of(QualityOptions(encoding=f"{path}:EncodeNormal:DecodeNormal"))["files"].popitem()[1])
+    assert len(seen) == 4
+
+
+def test_a_shader_becomes_functions_of_other_names():
+    shader = "#version 430\nlayout(location = 0) in vec3 _8;\nlayout(location = 0) out vec2 _9;\n"
+    shader += "void main()\n{\n    _9 = _8.xy;\n}\n"
+    made = "vec2 p_main(vec3 p_0, vec3 view)\n{\n    vec2 p_out;\n    p_out = p_0.xy;\n    return p_out;\n}\n"
+    assert plain(shader, "p", 3) == made
+    with pytest.raises(NotPlainError, match="a texture or a constant buffer"):
+        plain("layout(binding = 0) uniform sampler2D _7;\n" + shader, "p", 3)
+
+
+def test_nothing_heavy_is_imported_to_translate():
+    """The process that translates starts in a tenth of a second."""
+    code = "import sys, normalbench.bench.shaders.languages.child\n"
+    code += "print([name for name in ('jax', 'numpy', 'moderngl', 'torch') if name in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize("version", ["", "#define __HLSL_VERSION 2016\n"])
+def test_the_version_of_hlsl_is_known(run, ending, version):
+    """Engines ask for it before they use what it brought; a file may still say another one."""
+    Path(f"mine.{ending}").write_text(
+        f"{version}#ifdef __HLSL_VERSION\n#if __HLSL_VERSION < 2021\n{MINE}\n#endif\n#endif\n"
+    )
+    status, out, err = run("quality", "--encoding", f"mine.{ending}", *QUICK)
+    assert status == 0 and json.loads(out), err
+
+
+def test_hints_to_compilers_keep_nothing_from_being_written(run, ending):
+    """[unroll] and [branch], which SPIRV-Cross writes as macros under a condition."""
+    loop = "float s = 0; [unroll] for (int i = 0; i < 2; i++) s += p[i];"
+    Path(f"mine.{ending}").write_text(changed(f"{loop} [branch] if (n.z < 2) return float2(s, p.x - p.y); return p;"))
+    status, out, err = run(
+        "code", "--check", f"mine.{ending}", "--storage", "rg16", "--to", "c,hlsl", "--format", "json"
+    )
+    assert status == 0 and [row["verdict"] for row in json.loads(out)] == ["verified"] * 2, err
