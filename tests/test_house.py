@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.ground.options import listing
-from normalbench.bench.normals import normal_sets
+from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import sets as frame_sets

@@ -17,8 +17,8 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.storage import Storage
 from ...encodings.vec import Vec2, Vec3, Vec4, from_array, to_array
-from ..codecs.names import codecs_named
 from ..ground.output.errors import UsageError
+from ..subjects.codecs.names import codecs_named
 
 # Where the view position is not given, the viewer looks along -z.
 AHEAD = (0.0, 0.0, -1.0)

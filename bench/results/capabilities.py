@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from ...reports import tables
-from ..codecs.half.compute import half_device
 from ..ground.machine.devices import require_device, require_jax
 from ..ground.output import cache
 from ..ground.output.errors import MissingError
@@ -14,6 +13,7 @@ from ..metrics.images import require_flip
 from ..metrics.visibility import require_rays
 from ..shaders.code.run import c, msl, slang, wgsl
 from ..shaders.languages.language import require_language
+from ..subjects.codecs.half.compute import half_device
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
 
 

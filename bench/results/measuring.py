@@ -112,7 +112,7 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
     steps = table.work.steps(options, outputs)
     if isinstance(options, Reading):
         # It imports JAX, which tables that read normals have imported by now.
-        from ..normals.normal_names import say_count_is_unused
+        from ..subjects.normals.normal_names import say_count_is_unused
 
         say_count_is_unused(options)
     # Files are fingerprinted once they were read, which refuses what is too large.
@@ -220,7 +220,7 @@ def _buffers(path: Path) -> list[Path]:
 def _of_layout(path: Path) -> list[Path]:
     """The encoder or the table that a layout names, and what is read with it."""
     # It imports JAX, which start-up does without.
-    from ..codecs.layout_names import files_of_layout
+    from ..subjects.codecs.layout_names import files_of_layout
 
     return [one for file in files_of_layout(path) for one in (file, *companions(file))]
 

@@ -14,7 +14,6 @@ from typing import Any
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
-from ..codecs.names import codecs_named, fitting
 from ..ground.options.code import CodeOptions
 from ..ground.options.targets import what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, pick, tell
@@ -24,6 +23,7 @@ from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name
 from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement, is_catalogues
+from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head
 
 Row = dict[str, Any]

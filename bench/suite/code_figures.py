@@ -10,11 +10,11 @@ from typing import Any
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
 from ..ground.options.counts import DEFAULT_COUNT
-from ..normals.normal_sets import NORMAL_SETS
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code
 from ..shaders.code.twin import has_twin
 from ..shaders.code.verify import is_catalogues
+from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.cost import measure as cost
 from ..tables.quality import measure as quality
 

@@ -12,11 +12,11 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import Storage
 from ...reports.charts import charts
-from ..codecs.names import storages_named
-from ..codecs.user_encodings import ANY, Examined, examined
 from ..ground.output.errors import UsageError, pick_one, tell
 from ..ground.output.writing import check_plot, save_plot, write
-from ..normals.normal_sets import NORMAL_SETS
+from ..subjects.codecs.names import storages_named
+from ..subjects.codecs.user_encodings import ANY, Examined, examined
+from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.quality.measure import Case, measure
 from ..tables.quality.sphere_maps import sphere_map
 

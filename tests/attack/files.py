@@ -28,11 +28,11 @@ from written import (
     write_image,
 )
 
-from normalbench.bench.codecs.tuned_names import tuned
 from normalbench.bench.ground.output.arrays import DamagedError, read_npy, read_npz
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.normals import pixel_files
-from normalbench.bench.normals.captures import Reading, capture
+from normalbench.bench.subjects.codecs.tuned_names import tuned
+from normalbench.bench.subjects.normals import pixel_files
+from normalbench.bench.subjects.normals.captures import Reading, capture
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file, seen
 from normalbench.gbuffer.scenes.files.source import SceneFileError

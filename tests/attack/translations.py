@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from normalbench.bench.codecs.first_look import first_look
-from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.shaders.languages import translated
 from normalbench.bench.shaders.languages.child import answer
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.codecs.half import compute
-from normalbench.bench.codecs.half.round_trip import HalfPasses
-from normalbench.bench.codecs.half.source import in_halves
-from normalbench.bench.codecs.names import codecs_named, with_arithmetics
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.subjects.codecs.half import compute
+from normalbench.bench.subjects.codecs.half.round_trip import HalfPasses
+from normalbench.bench.subjects.codecs.half.source import in_halves
+from normalbench.bench.subjects.codecs.names import codecs_named, with_arithmetics
 from normalbench.bench.tables.quality import half
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS

@@ -6,7 +6,7 @@ from directions import NOT_DIRECTIONS, hard_directions, view_positions
 from parity.comparison import planes
 from parity.normals import PACKED, codecs
 
-from normalbench.bench.normals.normal_sets import hemisphere, playground, sphere
+from normalbench.bench.subjects.normals.normal_sets import hemisphere, playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS

@@ -10,7 +10,7 @@ from exact_codes import storage as made
 from scipy.spatial import cKDTree
 from slowly import all_but
 
-from normalbench.bench.normals.normal_sets import from_arrays, sphere
+from normalbench.bench.subjects.normals.normal_sets import from_arrays, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case.search import worst_case
 from normalbench.encodings.catalogue import ENCODINGS

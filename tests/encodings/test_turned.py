@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.codecs.tuned_names import tuned
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.codecs.tuned_names import tuned
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

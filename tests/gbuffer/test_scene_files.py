@@ -11,8 +11,8 @@ from drawing import FP32, apart, draw, scene_of
 from PIL import Image
 from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, as_document, chained, ply
 
-from normalbench.bench.normals.normal_names import mesh_set
-from normalbench.bench.normals.normal_sets import playground
+from normalbench.bench.subjects.normals.normal_names import mesh_set
+from normalbench.bench.subjects.normals.normal_sets import playground
 from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from normalbench.bench.normals import pixel_files, pixel_process
+from normalbench.bench.subjects.normals import pixel_files, pixel_process
 
 
 def refusal(run, path: Path, *arguments: str) -> str:

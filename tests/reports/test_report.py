@@ -13,7 +13,7 @@ import pytest
 import vl_convert
 from PIL import Image
 
-from normalbench.bench.normals.normal_sets import hemisphere
+from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.work import beside

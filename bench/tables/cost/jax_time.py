@@ -15,7 +15,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
 from ...ground.output.errors import MissingError
 from ...metrics.moments import FAST_BLOCK, LANES
-from ...normals.directions import CORES, make_input
+from ...subjects.normals.directions import CORES, make_input
 from .clocks import summary
 from .measure import Case, Row
 

@@ -13,7 +13,6 @@ from ....gbuffer.defines import kernels
 from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
-from ...codecs.half.kernels import half_operation
 from ...ground.machine.cores import on_all_cores
 from ...ground.options.gpu_families import FAMILIES, NVRTC, R600
 from ...ground.output.errors import MissingError
@@ -23,6 +22,7 @@ from ...shaders.isa.mobile import ir3_disassembly, qpu_disassembly
 from ...shaders.isa.nvidia import sass
 from ...shaders.isa.nvidia.source import cuda_of
 from ...shaders.isa.terascale import disassembly as terascale_disassembly
+from ...subjects.codecs.half.kernels import half_operation
 from . import executed
 from .table import TABLE
 

@@ -15,7 +15,7 @@ from ....encodings.storages.storage import Storage
 from ....reports.charts import pareto, plots
 from ...ground.output.errors import tell
 from ...ground.output.writing import whole_file
-from ...normals.normal_sets import NormalSet
+from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
 from .codec_costs import Costs, LeftOutError, Where
 from .measure import Row

@@ -18,13 +18,13 @@ from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto
 from ....reports.charts.drawings import Drawing
 from ....reports.charts.front_specs import pareto_specs
-from ...codecs.user_encodings import encodings_named
 from ...ground.options import gpu_families as families
 from ...ground.options import listing
 from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...ground.output.errors import MissingError, UsageError, pick
 from ...ground.output.writing import check_folder, check_plot, whole_file
 from ...shaders.isa import isa, spirv
+from ...subjects.codecs.user_encodings import encodings_named
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .measure import file_name
@@ -116,7 +116,7 @@ def costing(options: CostOptions) -> Costing:
         chosen_families(options.family),
     )
     if measures(options) != ["isa"]:
-        from ...codecs.names import check_twin
+        from ...subjects.codecs.names import check_twin
 
         for encoding in made.encodings:
             check_twin(encoding)
@@ -127,7 +127,7 @@ def _encodings(options: CostOptions) -> list[Encoding]:
     named = encodings_named(options.encoding)
     if options.arithmetic == FLOAT:
         return named
-    from ...codecs.names import with_arithmetics
+    from ...subjects.codecs.names import with_arithmetics
 
     return with_arithmetics(named, options.arithmetic)
 
@@ -276,7 +276,7 @@ def _write(done: Measured, _: Tick) -> None:
 
 
 def _plot(done: Measured) -> bool:
-    from ...normals.normal_sets import NORMAL_SETS
+    from ...subjects.normals.normal_sets import NORMAL_SETS
     from .plot import draw
 
     options, asked = done.options, done.steps[0].case.asked

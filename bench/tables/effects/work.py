@@ -21,8 +21,6 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
-from ...codecs.layout_names import layouts_named
-from ...codecs.names import codecs_named
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
@@ -31,6 +29,8 @@ from ...ground.options.targets import checked_setting, checked_target, what_is_l
 from ...ground.output.errors import UsageError, pick, pick_one
 from ...ground.output.writing import check_folder
 from ...metrics.images import require_flip
+from ...subjects.codecs.layout_names import layouts_named
+from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having
 from ..render.work import attempt, with_codecs
 from ..shots import Shot, by_shots

@@ -13,10 +13,10 @@ import jax
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES, across
-from ...codecs.names import codecs_named
 from ...ground.machine.devices import require_device
 from ...ground.output.errors import MissingError
-from ...normals.normal_sets import sphere
+from ...subjects.codecs.names import codecs_named
+from ...subjects.normals.normal_sets import sphere
 from ...worst_case.search import worst_case
 from ..quality import measure as quality
 from ..sweep import measure as sweep

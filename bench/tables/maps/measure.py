@@ -23,8 +23,8 @@ from ....gbuffer.gl.compressed import device_texels
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ...metrics.meter import Decoded, Meter
 from ...metrics.totals import Statistics, psnr_db
-from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet
 from ...shaders.code.twin import NoTwinError
+from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet
 from ..quality.measure import Row, identity, planes_of
 from .encoders import Texels
 from .formats import BlockFormat, Swizzle

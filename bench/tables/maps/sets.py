@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...normals.normal_sets import NormalSet, from_arrays
+from ...subjects.normals.normal_sets import NormalSet, from_arrays
 
 SIZE = 256
 # The root of the mean squared slope of both surfaces.

@@ -8,8 +8,6 @@ from typing import Any
 from ....encodings.codecs.encoding import Encoding
 from ....reports.charts import maps as charts
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import check_twin
-from ...codecs.user_encodings import encodings_named
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.targets import what_is_left
@@ -17,8 +15,10 @@ from ...ground.options.words import Words, given_in
 from ...ground.output.errors import MissingError, UsageError, leave_out, pick
 from ...ground.output.writing import check_folder, check_plot, save_plot
 from ...metrics import published
-from ...normals.normal_names import normal_sets_named
-from ...normals.normal_sets import NormalSet
+from ...subjects.codecs.names import check_twin
+from ...subjects.codecs.user_encodings import encodings_named
+from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_sets import NormalSet
 from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure, pictures

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from functools import cache
 
 from ....encodings.codecs.codec import Codec
-from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...shaders.code.twin import has_twin
+from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
 from .measure import Case, measure
 from .patches import Mixes, mixes_of, patches_of
 from .table import USES

@@ -10,7 +10,7 @@ import numpy as np
 
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.mixing.passes import QUARTERS, SIDE, Meetings
-from ...normals.normal_sets import NormalSet
+from ...subjects.normals.normal_sets import NormalSet
 from .reference import angles_between, reoriented, tilted, unit_rows
 
 # Places of a filter are multiples of 2^-12 of a texel, which texture coordinates have exactly.

@@ -8,13 +8,13 @@ from typing import Any
 from ....encodings.codecs.codec import Codec
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import check_twin, codecs_named, fitting
 from ...ground.machine.devices import found_device, require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.output.errors import UsageError, leave_out, pick
 from ...ground.output.writing import check_plot, save_plot
-from ...normals.normal_names import normal_sets_named
+from ...subjects.codecs.names import check_twin, codecs_named, fitting
+from ...subjects.normals.normal_names import normal_sets_named
 from ..charts import backends_of, drawing, having, one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure

@@ -11,12 +11,12 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.scenes.scene import TURNS
 from ....reports.charts import motion as chart
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import check_twin, codecs_named, fitting
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, by_reason, pick, tell
 from ...ground.output.writing import check_folder, check_plot, save_plot
+from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ..charts import drawing, having
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Tick, Work

@@ -29,8 +29,8 @@ from ...ground.output.errors import tell
 from ...ground.output.sources import sources
 from ...metrics.images import squared_error
 from ...metrics.totals import psnr_db
-from ...normals.normal_sets import NORMAL_SETS, NormalSet
 from ...shaders.code.twin import has_twin
+from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
 from ..mix import judge
 from ..mix.patches import in_domain
 from ..mix.verdict import DONE

@@ -15,7 +15,6 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
-from ...codecs.names import check_twin, codecs_named, storages_named
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
@@ -23,8 +22,9 @@ from ...ground.options.gpu_families import CHOICES
 from ...ground.options.scene_names import powers_named, scenes_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...ground.output.writing import check_folder
-from ...normals.normal_names import normal_sets_named
-from ...normals.normal_sets import NormalSet
+from ...subjects.codecs.names import check_twin, codecs_named, storages_named
+from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_sets import NormalSet
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures

@@ -11,11 +11,11 @@ import numpy as np
 
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
-from ...codecs.names import codecs_named
 from ...ground.output import cache as kept
 from ...ground.output.sources import sources
 from ...metrics import published
-from ...normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from ...subjects.codecs.names import codecs_named
+from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..cost import measure as cost
 from ..quality import measure as quality
 

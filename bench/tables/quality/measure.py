@@ -23,8 +23,6 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...codecs.half import compute as half_compute
-from ...codecs.half.round_trip import HalfPasses
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
 from ...ground.native.library import LARGE, NoCompilerError
@@ -33,9 +31,11 @@ from ...metrics.code_limits import AREAS, effective_bits
 from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
 from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
 from ...native.meter import NativeMeter
-from ...normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ...shaders.code import trip as wgsl_trip
 from ...shaders.code.twin import NoTwinError, has_twin
+from ...subjects.codecs.half import compute as half_compute
+from ...subjects.codecs.half.round_trip import HalfPasses
+from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ...worst_case import exact_figures
 from .table import TABLE
 

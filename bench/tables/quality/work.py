@@ -10,14 +10,14 @@ from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
-from ...codecs.names import check_twin, codecs_named, fitting
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.output.errors import UsageError, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
 from ...metrics import published
-from ...normals.normal_names import normal_sets_named
+from ...subjects.codecs.names import check_twin, codecs_named, fitting
+from ...subjects.normals.normal_names import normal_sets_named
 from ..charts import backends_of, drawing, having, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures

@@ -24,7 +24,7 @@ from ...ground.angles import angles_deg
 from ...ground.output.errors import UsageError
 from ...metrics.images import flip, squared_error
 from ...metrics.totals import Worst, psnr_db
-from ...normals.normal_names import SEES_NOTHING
+from ...subjects.normals.normal_names import SEES_NOTHING
 from .table import TABLE
 
 STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))

@@ -19,8 +19,6 @@ from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
-from ...codecs.layout_names import layouts_named
-from ...codecs.names import check_twin, codecs_named
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
@@ -30,6 +28,8 @@ from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_set
 from ...ground.output.errors import UsageError, by_reason, pick, pick_one
 from ...ground.output.writing import check_folder, without
 from ...metrics.images import require_flip
+from ...subjects.codecs.layout_names import layouts_named
+from ...subjects.codecs.names import check_twin, codecs_named
 from ..charts import drawing, having
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work

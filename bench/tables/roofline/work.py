@@ -7,12 +7,12 @@ from itertools import combinations
 
 from ....reports.charts import roofline as charts
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import codecs_named
 from ...ground.options.counts import checked_numbers, checked_sides
 from ...ground.options.targets import that_fit
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_plot, save_plot
 from ...shaders.isa import spirv
+from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having
 from ..table import COMPILERS, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

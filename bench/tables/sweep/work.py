@@ -10,7 +10,6 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
 from ....reports.charts import charts, plots, specs
 from ....reports.charts.drawings import Drawing
-from ...codecs.layout_names import layouts_named
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
 from ...ground.options.light_names import light_buffers_named
@@ -24,6 +23,7 @@ from ...ground.options.targets import (
 )
 from ...ground.output.errors import pick
 from ...ground.output.writing import check_plot, save_plot, without
+from ...subjects.codecs.layout_names import layouts_named
 from ..charts import drawing, having
 from ..render.work import suited
 from ..table import Measured, Row, Sheet, Step, Tick, Work

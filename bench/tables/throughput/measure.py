@@ -22,8 +22,8 @@ from ...ground.native.library import compiler
 from ...metrics.meter import in_groups
 from ...metrics.moments import FAST_BLOCK, squared_errors
 from ...native.meter import NativeMeter
-from ...normals.directions import CORES, Input, make_input
 from ...shaders.code.twin import NoTwinError
+from ...subjects.normals.directions import CORES, Input, make_input
 from ..quality import measure as quality
 from . import c_baseline
 from . import numpy_baseline as baseline

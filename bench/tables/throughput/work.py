@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 
 from ....reports.charts import throughput as charts
 from ....reports.charts.drawings import Drawing
-from ...codecs.names import check_twin, codecs_named
 from ...ground.machine.devices import require_jax
 from ...ground.options.counts import MAX_TIMED_COUNT, checked_numbers
 from ...ground.options.targets import that_fit
 from ...ground.output.errors import pick
 from ...ground.output.writing import check_plot, save_plot
 from ...metrics.growth import growth_lines
+from ...subjects.codecs.names import check_twin, codecs_named
 from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

@@ -8,7 +8,7 @@ import jax
 import numpy as np
 
 from ...ground.output.errors import UsageError
-from ...normals.normal_sets import NormalSet, from_arrays
+from ...subjects.normals.normal_sets import NormalSet, from_arrays
 from .expected_errors import Normals
 
 # A set is kept in memory, half of it in float64 for a while.

@@ -13,16 +13,16 @@ import numpy as np
 from ....encodings.catalogue import NAMES
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ...codecs.names import check_twin, storages_named
-from ...codecs.tuned_names import MARK
-from ...codecs.tuned_names import TABLE as LOOK_UP
-from ...codecs.user_encodings import encodings_named
 from ...ground.machine.devices import require_jax
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.output.errors import UsageError, pick, pick_one, tell
 from ...ground.output.writing import check_writable, whole_file
-from ...normals.normal_names import normal_sets_named
-from ...normals.normal_sets import NormalSet
+from ...subjects.codecs.names import check_twin, storages_named
+from ...subjects.codecs.tuned_names import MARK
+from ...subjects.codecs.tuned_names import TABLE as LOOK_UP
+from ...subjects.codecs.user_encodings import encodings_named
+from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
 from ..table import Measured, Sheet, Step, Tick, Work, each
 from .expected_errors import POWERS

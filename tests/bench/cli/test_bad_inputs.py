@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from normalbench.bench.codecs.first_look import first_look
 from normalbench.bench.gates.limits import limit
 from normalbench.bench.ground.options.counts import checked_numbers
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.gbuffer.codecs.loops import loop_limit
 
 TESTS = Path(__file__).parents[2]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from directions import hard_directions
 
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.live import kept, programs, scenes
+from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals.octahedral import decode

@@ -11,7 +11,7 @@ from exact_codes import nearest_of, storage
 
 from normalbench.bench.metrics import meter as metrics
 from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
-from normalbench.bench.normals.normal_sets import from_arrays, hemisphere, sphere
+from normalbench.bench.subjects.normals.normal_sets import from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

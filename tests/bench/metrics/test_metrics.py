@@ -14,7 +14,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
 
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.machine.cores import cores, on_all_cores
 from normalbench.bench.ground.options import counts
@@ -22,7 +21,8 @@ from normalbench.bench.metrics import meter as metrics
 from normalbench.bench.metrics.meter import Meter, angle_between
 from normalbench.bench.metrics.moments import squared_errors
 from normalbench.bench.metrics.totals import psnr_db
-from normalbench.bench.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.throughput.numpy_baseline import whole_row
 from normalbench.encodings import vec
@@ -284,7 +284,7 @@ def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
 ON_DEVICES = """
 import jax
 from normalbench.bench.metrics.meter import Meter
-from normalbench.bench.normals.normal_sets import CHUNK, sphere
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, sphere
 
 used = set()
 

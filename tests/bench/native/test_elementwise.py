@@ -135,7 +135,7 @@ def test_what_has_no_line_of_c_is_named(function, said):
 def test_every_operation_is_one_that_something_uses():
     """Each line that can be written is written by a codec of the catalogue, by the errors or by a set of normals."""
     from normalbench.bench.native import meter
-    from normalbench.bench.normals import normal_sets
+    from normalbench.bench.subjects.normals import normal_sets
 
     seen: set[str] = set()
 

@@ -12,8 +12,8 @@ from normalbench.bench.ground.native import library
 from normalbench.bench.metrics.meter import Meter, measure_together
 from normalbench.bench.metrics.totals import statistics
 from normalbench.bench.native.meter import NativeMeter
-from normalbench.bench.normals import normal_sets
-from normalbench.bench.normals.normal_sets import CHUNK, TURN, NormalSet, from_arrays, hemisphere, sphere
+from normalbench.bench.subjects.normals import normal_sets
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, TURN, NormalSet, from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec

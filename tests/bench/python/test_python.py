@@ -11,9 +11,9 @@ import pytest
 from slowly import all_but
 
 import normalbench as nb
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.python import stub
+from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses

@@ -20,11 +20,11 @@ from normalbench.bench.cli import app as cli
 from normalbench.bench.ground.output import journal
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
-from normalbench.bench.normals import normal_sets
 from normalbench.bench.results.measuring import files_of
 from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
+from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.suite import run as run_command
 from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.quality import measure as quality

@@ -9,7 +9,7 @@ import texture2ddecoder
 from PIL import Image
 from written import png_bytes
 
-from normalbench.bench.normals.normal_sets import NORMAL_SETS, from_arrays
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS, from_arrays
 from normalbench.bench.tables.maps import encoders
 from normalbench.bench.tables.maps.encoders import Texels
 from normalbench.bench.tables.maps.formats import FORMATS, SWIZZLES, swizzles_of

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.results.measuring import Nothing, asked, measured
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.mix import reference, worst
 from normalbench.bench.tables.mix.figures import error_of_percent
 from normalbench.bench.tables.mix.judge import faults

@@ -9,11 +9,11 @@ from operator import le
 import pytest
 from manual import ROOT
 
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.ground.output import cache
 from normalbench.bench.metrics.images import squared_error
 from normalbench.bench.metrics.totals import psnr_db
-from normalbench.bench.normals.normal_sets import NORMAL_SETS
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.pick import measure
 from normalbench.bench.tables.pick.answer import answered, groups
 from normalbench.bench.tables.pick.sentences import sentences

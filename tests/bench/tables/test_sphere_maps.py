@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench.metrics import histogram as metrics
-from normalbench.bench.normals.normal_sets import hemisphere, playground
+from normalbench.bench.subjects.normals.normal_sets import hemisphere, playground
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps
 from normalbench.encodings.catalogue import ENCODINGS

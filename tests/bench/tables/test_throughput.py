@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.normals.directions import make_input
+from normalbench.bench.subjects.normals.directions import make_input
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.throughput import c_baseline, measure
 from normalbench.bench.tables.throughput.measure import WHOLE, Case

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.normals.normal_sets import NormalSet, axes, from_arrays, hemisphere, playground, sphere
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import NormalSet, axes, from_arrays, hemisphere, playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.tune.expected_errors import Normals, smooth_objective
 from normalbench.bench.tables.tune.halves import halves_of

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from exact_codes import fibonacci, nearest_of, storage
 
-from normalbench.bench.normals.normal_sets import axes, sphere
+from normalbench.bench.subjects.normals.normal_sets import axes, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.worst_case import cells, climb
 from normalbench.bench.worst_case.climb import KEPT, WAYS, Ground, Starts, highest

@@ -125,5 +125,5 @@ def test_one_that_does_not_stay_is_done_without(monkeypatch):
     """Each process then imports for itself."""
     forks._forking.end()
     monkeypatch.setattr(forks, "_command", lambda _: ["false"])
-    done = forks.finished("normalbench.bench.codecs.first_look", ["gone.glsl"], 60.0)
+    done = forks.finished("normalbench.bench.subjects.codecs.first_look", ["gone.glsl"], 60.0)
     assert "there is no such file" in done.stdout

@@ -11,14 +11,14 @@ import pytest
 from languages import require_runner
 
 import normalbench as nb
-from normalbench.bench.codecs.names import codecs_named
-from normalbench.bench.codecs.user_encodings import encodings_named
 from normalbench.bench.shaders.code.channels import Channels
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.reference import normals, reference
 from normalbench.bench.shaders.code.tables import dds, header
 from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.bench.suite import code_command
 from normalbench.bench.suite.code_command import SHIPPED
 from normalbench.bench.tables.cost import measure as cost

@@ -4,10 +4,10 @@ import itertools
 
 import pytest
 
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.normals import normal_sets
 from normalbench.bench.shaders.code.run import wgsl
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.tables.quality import measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.variants import in_half

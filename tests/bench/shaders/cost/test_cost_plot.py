@@ -6,7 +6,7 @@ import warnings
 
 import pytest
 
-from normalbench.bench.normals.normal_sets import axes
+from normalbench.bench.subjects.normals.normal_sets import axes
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import plot as cost_plot
 from normalbench.bench.tables.cost.codec_costs import Costs, LeftOutError, Where

@@ -2,10 +2,10 @@
 
 import pytest
 
-from normalbench.bench.codecs.half.kernels import half_operation
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.shaders.isa import disassembly, intel_disassembly, isa, occupancy
 from normalbench.bench.shaders.isa.compiler import uses_halves
+from normalbench.bench.subjects.codecs.half.kernels import half_operation
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.variants import in_half

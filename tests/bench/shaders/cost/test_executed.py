@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from normalbench.bench.codecs.names import encodings_named
+from normalbench.bench.subjects.codecs.names import encodings_named
 from normalbench.bench.tables.cost import executed, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.codecs.loops import turns_made

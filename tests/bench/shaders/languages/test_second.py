@@ -8,15 +8,15 @@ from attack.translations import translated_here
 from everyday import WGSL
 from languages import require_runner
 
-from normalbench.bench.codecs import second_look
-from normalbench.bench.codecs.first_look import first_look
-from normalbench.bench.codecs.user_encodings import read_encoding
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.ground.output import cache as kept
 from normalbench.bench.shaders.languages import second
 from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.translator.wgsl_parser import WgslParser
+from normalbench.bench.subjects.codecs import second_look
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.gbuffer.codecs.codec_passes import exact_values
 from normalbench.gbuffer.gl.device import device
 

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.codecs.doctor.exact import is_unit
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.results.measuring import files_of
 from normalbench.bench.shaders.languages import tools, translated
 from normalbench.bench.shaders.languages.plain import NotPlainError, plain
+from normalbench.bench.subjects.codecs.doctor.exact import is_unit
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS

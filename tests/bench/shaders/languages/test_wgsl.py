@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from languages import require_runner
 
-from normalbench.bench.codecs.names import codecs_named
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.names import codecs_named
 
 MINE = """
 alias Code = vec2f;

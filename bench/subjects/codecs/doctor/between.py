@@ -1,0 +1,150 @@
+"""What makes a pair of two functions that are none: a step between them, or axes that the two mean otherwise.
+
+Steps are tried on the codes: another range, numbers swapped or negated, the turn by 45 degrees that fills the square,
+the fold of the other function. The plainest that makes a pair is named.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from ....ground.angles import angles_deg
+from .domains import AXES, Domain, guessed
+from .probe import Probe, Trip
+
+# Two directions this near are the same one; storages of 8 bits move them by half of it.
+SAME_DEG = 1.0
+# How many of the directions are tried: the last ones, which are random.
+TRIED = 512
+MOST = 0.95
+
+Change = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Step:
+    """Something between the two functions.
+
+    Attributes:
+        said: it in words, as what it makes of a code c; empty for nothing.
+        change: it, of codes of shape (count, size).
+    """
+
+    said: str
+    change: Change
+
+
+def _same(codes: np.ndarray) -> np.ndarray:
+    return codes
+
+
+NOTHING = Step("", _same)
+RANGES = (NOTHING, Step("c * 0.5 + 0.5", lambda c: c * 0.5 + 0.5), Step("c * 2 - 1", lambda c: c * 2 - 1))
+
+
+def _turned(codes: np.ndarray) -> np.ndarray:
+    x, y = codes.T
+    return np.stack([x + y, x - y], axis=1)
+
+
+TURNS = (
+    NOTHING,
+    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y)", _turned),
+    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y) / 2", lambda c: _turned(c) / 2),
+)
+
+
+def _other_fold(codes: np.ndarray) -> np.ndarray:
+    """Outside of the diamond with the sizes of the two numbers swapped."""
+    swapped = np.copysign(np.abs(codes[:, ::-1]), codes)
+    return np.where((np.abs(codes).sum(axis=1) > 1)[:, None], swapped, codes)
+
+
+FOLDS = (NOTHING, Step("the other one's fold, whose .xy is .yx,", _other_fold))
+
+
+@cache
+def _orders(size: int) -> tuple[Step, ...]:
+    """Numbers swapped and negated."""
+    made = []
+    for order in itertools.permutations(range(size)):
+        for signs in itertools.product((1, -1), repeat=size):
+            made.append(Step(_order_said(order, signs), _ordered(order, signs)))
+    return tuple(sorted(made, key=lambda step: len(step.said)))
+
+
+def _ordered(order: Sequence[int], signs: Sequence[int]) -> Change:
+    return lambda codes: codes[:, list(order)] * np.array(signs, codes.dtype)
+
+
+def _order_said(order: Sequence[int], signs: Sequence[int]) -> str:
+    moved = [at for at in range(len(order)) if order[at] != at]
+    names = "its numbers" if len(order) == len(moved) else f"numbers {' and '.join(str(at + 1) for at in moved)}"
+    swapped = [f"{names} swapped, c.{''.join(AXES[at] for at in order)}"] if moved else []
+    negated = [str(at + 1) for at in range(len(signs)) if signs[at] < 0]
+    numbers = f"number{'s' * (len(negated) > 1)} {' and '.join(negated)} negated"
+    return " and ".join([*swapped, *([numbers] if negated else [])])
+
+
+@cache
+def steps(size: int) -> tuple[Step, ...]:
+    """What is tried of codes of so many numbers, the plainest first, nothing left out."""
+    kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
+    made = [_one_after_another(parts) for parts in itertools.product(*kinds)]
+    return tuple(sorted(made, key=lambda step: (step.said.count(", then "), len(step.said))))[1:]
+
+
+def _one_after_another(parts: Sequence[Step]) -> Step:
+    def change(codes: np.ndarray) -> np.ndarray:
+        for part in parts:
+            codes = part.change(codes)
+        return codes
+
+    return Step(", then ".join(part.said for part in parts if part.said), change)
+
+
+def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> np.ndarray:
+    """What comes back of codes after each step: of shape (steps, count, 3)."""
+    given = np.concatenate([step.change(codes) for step in changes])
+    return probe.decode(given).reshape(len(changes), len(codes), 3)
+
+
+def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
+    """The plainest step that makes a pair, and of which directions; None where none does."""
+    few = trip.of(np.arange(len(trip.n) - TRIED, len(trip.n)))
+    tried = steps(probe.size)
+    for step, decoded in zip(tried, decoded_after(probe, few.codes, tried), strict=True):
+        with np.errstate(invalid="ignore"):
+            domain = guessed(Trip(few.n, few.view, few.codes, decoded), SAME_DEG)
+        if domain.name:
+            return step, domain
+    return None
+
+
+def axes_of(trip: Trip) -> str:
+    """Which axes are swapped or reversed in what comes back; empty where none are."""
+    for order, signs in turns():
+        if (angles_deg(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
+            return axes_said(order, signs)
+    return ""
+
+
+def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Every order of the axes with every sign, but for what leaves them."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            if (order, signs) != ((0, 1, 2), (1, 1, 1)):
+                yield order, signs
+
+
+def axes_said(order: Sequence[int], signs: Sequence[int]) -> str:
+    """Axes in another order, or with another sign, in words."""
+    moved = [AXES[at] for at in range(3) if order[at] != at]
+    reversed_ = [AXES[at] for at in range(3) if signs[at] < 0]
+    said = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z in another order"] if moved else []
+    return " and ".join([*said, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])

@@ -1,0 +1,197 @@
+"""What is likely wrong with an encoder and its decoder, from what they do to directions before any storage.
+
+Each diagnosis is a line with its figure and a direction that shows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .....gbuffer.gl.device import Device
+from ....ground.directions import circles, directions
+from . import exact, folds, nearly
+from .between import MOST, SAME_DEG, axes_of, step_between
+from .domains import HALVES, HEMISPHERE, SPHERE, Domain, asked, guessed
+from .halves import Sides, lost, unread, unused
+from .likeness import likeness
+from .probe import Probe, Trip, trip_of
+
+# This near directions come back nearly: a scale that is a few hundredths off.
+NEARLY_DEG = 10.0
+# What an encoder that rounds by itself may lose, in degrees, of codes of one step.
+OF_A_STEP_DEG = 600.0
+# By what the angles of one half are larger than those of the other where an encoding is made for that one alone.
+FAR_BETTER = 2.0
+# Below this a pair is as exact as float32.
+EXACT_DEG = 5e-5
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What there is to say of a pair.
+
+    Attributes:
+        domain: what it is made for.
+        wrong: what is likely wrong, lines.
+    """
+
+    domain: Domain
+    wrong: list[str]
+
+
+def bad(probe: Probe, domain: Domain) -> np.ndarray:
+    """The directions of a domain that come back elsewhere, (count, 3): what a picture of the sphere is marked with."""
+    held = domain.held(trip_of(probe, np.concatenate([directions(), circles()])))
+    return held.n[held.angles() > exact.unusual(held)]
+
+
+def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
+    """What is likely wrong.
+
+    Args:
+        probe: the two functions, finite for every direction that is tried.
+        name: the domain that the user says it is made for; empty to find out.
+    """
+    trip = trip_of(probe, directions())
+    within = _within(trip)
+    domain = asked(name, trip) if name else guessed(trip, within)
+    if not name and (wider := _nearly_back(trip, domain)) and (found := list(nearly.mistakes(wider.held(trip), probe))):
+        return _nearly(trip, wider, found)
+    if domain.name == HEMISPHERE and not name and (half := list(_half(trip, probe, domain))):
+        return Diagnosis(SPHERE, [*half, *_of_held(domain.held(trip), probe)])
+    if domain.name and not _is_lost(trip, domain, within):
+        return Diagnosis(domain, _of_pair(trip, probe, domain, is_meant=bool(name)))
+    return _of_none(trip, probe, gl, domain)
+
+
+def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
+    """A wider domain than the one that comes back, which comes back nearly; None where there is none."""
+    wider = guessed(trip, NEARLY_DEG)
+    return wider if wider.name and wider != domain else None
+
+
+def _nearly(trip: Trip, domain: Domain, found: list[str]) -> Diagnosis:
+    """Of a domain that comes back nearly, and why."""
+    return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain)])
+
+
+def _within(trip: Trip) -> float:
+    """How near a direction comes back to be the same one."""
+    lattice = nearly.lattice_of(trip.codes)
+    return max(SAME_DEG, OF_A_STEP_DEG / lattice.steps) if lattice else SAME_DEG
+
+
+def _is_lost(trip: Trip, domain: Domain, within: float) -> bool:
+    """Whether a domain that a user gives is not what comes back."""
+    return (domain.held(trip).angles() < within).mean() <= MOST
+
+
+def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[str]:
+    """Of a pair that undoes itself on a domain.
+
+    Args:
+        is_meant: whether its author says that it is made for that; what it wastes is then meant as well.
+    """
+    held, ranges = domain.held(trip), list(exact.ranges(trip, domain))
+    wasted = [] if is_meant else [*unread(probe, trip.codes), *(() if ranges else unused(held, probe))]
+    return [*_of_held(held, probe), *wasted, *ranges]
+
+
+def _of_held(held: Trip, probe: Probe) -> list[str]:
+    """Of directions that come back."""
+    found = list(nearly.mistakes(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
+    # What is scaled or shifted is far off where the map is steep, which says nothing more.
+    seams = [] if found else [*exact.seam(held, probe), *exact.poles(held)]
+    return [*found, *seams, *exact.lengths(held)]
+
+
+def _half(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
+    """What is wrong where a half alone comes back; nothing where it is a design for that half."""
+    sides = Sides(trip, probe, half)
+    gone = sides.gone
+    if not sides.encoder_knows and not sides.decoder_reaches:
+        return
+    if mistakes := folds.mistakes(probe):
+        which = f"{sides.share}directions with {half.lost_text}"
+        yield from (f"{said}: {which} are lost, {gone.worst}" for said in mistakes)
+    elif line := lost(sides, half):
+        why = "; ".join([*unread(probe, trip.codes), line])
+        yield f"{why}; {gone.worst}"
+    else:
+        yield _elsewhere(half, half.lost(trip))
+
+
+def _elsewhere(half: Domain, gone: Trip) -> str:
+    """How a half comes back that both functions know."""
+    if axes := axes_of(gone):
+        return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
+    return f"of directions with {half.lost_text} {exact.lost(gone)}: {gone.worst}"
+
+
+def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
+    """Of functions that are no pair, or not one on the domain that a user gives."""
+    nearby = given if given.name else guessed(trip, NEARLY_DEG)
+    if given.name and (found := list(nearly.mistakes(given.held(trip), probe))):
+        return _nearly(trip, given, found)
+    likely = nearby if nearby.name else _likely(trip)
+    held, ranges = likely.held(trip), list(exact.ranges(trip, likely))
+    # What is clipped comes back elsewhere, whatever else is right.
+    is_clipped = any(exact.CLIPPED in said for said in ranges)
+    why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
+    return Diagnosis(given if given.name else SPHERE, [*why, *unread(probe, trip.codes), *exact.lengths(held), *ranges])
+
+
+def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
+    """Why nothing comes back, in a line: the plainest reason that fits."""
+    if axes := axes_of(trip):
+        return f"every direction comes back with {axes}{_or_numbers(trip, probe)}: {trip.worst}"
+    for half in HALVES:
+        if axes := axes_of(half.held(trip)):
+            held = half.held(trip)
+            return f"directions with {half.text} come back with {axes}{_or_numbers(trip, probe)}: {held.worst}"
+    apart = f"{held.angles().mean():.3g} degrees apart on average{_where(likely)} without any storage"
+    said = f"encode and decode are not a pair: {apart}"
+    return f"{said}; {_what_fits(trip, probe, gl, likely) or held.worst}"
+
+
+def _or_numbers(trip: Trip, probe: Probe) -> str:
+    """What of the code's numbers would do the same as other axes; empty where nothing does."""
+    between = step_between(trip, probe)
+    return f", as with {between[0].said} between the two" if between else ""
+
+
+def _where(domain: Domain) -> str:
+    return f" of {domain.made_for.replace('normals', 'directions')}" if domain.made_for else ""
+
+
+def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
+    """What makes a pair of them; empty where nothing that is known does."""
+    if mistakes := folds.mistakes(probe):
+        return mistakes[0]
+    if between := step_between(trip, probe):
+        step, domain = between
+        return f"{step.said} between the two makes one{_where(domain)}"
+    held = likely.held(trip)
+    if scaled := list(nearly.mistakes(held, probe, nearly.start(held, probe))):
+        return scaled[0]
+    like = likeness(gl, probe, likely)
+    if like.encoder and like.decoder and not like.shared():
+        return f"encode is that of {like.encoder[0]}, decode that of {like.decoder[0]}"
+    if like.encoder and not like.decoder:
+        return f"encode is that of {like.encoder[0]}, whose decode makes a pair with it; decode is of no encoding known"
+    if like.decoder and not like.encoder:
+        return f"decode is that of {like.decoder[0]}, whose encode makes a pair with it; encode is of no encoding known"
+    return ""
+
+
+def _likely(trip: Trip) -> Domain:
+    """The domain where nothing comes back well: a half that comes back far better than the rest."""
+    angles = trip.angles()
+    for half in HALVES:
+        inside = half.holds(trip)
+        if FAR_BETTER * angles[inside].mean() < angles[~inside].mean():
+            return half
+    return SPHERE

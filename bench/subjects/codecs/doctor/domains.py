@@ -1,0 +1,95 @@
+"""Which directions an encoding is made for: what comes back says so, unless its author does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .....encodings.codecs.encoding import Encoding
+from .....reports.page.verdict import MADE_FOR
+from .probe import Trip
+
+# The axes of a half, z first: engines have octahedra with y up, and view space whose visible half has z < 0.
+AXES = "xyz"
+HEMISPHERE = "hemisphere"
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Directions that an encoding is made for.
+
+    Attributes:
+        name: what rows call it: "sphere", "hemisphere" or "view"; empty where nothing comes back.
+        axis: of a hemisphere, the component that is at least 0, or with `side` -1 at most 0: 0, 1 or 2.
+        side: 1 or -1.
+    """
+
+    name: str
+    axis: int = 2
+    side: int = 1
+
+    def holds(self, trip: Trip) -> np.ndarray:
+        """Which directions of a trip it has."""
+        if self.name == HEMISPHERE:
+            return trip.n[:, self.axis] * self.side >= 0
+        return np.sum(trip.n * trip.view, axis=1) < 0 if self.name == "view" else np.full(len(trip.n), True)
+
+    def held(self, trip: Trip) -> Trip:
+        """Those of a trip."""
+        return trip.of(self.holds(trip))
+
+    def lost(self, trip: Trip) -> Trip:
+        """Those of a trip that a hemisphere lacks, but for its rim."""
+        return trip.of(trip.n[:, self.axis] * self.side < -RIM)
+
+    @property
+    def text(self) -> str:
+        """Of a hemisphere: z >= 0."""
+        return f"{AXES[self.axis]} {'>=' if self.side > 0 else '<='} 0"
+
+    @property
+    def lost_text(self) -> str:
+        """Of a hemisphere, the other one: z < 0."""
+        return f"{AXES[self.axis]} {'<' if self.side > 0 else '>'} 0"
+
+    @property
+    def made_for(self) -> str:
+        """What a note says of it; empty for the sphere."""
+        return f"normals with {self.text}" if self.name == HEMISPHERE else MADE_FOR.get(self.name, "")
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether it is a hemisphere of another axis than +z."""
+        return (self.axis, self.side) != (2, 1)
+
+    def measured(self, encoding: Encoding) -> Encoding:
+        """An encoding of this domain as tables measure it: a hemisphere's axis is their z."""
+        made = replace(encoding, domain=self.name or SPHERE.name)
+        # Where z becomes its y, components move one place back: by the turn whose pole is x.
+        turn = {0: "y", 1: "x", 2: "z"}[self.axis]
+        return replace(made.turned(turn, self.side), own=made) if self.is_turned else made
+
+
+# How far from the rim of a hemisphere its other half begins.
+RIM = 0.02
+SPHERE, VIEWED, NONE = Domain("sphere"), Domain("view"), Domain("")
+HALVES = tuple(Domain(HEMISPHERE, axis, side) for axis in (2, 1, 0) for side in (1, -1))
+# In this order: what comes back of z >= 0 does so of much that faces the viewer.
+IN_TURN = (SPHERE, HALVES[0], VIEWED, *HALVES[1:])
+# Nearly all.
+MOST = 0.95
+
+
+def guessed(trip: Trip, within: float) -> Domain:
+    """Where the decoder undoes the encoder within so many degrees, seams and poles apart; NONE where nowhere."""
+    is_same = trip.angles() < within
+    return next((one for one in IN_TURN if is_same[one.holds(trip)].mean() > MOST), NONE)
+
+
+def asked(name: str, trip: Trip) -> Domain:
+    """The domain of a name that a user gives: of a hemisphere the half that comes back best."""
+    if name != HEMISPHERE:
+        return SPHERE if name == SPHERE.name else VIEWED
+    angles = trip.angles()
+    return min(HALVES, key=lambda half: float(np.mean(angles[half.holds(trip)])))

@@ -1,0 +1,135 @@
+"""What of a pair that undoes itself is wrong at some directions, or wastes a storage: seams, poles, lengths, ranges."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ....ground.angles import angles_deg
+from . import folds
+from .domains import AXES, Domain
+from .probe import Probe, Trip, vector
+
+# Two directions this near are the same one; storages of 8 bits move them by half of it.
+SAME_DEG = 1.0
+# So few directions a singular point may lose.
+FEW = 0.002
+# Of [-1, 1]: how much a number must use, and how far it may reach beyond.
+USED, BEYOND = 0.8, 1e-3
+# How much of [0, 1] the codes of some thousand directions fill at least, how far half a step or a wrong scale leads
+# beyond, the share that roundings next to a pole may lead farther, and how far.
+NEARLY_FULL, ROUNDED, NEXT_TO_A_POLE, FARTHER = 0.9, 5e-3, 0.01, 0.1
+# And those of a half, which a code with room for more gives less: they lie around the middle of [0, 1].
+OF_A_HALF = 0.5
+# How far a decode's length may be from 1.
+LENGTH = 0.01
+# Of a direction's distance from a pole: how far off it may come back. Beside the pole by this angle.
+POLE_SHARE, POLE_DEG = 0.5, 0.06
+# How much farther off than usual a direction is at a seam or a pole: encodings of few codes are never exact.
+UNUSUAL = 30.0
+# How far beside a direction that comes back elsewhere others are tried, and how many of them.
+BESIDE, TRIES = 1e-4, 4
+CLIPPED = "storages clip what is beyond [-1, 1]"
+
+
+def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
+    """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills a share of it.
+
+    Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
+    """
+    low, high = codes.min(axis=0), codes.max(axis=0)
+    beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
+    is_in = (beyond.mean(axis=0) < NEXT_TO_A_POLE) & (low > -FARTHER) & (high < 1 + FARTHER)
+    fills = (high - low > share) | (high == low)
+    return bool(is_in.all() and fills.all() and (high > low).any())
+
+
+def lost(trip: Trip, within: float = SAME_DEG) -> str:
+    """How many directions come back more than so many degrees off, and how far at most."""
+    angles = trip.angles()
+    count = int((angles > within).sum())
+    return f"{count} of {len(angles)} come back more than {within:g} degree off, up to {angles.max():.3g}"
+
+
+def unusual(trip: Trip) -> float:
+    """How far off, in degrees, a direction is elsewhere: more than roundings of few codes move it."""
+    return max(SAME_DEG, UNUSUAL * float(np.median(trip.angles())))
+
+
+def seam(trip: Trip, probe: Probe) -> Iterator[str]:
+    """Directions that come back elsewhere though nearly all come back."""
+    off = trip.angles() > unusual(trip)
+    at_a_pole = np.abs(trip.n).max(axis=1) > np.cos(np.radians(2 * POLE_DEG))
+    if off.mean() <= FEW:
+        return
+    gone = trip.of(off)
+    if at_a_pole[off].all() and len(np.unique(np.round(gone.n), axis=0)) == 1:
+        yield f"a pole is lost: {trip.worst}"
+    elif _is_only_there(gone, probe):
+        is_fold = probe.size == 2 and "" in folds.found(probe).encoder
+        yield f"{_where(gone, is_fold)}: {off.sum()} directions that were tried; {trip.worst}"
+    else:
+        tried = f"{off.sum()} of {len(off)} directions that were tried"
+        yield f"a seam: {tried} come back more than {SAME_DEG:g} degree off; {trip.worst}"
+
+
+def _is_only_there(gone: Trip, probe: Probe) -> bool:
+    """Whether what lies right beside directions comes back."""
+    random = np.random.default_rng(2).normal(size=(TRIES, *gone.n.shape)) * BESIDE
+    beside = (gone.n + random).reshape(-1, 3).astype(np.float32)
+    back = probe.decode(np.clip(probe.encode(beside), -1, 1))
+    return bool((angles_deg(beside, back) < SAME_DEG).all())
+
+
+def _where(gone: Trip, is_fold: bool) -> str:
+    """What single directions have in common; those of an octahedral fold are where a number to be folded is 0."""
+    if is_fold or (gone.n == 0).any(axis=1).all():
+        return "sign() is 0 where a number is 0: only directions with a 0 in them are lost, not those beside them"
+    return "only directions with equal numbers or a 0 in them are lost, not those beside them: a comparison or sign()"
+
+
+def poles(trip: Trip) -> Iterator[str]:
+    """Directions beside an axis that come back elsewhere, by a large part of their distance from it."""
+    for axis, side in itertools.product(range(3), (1.0, -1.0)):
+        pole = side * np.eye(3)[axis]
+        beside = angles_deg(trip.n, np.broadcast_to(pole, trip.n.shape))
+        near = (beside > POLE_DEG / 2) & (beside < 2 * POLE_DEG)
+        if not near.any():
+            continue
+        around = trip.of(near)
+        lost = around.angles() / beside[near]
+        is_unusual = np.median(around.angles()) > UNUSUAL * np.median(trip.angles())
+        if is_unusual and np.median(lost) > POLE_SHARE and around.angles().max() < SAME_DEG:
+            sign = "+" if side > 0 else "-"
+            at = int(np.argmax(lost))
+            said = f"directions {beside[near][at]:.2g} degrees from it come back {around.angles()[at]:.2g} degrees off"
+            yield f"the pole {sign}{AXES[axis]} loses its neighbourhood: {said}; {around.example(at)}"
+
+
+def lengths(trip: Trip) -> Iterator[str]:
+    found = np.linalg.norm(trip.decoded.astype(np.float64), axis=1)
+    if np.abs(found - 1).max() > LENGTH:
+        at = int(np.argmax(np.abs(found - 1)))
+        said = f"decode gives lengths from {found.min():.3g} to {found.max():.3g}; normalize() is missing"
+        yield f"{said}: {trip.example(at)}"
+
+
+def ranges(trip: Trip, domain: Domain) -> Iterator[str]:
+    """Numbers that use less than a storage has, of all directions, or more, of those that the encoding is made for."""
+    held = domain.held(trip)
+    clipped = np.clip(trip.codes, -1, 1)
+    low, high = clipped.min(axis=0), clipped.max(axis=0)
+    size = trip.codes.shape[1]
+    constant = [at for at in range(size) if high[at] - low[at] < 1e-4]
+    for at in constant:
+        yield f"number {at + 1} of the code carries nothing: it is always {low[at]:.3g}"
+    others = [at for at in range(size) if at not in constant]
+    for at in others:
+        if (np.abs(held.codes[:, at]) > 1 + BEYOND).mean() > FEW:
+            worst = int(np.argmax(np.abs(held.codes[:, at])))
+            reach = f"number {at + 1} of the code is {held.codes[worst, at]:.4g} for {vector(held.n[worst])}"
+            yield f"{reach}: {CLIPPED}"
+        elif (used := (high[at] - low[at]) / 2) < USED:
+            yield f"number {at + 1} of the code is {low[at]:.3g} to {high[at]:.3g}: {100 * (1 - used):.0f} % is unused"

@@ -1,0 +1,209 @@
+"""The mistakes that people make in an octahedral map, each side by itself.
+
+An octahedral map projects a direction m, in some axes, to p = m.xy / (|m.x| + |m.y| + |m.z|), and folds what has
+m.z < 0 out: (1 - |p.yx|) sign(p). Every mistake here is such a map with one thing changed. A side has a mistake where
+it is that map for nearly all directions that are tried, and the other side is right in the same axes. Both sides are
+compared as functions, however they are written.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+
+import numpy as np
+
+from ....ground.directions import directions, unit
+from .probe import Probe, of_unit
+
+# How many directions and codes are compared.
+COUNT = 128
+# How near two codes are the same, or two unit vectors, and of how many that must be so.
+NEAR, NEARLY_ALL = 2e-3, 0.98
+# Points of shape (count, 2) to others; a side of the map, of directions to codes or back.
+Fold = Callable[[np.ndarray], np.ndarray]
+Side = Callable[[np.ndarray], np.ndarray]
+Numbers = Sequence[int]
+
+
+def _signs(p: np.ndarray) -> np.ndarray:
+    return np.where(p < 0, -1.0, 1.0)
+
+
+def _sum(v: np.ndarray, bare: Numbers) -> np.ndarray:
+    """|v.x| + |v.y| + ..., some of them without their bars: (count, 1)."""
+    return np.where(np.isin(np.arange(v.shape[1]), bare), v, np.abs(v)).sum(axis=1, keepdims=True)
+
+
+def _fold(p: np.ndarray, bare: Numbers = ()) -> np.ndarray:
+    """(1 - |p.yx|) sign(p), some of the two without their bars."""
+    swapped = p[:, ::-1]
+    return (1 - np.where(np.isin(np.arange(2), bare), swapped, np.abs(swapped))) * _signs(p)
+
+
+def _encoder(fold: Fold = _fold, bare: Numbers = ()) -> Side:
+    def encode(m: np.ndarray) -> np.ndarray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            p = m[:, :2] / _sum(m, bare)
+        return np.where(m[:, 2:] < 0, fold(p), p)
+
+    return encode
+
+
+def _decoder(unfold: Fold = _fold, bare: Numbers = (), everywhere: bool = False) -> Side:
+    def decode(c: np.ndarray) -> np.ndarray:
+        z = 1 - _sum(c, bare)
+        return unit(np.concatenate([np.where((z < 0) | everywhere, unfold(c), c), z], axis=1))
+
+    return decode
+
+
+def _by_size(bare: Numbers) -> Side:
+    """n.xy -= sign(n.xy) max(-n.z, 0), which is another unfold where n.z lacks bars."""
+
+    def decode(c: np.ndarray) -> np.ndarray:
+        z = 1 - _sum(c, bare)
+        return unit(np.concatenate([c - _signs(c) * np.maximum(-z, 0), z], axis=1))
+
+    return decode
+
+
+def _beyond(c: np.ndarray) -> np.ndarray:
+    """By how much a point lies outside of the diamond."""
+    return _sum(c, ()) - 1
+
+
+SOME_OF_TWO = ((0,), (1,), (0, 1))
+SOME_OF_THREE = tuple(itertools.chain.from_iterable(itertools.combinations(range(3), size) for size in (1, 2, 3)))
+BARE_FOLDS = tuple(partial(_fold, bare=bare) for bare in SOME_OF_TWO)
+# Each mistake, and the maps that it makes; "" is the right one.
+ENCODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
+    {
+        "": [_encoder()],
+        "its fold is missing": [_encoder(lambda p: p)],
+        "its fold has .xy where .yx belongs": [_encoder(lambda p: (1 - np.abs(p)) * _signs(p))],
+        "abs() is missing in its fold": [_encoder(fold) for fold in BARE_FOLDS],
+        "abs() is missing in |x| + |y| + |z|": [_encoder(_fold, bare) for bare in SOME_OF_THREE],
+        "its fold has no sign": [_encoder(lambda p: 1 - np.abs(p[:, ::-1]))],
+    }
+)
+DECODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
+    {
+        "": [_decoder()],
+        "its unfold is missing": [_decoder(lambda c: c)],
+        "its unfold has .xy where .yx belongs": [_decoder(lambda c: (1 - np.abs(c)) * _signs(c))],
+        "abs() is missing in its unfold": [_decoder(fold) for fold in BARE_FOLDS],
+        "abs() is missing in 1 - |x| - |y|": [
+            *(_decoder(_fold, bare) for bare in SOME_OF_TWO),
+            *(_by_size(bare) for bare in SOME_OF_TWO),
+        ],
+        "its unfold has no sign": [_decoder(lambda c: 1 - np.abs(c[:, ::-1])), _decoder(lambda c: c - _beyond(c))],
+        "its unfold has the wrong sign": [
+            _decoder(lambda c: c + _signs(c) * _beyond(c)),
+            _decoder(lambda c: -_fold(c)),
+        ],
+        "its unfold is done where z > 0, too": [_decoder(everywhere=True)],
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Axes:
+    """Which direction of an octahedron a direction is: m = matrix n. Its codes may lie turned by 45 degrees as well."""
+
+    matrix: np.ndarray
+    is_turned: bool = False
+
+    def code(self, p: np.ndarray) -> np.ndarray:
+        """The code of a point of the octahedron's square."""
+        return self._turned(p) / 2 if self.is_turned else p
+
+    def point(self, c: np.ndarray) -> np.ndarray:
+        """The point of the square that a code stands for."""
+        return self._turned(c) if self.is_turned else c
+
+    def _turned(self, p: np.ndarray) -> np.ndarray:
+        x, y = p.T
+        return np.stack([x + y, x - y], axis=1)
+
+
+@cache
+def frames() -> tuple[Axes, ...]:
+    """Every order of the axes with every sign; each also turned by 45 degrees about its pole, or in its codes."""
+    half = np.sqrt(0.5)
+    about = np.array([[half, half, 0], [half, -half, 0], [0, 0, 1]])
+    plain = [
+        np.eye(3)[list(order)] * np.array(signs)[:, None]
+        for order in itertools.permutations(range(3))
+        for signs in itertools.product((1.0, -1.0), repeat=3)
+    ]
+    turned = [Axes(about @ matrix) for matrix in plain]
+    return (*map(Axes, plain), *turned, *(Axes(matrix, True) for matrix in plain))
+
+
+@dataclass(frozen=True)
+class Found:
+    """Which octahedral maps two functions are: of each mistake, "" for none, the axes by their index in `frames`."""
+
+    encoder: Mapping[str, set[int]]
+    decoder: Mapping[str, set[int]]
+
+    def mistakes(self) -> Iterator[str]:
+        """The mistake of one side, where the other is right in the same axes."""
+        right = self.encoder.get("", set()), self.decoder.get("", set())
+        if right[0] & right[1]:
+            return
+        for name, side, other in (("encode", self.encoder, right[1]), ("decode", self.decoder, right[0])):
+            if said := next((said for said, axes in side.items() if said and axes & other), ""):
+                yield f"{name} is octahedral, but {said}"
+
+
+def mistakes(probe: Probe) -> list[str]:
+    """The mistake of an octahedral map, also of one whose codes are in [0, 1] but for the mistake; none of others."""
+    if probe.size != 2:
+        return []
+    return list(found(probe).mistakes()) or list(found(of_unit(probe)).mistakes())
+
+
+def found(probe: Probe) -> Found:
+    """Which octahedral maps the two functions of a code of two numbers are."""
+    n, codes = directions()[-COUNT:], np.random.default_rng(1).uniform(-1, 1, size=(COUNT, 2)).astype(np.float32)
+    given, back = probe.encode(n), unit(probe.decode(codes))
+    # In every axes at once: (axes, count, 3), and the points that codes stand for.
+    turned = np.stack([n @ axes.matrix.T for axes in frames()])
+    points = np.stack([axes.point(codes) for axes in frames()])
+    is_point = np.asarray((np.abs(points) <= 1).all(axis=2))
+
+    def encoded(model: Side) -> np.ndarray:
+        made = model(turned.reshape(-1, 3)).reshape(*turned.shape[:2], 2)
+        return np.stack([axes.code(p) for axes, p in zip(frames(), made, strict=True)])
+
+    def decoded(model: Side) -> np.ndarray:
+        made = model(points.reshape(-1, 2)).reshape(*points.shape[:2], 3)
+        return np.stack([m @ axes.matrix for axes, m in zip(frames(), made, strict=True)])
+
+    everywhere = np.full(turned.shape[:2], True)
+    return Found(
+        _matched(ENCODERS, lambda model: _alike(encoded(model), given, everywhere)),
+        _matched(DECODERS, lambda model: _alike(decoded(model), back, is_point)),
+    )
+
+
+def _matched(models: Mapping[str, Sequence[Side]], alike: Callable[[Side], np.ndarray]) -> dict[str, set[int]]:
+    matched = {
+        said: set(np.flatnonzero(np.any([alike(model) for model in variants], axis=0)).tolist())
+        for said, variants in models.items()
+    }
+    return {said: axes for said, axes in matched.items() if axes}
+
+
+def _alike(made: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """In which axes results, (axes, count, size), are a user's for nearly all that count."""
+    with np.errstate(invalid="ignore"):
+        near = (np.abs(made - own) < NEAR * np.maximum(1, np.abs(own))).all(axis=2)
+    # A sum that is 0 is finite in neither.
+    neither = ~np.isfinite(made).all(axis=2) & ~np.isfinite(own).all(axis=1)
+    return ((near | neither) & counts).sum(axis=1) > NEARLY_ALL * counts.sum(axis=1)

@@ -1,0 +1,106 @@
+"""Whether a half of the sphere that does not come back is a design, or lost by one of the two functions.
+
+Each is looked at by itself. The encoder knows the half where its directions have codes of their own: what their codes
+decode to has other codes. The decoder reaches it where codes of the square, used or not, decode into most of it. In a
+design for a half neither is so: xy, which uses the disc, and hemi-octahedral, which uses the square.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ....ground.directions import unit
+from .between import SAME_DEG, axes_of
+from .domains import Domain
+from .probe import Probe, Trip
+
+# Codes that are nearer than this in every number are the same; 8 bits have 256 of them.
+SAME_CODE = 4e-3
+# Of the directions of a half that have codes of their own, and of a half that is reached: which is most of it.
+MOST_OF_IT = 0.5
+# Of a half that is lost whole, but for what lies on its rim.
+NEARLY_ALL = 0.95
+# Rings of equal area of a half, and sectors of each.
+RINGS, SECTORS = 16, 48
+# Points across a square of codes, and across a cube.
+ACROSS = {2: 128, 3: 32}
+# How much of the square a code must use: a disc is 0.785 of it, the diamond of a map without its fold 0.5.
+LEAST_USED = 0.6
+# Cells across the square, which about 16 directions fall into each, and the share of them that lies on a rim at most.
+CELLS, RIM_OF_CELLS = 16, 0.15
+
+
+def square(size: int) -> np.ndarray:
+    """Codes spread over all that a storage holds, corners and edges included: (count, size)."""
+    axis = np.linspace(-1, 1, ACROSS.get(size, 3))
+    return np.array(list(itertools.product(axis, repeat=size)), np.float32)
+
+
+class Sides:
+    """What either function makes of the directions that a hemisphere loses.
+
+    Attributes:
+        gone: these directions; those of the other half that come back all the same are none.
+        share: in words, how many of the other half they are, where they are not nearly all.
+        encoder_knows: whether they have codes of their own.
+        decoder_reaches: whether codes of the square decode to most of them.
+    """
+
+    def __init__(self, trip: Trip, probe: Probe, half: Domain):
+        lost = half.lost(trip)
+        self.gone = lost.of(lost.angles() > SAME_DEG)
+        count, among = len(self.gone.n), len(lost.n)
+        self.share = f"{count} of {among} " if count < NEARLY_ALL * among else ""
+        codes, back = np.clip(self.gone.codes, -1, 1), probe.encode(unit(self.gone.decoded))
+        own = (np.abs(codes - np.clip(back, -1, 1)) > SAME_CODE).any(axis=1)
+        self.encoder_knows = bool(own.sum() > MOST_OF_IT * count)
+        reached = _cells(unit(probe.decode(square(probe.size))), half)
+        self.decoder_reaches = bool(np.isin(_cells(self.gone.n, half), reached).sum() > MOST_OF_IT * count)
+
+
+def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
+    """The cells of the sphere that directions lie in, whole numbers; those of the half itself are below 0."""
+    height = -half.side * n[:, half.axis]
+    x, y = (n[:, (half.axis + step) % 3] for step in (1, 2))
+    sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * SECTORS).clip(max=SECTORS - 1)
+    cells = np.floor(height * RINGS).clip(max=RINGS - 1) * SECTORS + sector
+    return np.where(np.isfinite(cells), cells, -1)
+
+
+def lost(sides: Sides, half: Domain) -> str:
+    """Which function loses the half that a hemisphere lacks, in a line; empty where both have it, or neither."""
+    axes = axes_of(sides.gone)
+    which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
+    if sides.encoder_knows and not sides.decoder_reaches:
+        return f"decode loses {which}: encode gives them codes of their own, and no code decodes to most of them"
+    if sides.decoder_reaches and not sides.encoder_knows:
+        said = "it gives them codes of other directions, though decode reaches them from codes that it does not use"
+        return f"encode loses {which}: {said}"
+    return ""
+
+
+def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
+    """Numbers that the encoder fills and the decoder does not read."""
+    before = probe.decode(np.clip(codes, -1, 1))
+    for at in range(probe.size):
+        if np.ptp(np.clip(codes[:, at], -1, 1)) < SAME_CODE:
+            continue
+        changed = np.clip(codes, -1, 1).copy()
+        changed[:, at] = np.random.default_rng(at).permutation(changed[:, at])
+        if np.array_equal(probe.decode(changed), before):
+            yield f"decode does not read number {at + 1} of the code, which encode fills"
+
+
+def unused(trip: Trip, probe: Probe) -> Iterator[str]:
+    """The share of the square that no direction is given, of codes of two numbers that come back."""
+    cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
+    # Cells at the rim count whole. Where most are used nothing is wasted, and encode is not asked for more.
+    if probe.size != 2 or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:
+        return
+    codes = square(2)
+    own = np.abs(codes - probe.encode(unit(probe.decode(codes)))).max(axis=1) < SAME_CODE
+    if own.mean() < LEAST_USED:
+        yield f"codes use {100 * own.mean():.0f} % of the square that the storage spends bits on"

@@ -1,0 +1,240 @@
+"""What is wrong with a pair whose directions come back nearly: codes that are scaled, shifted or cut off between them.
+
+The decoder says which code it wants for a direction: the one that decodes to it, by Newton's method from the code that
+the encoder gives. How wanted codes differ from given ones names the mistake, whatever the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....ground.angles import angles_deg
+from ....ground.directions import unit
+from .probe import Probe, Trip
+
+# Of a finite difference; of float32's digits it leaves half.
+STEP = 1e-3
+# How many steps of Newton's method.
+ROUNDS = 3
+# Of the scales that are tried: the farthest from 1, how many, and on how many directions.
+FARTHEST, SCALES, FEW = 4.0, 33, 256
+# Of a line: how often it is drawn, of what share of the nearest, through how many, and over which range at least.
+FITTINGS, KEPT, LEAST_COUNT, LEAST_SPREAD = 3, 0.9, 16, 0.1
+# Of its distance from 1: how much scales of numbers may differ that are one.
+ALIKE = 0.02
+# Of a shift: how much those of numbers may differ that are one, and of half a step, how near it must be to it.
+ALIKE_SHIFTS, NEAR_A_HALF = 0.1, 0.02
+# Scales this near are not told apart; and how near to a fraction, of its distance from 1, a scale is it.
+UNTOLD, OF_A_FRACTION = 1e-7, 0.003
+# By how much a mistake that is named makes the error smaller at least.
+FEWER = 8.0
+# The sizes of steps that codes may be rounded to.
+BITS = range(5, 17)
+# Of half a step, as a share of a step: how near a shift must be to it; and of a step, how near a code to a whole one.
+HALF_STEP, WHOLE = 0.08, 0.02
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What the decoder wants in place of a number c of a code, counted from 1: scale c + shift."""
+
+    number: int
+    scale: float
+    shift: float
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Steps that the numbers of codes are whole multiples of: `steps` from 0 to 1.
+
+    Attributes:
+        is_unit: whether (c + 1) / 2 is a multiple, as UNORM has it; else c, as SNORM has it.
+    """
+
+    bits: int
+    is_unit: bool
+
+    @property
+    def steps(self) -> int:
+        return 2 ** (self.bits - (not self.is_unit)) - 1
+
+    def whole(self, codes: np.ndarray) -> np.ndarray:
+        """Codes in steps."""
+        return (codes * 0.5 + 0.5 if self.is_unit else codes) * self.steps
+
+    @property
+    def step(self) -> float:
+        """The step of a number in [-1, 1]."""
+        return (2.0 if self.is_unit else 1.0) / self.steps
+
+
+def lattice_of(codes: np.ndarray) -> Lattice | None:
+    """The coarsest steps that all codes lie on; None where they lie on none."""
+    for bits in BITS:
+        for is_unit in (True, False):
+            found = Lattice(bits, is_unit)
+            whole = found.whole(codes.astype(np.float64))
+            if (np.abs(whole - np.rint(whole)) < WHOLE).mean() > 0.999 and len(np.unique(np.rint(whole))) > 8:
+                return found
+    return None
+
+
+def start(trip: Trip, probe: Probe) -> float:
+    """The scale of codes at which most comes back best, of a few."""
+    tried = [float(scale) for scale in np.geomspace(1 / FARTHEST, FARTHEST, SCALES)]
+    few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
+    given = np.concatenate([few.codes * np.float32(scale) for scale in tried])
+    back = np.split(probe.decode(given), len(tried))
+    return min(zip(tried, back, strict=True), key=lambda one: float(np.median(angles_deg(few.n, one[1]))))[0]
+
+
+def wanted(trip: Trip, probe: Probe, scale: float = 1.0) -> np.ndarray:
+    """The codes that the decoder wants, of shape (count, size); NaN where Newton's method leads to none.
+
+    Args:
+        scale: times the encoder's codes is where it begins.
+    """
+    codes = trip.codes.astype(np.float64) * scale
+    for _ in range(ROUNDS):
+        codes = codes + _towards(trip.n, codes, probe)
+    return codes
+
+
+def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
+    """The step of each code that the decoder's slope says."""
+    size = codes.shape[1]
+    # Of what float32 makes of a code, so that a difference is one of codes that are.
+    at = codes.astype(np.float32)
+    shifts = [np.float32(sign * STEP) * np.eye(size, dtype=np.float32)[i] for i in range(size) for sign in (1, -1)]
+    given = [at, *((at + shift).astype(np.float32) for shift in shifts)]
+    back = [unit(one) for one in np.split(probe.decode(np.concatenate(given)), len(given))]
+    gaps = [(given[1 + 2 * i] - given[2 + 2 * i])[:, i : i + 1] for i in range(size)]
+    slope = np.stack([(back[1 + 2 * i] - back[2 + 2 * i]) / gaps[i] for i in range(size)], axis=2)
+    flat = ~(np.isfinite(slope).all(axis=(1, 2)))
+    slope[flat] = 0.0
+    made = np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=1e-3), n - back[0])
+    made[flat] = np.nan
+    return made - (codes - at)
+
+
+def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, scale: float) -> Fit:
+    """A line through most of the wanted numbers, by least squares on what lies nearest, again and again."""
+    x, y = given[:, at], wanted_codes[:, at]
+    kept, shift = np.isfinite(y) & (np.abs(y - scale * x) < 0.5), 0.0
+    for _ in range(FITTINGS):
+        if kept.sum() < LEAST_COUNT or np.ptp(x[kept]) < LEAST_SPREAD:
+            return Fit(at + 1, 1.0, 0.0)
+        scale, shift = np.polyfit(x[kept], y[kept], 1)
+        off = np.abs(scale * x + shift - y)
+        kept = kept & (off <= np.quantile(off[kept], KEPT))
+    return Fit(at + 1, float(scale), float(shift))
+
+
+def mistakes(trip: Trip, probe: Probe, scale: float = 1.0) -> Iterator[str]:
+    """What the numbers of codes are scaled or shifted by between the two, or how they are cut off.
+
+    Args:
+        scale: about what codes must be multiplied by.
+    """
+    lattice = lattice_of(trip.codes)
+    x, y = trip.codes.astype(np.float64), wanted(trip, probe, scale)
+    moving = [at for at in range(probe.size) if np.nanmax(np.abs(y[:, at] - x[:, at]), initial=0.0) > 0]
+    if not moving:
+        return
+    if lattice:
+        yield from _of_lattice(x[:, moving], y[:, moving], lattice)
+        return
+    fits, better = [_fit(at, x, y, scale) for at in moving], trip.codes.copy()
+    for at, fit in zip(moving, fits, strict=True):
+        better[:, at] = x[:, at] * fit.scale + fit.shift
+    after = Trip(trip.n, trip.view, better, probe.decode(better)).angles()
+    if FEWER * np.median(after) < np.median(trip.angles()):
+        yield from _said(fits, trip)
+
+
+def _said(fits: list[Fit], trip: Trip) -> Iterator[str]:
+    shown = f"up to {np.quantile(trip.angles(), 0.99):.3g} degrees off without any storage"
+    scale = np.array([1 / fit.scale for fit in fits])
+    # Where c is 0, and where it is at its ends: a shift in [0, 1] is one of the scale, too.
+    shift = np.array([-fit.shift / fit.scale for fit in fits])
+    if not _is_shift(scale, shift):
+        yield f"encode gives {_scale_said(fits, scale, shift)} the code that decode takes: {shown}"
+    elif bits := _half_step(float(shift.mean())):
+        size = "large" if shift.mean() > 0 else "small"
+        yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added to what is rounded later?"
+    else:
+        yield f"encode gives the code that decode takes, plus {shift.mean():.3g}: {shown}"
+
+
+def _is_shift(scale: np.ndarray, shift: np.ndarray) -> bool:
+    """Whether all numbers are shifted by the same, and not scaled."""
+    most = ALIKE_SHIFTS * np.abs(shift).max()
+    return bool(np.ptp(shift) < most and np.abs(scale - 1).max() < most)
+
+
+def _half_step(shift: float) -> int:
+    """The bits whose half step codes are shifted by; 0 where it is none."""
+    halves = ((bits, abs(shift) * steps) for bits in BITS for steps in (2**bits - 1, 2**bits))
+    return next((bits for bits, share in halves if abs(share - 1) < NEAR_A_HALF), 0)
+
+
+def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray) -> str:
+    """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
+    if np.ptp(scale) <= ALIKE * np.abs(scale - 1).max():
+        return f"{_fraction(float(scale.mean()))} times"
+    off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
+    said = [
+        f"{scale[at]:.3g} times number {fits[at].number}{_shift_said(scale[at], shift[at])}"
+        for at in np.flatnonzero(off)
+    ]
+    return f"{' and '.join(said)} of"
+
+
+def _shift_said(scale: float, shift: float) -> str:
+    """A shift in words; empty where there is none, or where in [0, 1] there is none."""
+    is_told = min(abs(shift), abs(shift - (scale - 1))) > ALIKE * abs(scale - 1)
+    return f" {'plus' if shift > 0 else 'minus'} {abs(shift):.3g}" if is_told else ""
+
+
+def _fraction(scale: float) -> str:
+    """A scale as a fraction of the integers that stand for 1, where it is one: 254/255."""
+    fractions = {}
+    for steps in (one for bits in BITS for one in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
+        fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
+    # Of two that float32 does not tell apart the first, whose integers stand for 1.
+    said, value = min(fractions.items(), key=lambda one: round(abs(one[1] - scale) / UNTOLD))
+    return said if abs(value - scale) < OF_A_FRACTION * abs(value - 1) else f"{scale:.5g}"
+
+
+def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:
+    """Of codes that the encoder rounds by itself."""
+    off = (y - x) / lattice.step
+    off = off[np.isfinite(off).all(axis=1) & (np.abs(off) < 4).all(axis=1)]
+    kept = x[np.isfinite(y).all(axis=1) & (np.abs((y - x) / lattice.step) < 4).all(axis=1)]
+    up, away = np.median(off, axis=0), np.median(off * np.sign(kept), axis=0)
+    bits = f"codes are {{}} to {lattice.bits} bits, not rounded: {{}} half a step, by which every code is off"
+    if scaled := list(_lattice_scale(kept, off, lattice)):
+        yield from scaled
+    elif (np.abs(up - 0.5) < HALF_STEP).all():
+        yield bits.format("cut off", "add")
+    elif (np.abs(away - 0.5) < HALF_STEP).all():
+        yield bits.format("cut off toward 0", "add")
+    elif (np.abs(up + 0.5) < HALF_STEP).all():
+        yield f"codes are half a step of {lattice.bits} bits too large: is 0.5 added twice before they are cut off?"
+
+
+def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
+    """Of codes that are rounded to steps of another size than they are divided by: 254 for 255."""
+    slopes = [_slope(x[:, at], off[:, at]) for at in range(x.shape[1])]
+    # One step too many or too few from end to end.
+    steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
+    if (np.abs(np.abs(steps) - 1) < 0.2).all() and np.ptp(np.sign(steps)) == 0:
+        used = lattice.steps - 1 if steps.mean() > 0 else lattice.steps + 1
+        yield f"encode gives {used}/{lattice.steps} times the code that decode takes: it rounds to {used} steps"
+
+
+def _slope(x: np.ndarray, off: np.ndarray) -> float:
+    return float(np.polyfit(x, off, 1)[0]) if np.ptp(x) > 0.1 else 0.0

@@ -1,0 +1,91 @@
+"""An encoder and its decoder as functions that can be asked for anything, and what a round trip does to directions.
+
+Arrays are float of shape (count, ...), a row for each direction: `n` the direction, `codes` its numbers, `decoded` what
+comes back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .....encodings.codecs.encoding import Encoding
+from .....gbuffer.codecs.codec_passes import exact_values
+from .....gbuffer.gl.device import Device
+from ....ground.angles import angles_deg
+
+# The view-space position that every direction is seen at.
+VIEW = (0.1, -0.2, -1.0)
+
+
+@dataclass(frozen=True)
+class Probe:
+    """The two functions before any storage.
+
+    Attributes:
+        encode: directions of shape (count, 3) to codes of shape (count, size).
+        decode: codes to what comes back, as long as it is.
+        size: how many numbers a code has.
+    """
+
+    encode: Callable[[np.ndarray], np.ndarray]
+    decode: Callable[[np.ndarray], np.ndarray]
+    size: int
+
+
+def of_unit(probe: Probe) -> Probe:
+    """Two functions of codes in [0, 1] as functions of codes in [-1, 1]."""
+    return Probe(lambda n: probe.encode(n) * 2 - 1, lambda codes: probe.decode(codes * 0.5 + 0.5), probe.size)
+
+
+def probe_of(gl: Device, encoding: Encoding) -> Probe:
+    """The two functions of an encoding on a device. What they raise is what `exact_values` raises."""
+    size = encoding.components + encoding.sign_bits
+
+    def both(given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        wide = np.pad(given, ((0, 0), (0, 4 - given.shape[1]))).astype(np.float32)
+        view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(wide), 1))
+        return exact_values(gl, encoding, wide, view, wide)
+
+    return Probe(lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size)
+
+
+@dataclass(frozen=True)
+class Trip:
+    """Directions, where they are seen from, their codes, and what comes back of these as storages clip them."""
+
+    n: np.ndarray
+    view: np.ndarray
+    codes: np.ndarray
+    decoded: np.ndarray
+
+    def of(self, which: np.ndarray) -> Trip:
+        """Some of them."""
+        return Trip(self.n[which], self.view[which], self.codes[which], self.decoded[which])
+
+    def angles(self) -> np.ndarray:
+        """How far each comes back, in degrees."""
+        return angles_deg(self.n, self.decoded)
+
+    def example(self, at: int) -> str:
+        """A direction and what it becomes."""
+        return f"{vector(self.n[at])} becomes {vector(self.decoded[at])}"
+
+    @property
+    def worst(self) -> str:
+        """The direction that comes back farthest, and what it becomes."""
+        return self.example(int(np.argmax(self.angles())))
+
+
+def trip_of(probe: Probe, n: np.ndarray) -> Trip:
+    """The round trip of directions."""
+    codes = probe.encode(n)
+    view = np.broadcast_to(np.array(VIEW, np.float32), n.shape)
+    return Trip(n, view, codes, probe.decode(np.clip(codes, -1, 1)))
+
+
+def vector(values: np.ndarray) -> str:
+    """Numbers in brackets, three digits each."""
+    return "(" + ", ".join(f"{value + 0.0:.3g}" for value in values) + ")"

@@ -1,0 +1,72 @@
+"""A device that computes in 16 bits: Vulkan through wgpu, and what it makes of a compute shader."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .....gbuffer.gl.device import FormatError
+from .....gbuffer.gl.shader import Source
+from ....ground.machine.vulkan import adapters
+from ....ground.output.errors import MissingError
+from ....shaders.isa.spirv import compiled
+
+FEATURE = "shader-f16"
+GROUP = 64
+EXCESS = Path(__file__).with_name("excess.comp")
+
+
+@cache
+def half_device() -> Any:
+    """The wgpu device.
+
+    Raises:
+        MissingError: wgpu is not installed, or no Vulkan device here has 16-bit floats; what to install.
+    """
+    try:
+        from wgpu.utils import device
+
+        found = [adapter for adapter in adapters() if FEATURE in adapter.features]
+    except ImportError as error:
+        raise MissingError(f"half arithmetic by glsl needs wgpu ({error}); pip install wgpu") from error
+    if not found:
+        said = "install one (Debian: apt-get install mesa-vulkan-drivers)"
+        raise MissingError(f"half arithmetic by glsl needs a Vulkan driver with 16-bit floats; {said}")
+    device.preconfigure_default_device("normalbench", adapter=found[0], required_features={FEATURE})
+    return device.get_default_device()
+
+
+def name() -> str:
+    """What a row calls the device, and whether it rounds every step. Raises MissingError as `half_device` does."""
+    steps = "some steps keep more digits" if keeps_digits() else "every step rounded"
+    return f"{half_device().adapter.info['device']}, Vulkan, {steps}"
+
+
+@cache
+def keeps_digits() -> bool:
+    """Whether a step's result may have more digits than a half, until it is stored."""
+    one, two = (np.full((GROUP, 4), 1 + 2.0**-power, np.float32) for power in (10, 9))
+    return bool(computed(Source(EXCESS), one, two).any())
+
+
+def computed(source: Source, given: np.ndarray, views: np.ndarray) -> np.ndarray:
+    """What a compute shader makes of float32 arrays of shape (count, 4): an array of that shape.
+
+    Raises:
+        MissingError: no device or no compiler.
+        ShaderError: it does not compile.
+        FormatError: the device refuses it.
+    """
+    from wgpu.utils.compute import compute_with_buffers
+
+    half_device()
+    binary = compiled(source, "comp", counted=False).binary
+    inputs = {at: np.ascontiguousarray(array, np.float32) for at, array in enumerate((given, views))}
+    try:
+        made = compute_with_buffers(inputs, {2: (given.size, "f")}, binary, n=-(-len(given) // GROUP))
+    except Exception as error:  # whatever the driver raises
+        raise FormatError(f"{half_device().adapter.info['device']}: {' '.join(str(error).split())[:300]}") from error
+    return np.frombuffer(made[2], np.float32).reshape(given.shape)

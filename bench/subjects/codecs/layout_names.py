@@ -1,0 +1,111 @@
+"""Layouts as they are named: presets, or TOML files, which may name a user's own encoder."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.files import file_toml
+from ....encodings.codecs.variants import MARK, TABLE
+from ....gbuffer.layouts.layout import Layout, read_layout
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.layouts.words import LayoutError
+from ...ground.output.errors import MissingError, UsageError, pick
+from ...shaders.languages.words import file_of, files_in, lacks_a_function, names_an_encoder
+from .names import check_twin
+from .user_encodings import encodings_named
+
+# The file of a look-up table: scales.npy of best_fit:table=scales.npy.
+_TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)[^{MARK}]+")
+
+
+def layouts_named(names: str) -> list[Layout]:
+    """The layouts that comma-separated names stand for.
+
+    Raises:
+        UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
+        MissingError: the compiler of an encoder's language is not there.
+    """
+    words = dict.fromkeys(name.strip() for name in names.split(","))
+    # The first look at an encoder takes seconds: layouts that name the same one share it.
+    shared = cache(_encoding_named)
+    found = {name: _read(Path(name), shared) for name in words if name.endswith(".toml")}
+    known = {**LAYOUTS, **found}
+    chosen = pick("layout", names, known) if "all" not in words else list(known.values())
+    called = [layout.name for layout in chosen]
+    for name in called:
+        if called.count(name) > 1:
+            raise UsageError(f"two layouts are called {name}, which is a file's name without .toml; rename one")
+    _check_encodings(chosen)
+    return chosen
+
+
+def _check_encodings(layouts: Sequence[Layout]) -> None:
+    """Raises UsageError for two encodings of one name, which rows could not tell apart."""
+    files: dict[str, set[Path]] = {}
+    for encoding in (layout.encoding for layout in layouts):
+        files.setdefault(encoding.name, set()).add(encoding.source or encoding.glsl)
+        if len(files[encoding.name]) > 1:
+            raise UsageError(f"two layouts have each an encoding named {encoding.name} of its own; rename one")
+
+
+def _read(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
+    try:
+        return read_layout(path, lambda word: encoding_named(_from_here(path, word)))
+    except LayoutError as error:
+        raise UsageError(str(error)) from error
+    except (UsageError, MissingError) as error:
+        # Of an encoder's file, which does not say that it was a layout that named it.
+        raise type(error)(f"{path}: {error}") from error
+
+
+def _encoding_named(word: str) -> Encoding:
+    """The encoding that --encoding would take by this name. Raises UsageError and MissingError."""
+    if "," in word or word == "all":
+        raise UsageError(f"encoding {word!r}: a layout has one encoding")
+    (encoding,) = encodings_named(word)
+    check_twin(encoding)
+    return encoding
+
+
+def _from_here(path: Path, word: str) -> str:
+    """The encoding that a layout names, with its file as seen from the working folder.
+
+    Raises:
+        LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
+    """
+    if names_an_encoder(word) or lacks_a_function(word):
+        _check_inside(path.parent, str(file_of(word)))
+        return str(path.parent / word)
+    table = _TABLE_FILE.search(word)
+    if not table:
+        return word
+    _check_inside(path.parent, table[0])
+    return f"{word[: table.start()]}{path.parent / table[0]}{word[table.end() :]}"
+
+
+def _check_inside(folder: Path, file: str) -> None:
+    """As for what an encoder includes: neither its name nor a link leads out of the folder."""
+    place = Path(os.path.normpath(file))
+    if place.is_absolute() or place.parts[:1] == (os.pardir,) or not _leads_inside(folder, place):
+        raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
+
+
+def _leads_inside(folder: Path, place: Path) -> bool:
+    try:
+        return (folder / place).absolute().resolve().is_relative_to(folder.absolute().resolve())
+    except ValueError:  # no file can have this name, which its reader says
+        return True
+
+
+def files_of_layout(path: Path) -> list[Path]:
+    """The file that a layout's encoding is read from; none where there is none, or the layout cannot be read."""
+    try:
+        word = _from_here(path, str(file_toml(path).get("encoding", "")))
+    except (OSError, ValueError, LayoutError):
+        return []
+    return [Path(file) for file in files_in(word)]

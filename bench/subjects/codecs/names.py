@@ -1,0 +1,115 @@
+"""Codecs as they are named on the command line, checked before anything is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
+from ....encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.vec import Vec3
+from ...ground.options.words import Words, given_in
+from ...ground.output.errors import UsageError, by_reason, names_a_file, pick
+from ...shaders.code.twin import NoTwinError
+from ...shaders.languages.words import CHAIN
+from .user_encodings import encodings_named
+
+
+def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
+    """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
+    chosen = with_arithmetics(_with_chains(encodings), arithmetics)
+    return [
+        Codec(encoding, storage, rounding)
+        for storage in storages_named(storages)
+        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for encoding in chosen
+    ]
+
+
+def _with_chains(names: str) -> list[Encoding]:
+    """Encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
+    words, own = list(dict.fromkeys(map(str.strip, names.split(",")))), given_in(names)
+    if not any(_is_chain(word) for word in words):
+        return encodings_named(names)
+    single = [word for word in words if not _is_chain(word)]
+    found = encodings_named(Words(single, own)) if single else []
+    return [*found, *(_chained(word, own) for word in words if _is_chain(word))]
+
+
+def _is_chain(word: str) -> bool:
+    return CHAIN in word and not names_a_file(word)
+
+
+def _chained(word: str, own: Mapping[str, Any]) -> Encoding:
+    before, _, then = word.rpartition(CHAIN)
+    name, is_codec, storage = before.rpartition("/")
+    if not (is_codec and name and then):
+        raise UsageError(f"{word}: a chain is ENCODING/STORAGE+ENCODING, such as octahedral/rgb8_12_12+xyz")
+    codecs = codecs_named(Words([name], own), storage, "nearest")
+    encodings = encodings_named(Words([then], own))
+    if len(codecs) != 1 or len(encodings) != 1:
+        raise UsageError(f"{word}: one codec and one encoding at a time")
+    if encodings[0].domain == "view" or codecs[0].encoding.sign_bits:
+        raise UsageError(f"{word}: codes that need a view ray or a depth are not chained")
+    return encodings[0].behind(codecs[0])
+
+
+def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:
+    """Encodings computed in each of comma-separated arithmetics, those of a name that says half once. Raises
+    UsageError."""
+    chosen = pick("arithmetic", names, dict(zip(ARITHMETICS, ARITHMETICS, strict=True)))
+    named = [encoding for encoding in encodings if encoding.is_half or FLOAT in chosen]
+    made = [in_half(encoding) for encoding in encodings if HALF in chosen and not encoding.is_half]
+    return [*named, *made]
+
+
+def storages_named(names: str) -> list[Storage]:
+    """The storages of comma-separated names, also of numbers laid across channels by their bits. Raises UsageError."""
+    try:
+        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+    named = {name: storage for name, storage in made.items() if storage}
+    return pick("storage", names, {**STORAGES, **named, **given_in(names)})
+
+
+def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
+    """The codecs whose storage has room for their components, and a line for each reason why others are left out.
+
+    Raises:
+        UsageError: none is left.
+    """
+    codecs = list(codecs)
+    fit = [codec for codec in codecs if codec.fits]
+    left_out = by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
+    if not fit:
+        raise UsageError(left_out[0] if left_out else "nothing to measure")
+    return fit, left_out
+
+
+def check_twin(encoding: Encoding) -> None:
+    """Traces the Python half of a user's encoding on one normal; those of the catalogue are tested.
+
+    Raises:
+        UsageError: it raises, or its code has another size than it says; one line with its file.
+    """
+    if ENCODINGS.get(encoding.name) is encoding:
+        return
+    n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
+    where = encoding.twin
+    try:
+        code = jax.eval_shape(encoding.encode, n, n)
+        size = encoding.components + encoding.sign_bits
+        if len(code) != size:
+            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
+        jax.eval_shape(encoding.decode, code, n)
+    except NoTwinError:
+        return
+    except Exception as error:  # whatever a user's own code raises
+        raise UsageError(f"{where}: {type(error).__name__}: {str(error).splitlines()[0]}") from error

@@ -1,0 +1,131 @@
+"""The two functions of a user's GLSL file: vec2 mine_encode(vec3 n, vec3 view) and vec3 mine_decode(vec2 e, vec3 view).
+Either may do without the view.
+
+What is written in another way is named with what it should be, before a compiler sees it.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import takewhile
+from pathlib import Path
+from typing import NamedTuple
+
+from ...ground.output.errors import UsageError
+
+# Type, name and parameters, of a definition or of a declaration; not of a call or a macro.
+FUNCTION = r"\b(?!return\b|else\b|define\b)(\w+)\s+({name})\s*\(([^(){{}};]*)\)"
+ENCODE, MAIN = re.compile(FUNCTION.format(name=r"\w+_encode")), re.compile(r"\bvoid\s+main\s*\(")
+CODES = ("vec2", "vec3")
+HLSL = re.compile(r"\b(?:float|half|int|uint)[234](?:x[234])?\b")
+FROM_HLSL = "rename float2 to vec2, lerp to mix, and so on"
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+VERSION = re.compile(r"^\s*#\s*version\b", re.M)
+# What a program is given from outside: a number, a texture, or a block with a name of its own or without one.
+GIVEN = re.compile(r"\b(?:uniform|buffer)\b([^;{]*)(?:\{([^}]*)\}([^;]*))?;")
+SIZE = re.compile(r"\[[^\]]*\]")
+
+
+class Encode(NamedTuple):
+    """The encode that a file defines: the encoding's name, and how many numbers its code has; and the names of the
+    other encodings in it."""
+
+    name: str
+    components: int
+    others: tuple[str, ...]
+
+
+def encode_of(path: Path, text: str) -> Encode:
+    """The encode of a file's text.
+
+    Raises:
+        UsageError: the text does not define the two functions as they must be.
+    """
+    code = COMMENT.sub(" ", text)
+    if "/*" in code:
+        raise UsageError(f"{path}: a comment that begins with /* is not closed")
+    if MAIN.search(code):
+        raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
+    if VERSION.search(code):
+        raise UsageError(f"{path}: it has #version; leave it out, normalbench has its own")
+    found = [match.groups() for match in ENCODE.finditer(code)]
+    right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
+    if not right:
+        raise UsageError(f"{path}: {_no_encode(found)}")
+    (kind, name), *others = [(kind, name.removesuffix("_encode")) for kind, name in right]
+    _check_decode(path, code, name, kind)
+    return Encode(name, int(kind[-1]), tuple(other for _, other in others if f"{other}_decode" in code))
+
+
+def check_given(path: Path, code: str) -> None:
+    """Raises UsageError where a shader reads what it is given from outside: a uniform, a texture or a buffer.
+
+    Args:
+        code: the file with what it includes, without comments.
+    """
+    if given := _given_and_read(code):
+        raise UsageError(f"{path}: it reads {given}, which has no value here; write a constant in its place")
+
+
+def _given_and_read(code: str) -> str:
+    rest = GIVEN.sub(" ", code)
+    for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
+        # The members of a block with a name are read by that name. A uniform with a value has it here, too.
+        is_named = members is not None and instance.strip()
+        said = instance if is_named else declared if members is None else members
+        what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
+        unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", said))
+        names = [words[-1] for one in unvalued if (words := re.findall(r"\w+", SIZE.sub(" ", one)))]
+        if read := next((name for name in names if _is_read(name, rest)), ""):
+            return what.format(read)
+    return ""
+
+
+def _is_read(name: str, code: str) -> bool:
+    """Whether code has a name, not as the x of n.x, and declares nothing itself that is called so."""
+    own = rf"\b(?!return\b|else\b)\w+\s+{name}\s*[,)=;\[]|#\s*define\s+{name}\b"
+    return bool(re.search(rf"(?<![.\w]){name}\b", code)) and not re.search(own, code)
+
+
+def _is_encode(function: tuple[str, ...]) -> bool:
+    return function[0] in CODES and _types(function[2]) in (["vec3"], ["vec3", "vec3"])
+
+
+def _types(parameters: str) -> list[str]:
+    """The types of parameters: `in vec3 n, vec3 view` has vec3 twice."""
+    words = [parameter.split() for parameter in parameters.split(",")]
+    return [" ".join(word for word in parameter[:-1] if word not in ("in", "const")) for parameter in words]
+
+
+def _no_encode(found: list[tuple[str, ...]]) -> str:
+    """Why none of some functions is an encode."""
+    if not found:
+        return "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"
+    kind, name, _ = found[0]
+    wanted = f"{kind if kind in CODES else 'vec2 (or vec3)'} {name}(vec3 n, vec3 view)"
+    return _should_be(found[0], wanted)
+
+
+def _check_decode(path: Path, code: str, name: str, kind: str) -> None:
+    """Raises UsageError where there is a decode, but not one of the right types."""
+    found = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
+    if found and not any(one[0] == "vec3" and _types(one[2]) in ([kind], [kind, "vec3"]) for one in found):
+        wanted = f"vec3 {name}_decode({kind} e, vec3 view)"
+        raise UsageError(f"{path}: {_should_be(found[0], wanted)}")
+
+
+def _should_be(function: tuple[str, ...], wanted: str) -> str:
+    """A function as it stands, as it must be, and what is wrong with it."""
+    kind, name, parameters = function
+    said = f"{kind} {name}({' '.join(parameters.split())})"
+    said = "".join(letter if letter.isprintable() else "?" for letter in said)
+    why = of_hlsl(said) or ("a code has two or three numbers" if "vec4" in said else "")
+    return f"{said} must be {wanted}" + (f"; {why}" if why else "")
+
+
+def of_hlsl(text: str) -> str:
+    """What to do with GLSL that has types of HLSL; empty where it has none."""
+    found = HLSL.search(COMMENT.sub(" ", text))
+    return f"{found[0]} is HLSL: {FROM_HLSL}" if found else ""

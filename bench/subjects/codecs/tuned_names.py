@@ -1,0 +1,61 @@
+"""Variants of encodings by name: `stereographic:scale=1.31`, `octahedral:axis=y`, `best_fit:table=scales.npy`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.files import called
+from ....encodings.codecs.variants import MARK, TABLE, known_settings, settings_in, variant
+from ...ground.output.arrays import DamagedError, read_npy
+from ...ground.output.errors import UsageError
+
+
+def tuned(word: str) -> Encoding:
+    """The encoding that a name with parameters stands for.
+
+    Raises:
+        UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is not a table.
+    """
+    name = word.partition(MARK)[0]
+    if name not in ENCODINGS:
+        raise UsageError(f"{word}: unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
+    encoding = ENCODINGS[name]
+    try:
+        _, values = settings_in(word)
+    except ValueError as error:
+        raise UsageError(f"{word}: after {name} come parameters, each once, such as {_example(encoding)}") from error
+    table = values.pop(TABLE, None) if encoding.look_up else None
+    try:
+        encoding = variant(encoding, values)
+    except ValueError as error:
+        raise UsageError(f"{word}: {error}") from error
+    if table is None:
+        return encoding
+    return encoding.with_table(_read_table(Path(table), encoding), called(Path(table).name))
+
+
+def _example(encoding: Encoding) -> str:
+    known = [f"{encoding.name}{MARK}{key}={value}" for key, value in known_settings(encoding).items()]
+    return known[0] if known else f"those of others: {encoding.name} has none"
+
+
+def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
+    assert encoding.look_up
+    published = encoding.tables()[encoding.look_up.sampler]
+    try:
+        # With room for a header.
+        table = read_npy(path, published.nbytes + 4096)
+    except DamagedError as error:
+        raise UsageError(f"{path}: not a NumPy file of numbers, as `normalbench tune --table` writes it") from error
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from error
+    if table.shape != published.shape or table.dtype != published.dtype:
+        wanted = f"{published.dtype} of shape {published.shape}"
+        raise UsageError(f"{path}: a table of {encoding.name} is {wanted}, as `normalbench tune --table` writes it")
+    if not np.all((table > 0) & (table <= 1)):
+        raise UsageError(f"{path}: a table of {encoding.name} holds scales above 0 and up to 1")
+    return table

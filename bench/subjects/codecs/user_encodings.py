@@ -1,0 +1,415 @@
+"""Users' own encodings, measured like any other: files of GLSL, HLSL or Slang, and a Python twin next to one."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from traceback import extract_tb
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.files import called
+from ....encodings.vec import Vec2, Vec3
+from ....gbuffer.codecs.harness import takes_view
+from ....gbuffer.gl.shader import ShaderError, read_shader
+from ...ground.machine import children, forks
+from ...ground.machine.cores import on_all_cores
+from ...ground.options.words import given_in
+from ...ground.output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
+from ...ground.output.spelling import spelled
+from ...shaders.code.twin import NoTwinError
+from ...shaders.languages.pairs import NORMAL, Function
+from ...shaders.languages.programs import pair
+from ...shaders.languages.source import Source
+from ...shaders.languages.translated import glsl_file, translated
+from ...shaders.languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
+from . import tuned_names
+from .doctor.domains import SPHERE, Domain
+from .signatures import check_given, encode_of
+
+# Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
+OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        ".metal": ("Metal", "write it as GLSL"),
+    }
+)
+# A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
+TIME_LIMIT = 60.0
+# In place of a domain, to look closely at a file whose author does not say what it is made for.
+ANY = "any"
+FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
+TAKEN = "there is an encoding named {} already; rename its two functions"
+UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
+
+
+def encodings_named(names: str) -> list[Encoding]:
+    """The encodings that comma-separated names stand for: the catalogue's, tuned ones, or files that end in one of
+    ENDINGS.
+
+    A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
+    is named on standard error and left out.
+
+    Raises:
+        UsageError: an unknown name, or nothing left.
+        MissingError: nothing left, because a compiler is missing.
+    """
+    check_comma(names)
+    words = dict.fromkeys(word.strip() for word in names.split(","))
+    own = given_in(names)
+    for word in (word for word in words if word not in own):
+        _check_word(word)
+    files, complaints, notes = _read_all([word for word in words if names_an_encoder(word)])
+    rest = [word for word in words if word in files or not names_an_encoder(word)]
+    if complaints and not rest:
+        raise complaints[0]
+    for error in complaints:
+        leave_out(str(error))
+    tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
+    picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
+    # At last: an error is one line alone.
+    for line in notes:
+        tell(line)
+    return picked
+
+
+def _check_word(word: str) -> None:
+    """Raises UsageError for a shader of another language, and for one without its ending."""
+    file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
+    if file and spelled("encoding", word, ENCODINGS) is None:
+        raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
+    if lacks_a_function(word):
+        raise UsageError(f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal; in GLSL, none")
+    if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
+        language, how = OTHER_LANGUAGES[ending]
+        raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
+
+
+def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[Exception], list[str]]:
+    """The encodings of files, why others are left out, and lines that are to be said of those that are not."""
+    found: dict[str, Encoding] = {}
+    complaints: list[Exception] = []
+    notes: list[str] = []
+    for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words), forks.stop), strict=True):
+        try:
+            found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
+            notes += said
+        except (UsageError, MissingError) as error:
+            complaints.append(error)
+    return found, complaints, notes
+
+
+def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
+    """A file's encoding after the first look, or why there is none; and what is to be said of it."""
+    try:
+        found = _look(path)
+        _check(path, found.glsl)
+        encoding = found.encoding(path)
+        # That codes are in [0, 1] is said by doctor, and in rows by a column.
+        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes) if line != UNIT]
+        said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
+        return encoding, said
+    except (UsageError, MissingError) as error:
+        return error, []
+
+
+class Examined(NamedTuple):
+    """What a close look at a file found.
+
+    Attributes:
+        encoding: the file's.
+        domain: what it is made for.
+        wrong: what is likely wrong with it, lines.
+        notes: what else there is to say, lines.
+        is_measurable: whether it can be measured.
+        like: the name of the encoding of the catalogue that it is, whatever its axes; empty where it is none.
+        bad: directions that come back elsewhere, in its own axes.
+    """
+
+    encoding: Encoding
+    domain: Domain
+    wrong: list[str]
+    notes: list[str]
+    is_measurable: bool
+    like: str
+    bad: list[list[float]]
+
+
+def examined(path: Path, domain: str = ANY) -> Examined:
+    """What there is to say of a file.
+
+    Args:
+        domain: the normals that its author says it is made for; "any" to find out.
+
+    Raises:
+        UsageError: it is not an encoding, or does not compile.
+        MissingError: there is no GL device to look at it with.
+    """
+    _check_word(str(path))
+    known = spelled("encoding", str(path), ENCODINGS)
+    if known and not path.exists():
+        command = f"normalbench quality --encoding {known}"
+        raise UsageError(f"{path} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
+    found = _look(path, domain)
+    if "missing" in found.glsl:
+        raise MissingError(found.glsl["missing"])
+    if "error" in found.glsl:
+        raise UsageError(found.glsl["error"])
+    broken = [found.glsl["broken"]] if "broken" in found.glsl else []
+    of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
+    of_twin += [found.fault] if found.fault else []
+    encoding = found.encoding(path)
+    notes = [*found.notes, *([TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else [])]
+    wrong = [*broken, *found.wrong, *of_twin]
+    close = found.glsl.get("like", ""), found.glsl.get("bad", [])
+    return Examined(encoding, found.domain, wrong, notes, not broken, *close)
+
+
+def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -> Encoding:
+    """The encoding. Raises what was raised where there is none, and UsageError where rows could not tell its name."""
+    if isinstance(encoding, Exception):
+        raise encoding
+    if encoding.name in ENCODINGS:
+        raise UsageError(f"{path}: {TAKEN.format(encoding.name)}")
+    if encoding.name in taken:
+        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename {_what_names(encoding)}")
+    return encoding
+
+
+def _what_names(encoding: Encoding) -> str:
+    return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
+
+
+def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
+    """An encoding from its file, and from the Python file of the same name where there is one.
+
+    Args:
+        path: of the file, with the names of its functions behind it where they are needed: see `languages/words.py`.
+        fault: why the Python file is not to be used; what it would measure says so.
+        is_unit: whether its codes lie in [0, 1].
+        by: the language whose compiler reads it, if not its own.
+
+    Raises:
+        UsageError: it cannot be read, or does not define its two functions.
+        MissingError: the compiler of its language is not there.
+    """
+    text = _text(path, is_unit, by)
+    encode, decode = _lacking(fault) if fault else _twin(twin_of(path))
+    encode, decode = _of_unit(encode, decode) if is_unit else (encode, decode)
+    return Encoding(
+        name=text.name,
+        title=called(str(path)),
+        encode=encode,
+        decode=decode,
+        components=text.components,
+        domain="sphere",
+        citation=called(str(path)),
+        glsl=text.glsl,
+        ulps=(0, 0),
+        ulps_reason="a user's own",
+        functions=text.functions,
+        source=file_of(path).absolute() if is_unit or is_translated(path) else None,
+        is_unit=is_unit,
+    )
+
+
+def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """A twin whose codes lie in [0, 1] as one of codes in [-1, 1]."""
+    return lambda n, view: encode(n, view) * 2.0 - 1.0, lambda e, view: decode(e * 0.5 + 0.5, view)
+
+
+class _Text(NamedTuple):
+    """An encoding's name, how many numbers its code has, its GLSL, and what the names of its functions begin with."""
+
+    name: str
+    components: int
+    glsl: Path
+    functions: str = ""
+
+
+def _text(path: Path, is_unit: bool, by: str) -> _Text:
+    if is_translated(path):
+        made = translated(path, by)
+        # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
+        name = called(file_of(path).name) if made.name in ENCODINGS else made.name
+        return _Text(name, made.components, made.glsl(is_unit), made.prefix)
+    try:
+        name, components, _ = encode_of(path, read_shader(path))
+    except ShaderError as error:
+        raise UsageError(str(error)) from error
+    check_given(path, _with_includes(path))
+    # Not resolved: the twin lies next to the path that was given.
+    return _of_unit_text(path.absolute(), name, components) if is_unit else _Text(name, components, path.absolute())
+
+
+def _of_unit_text(path: Path, name: str, components: int) -> _Text:
+    """A file that includes one of GLSL whose codes lie in [0, 1], and has functions of codes in [-1, 1]."""
+    sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
+    encoder, decoder = (
+        Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(path, f"{name}_{side}") else (given,))
+        for side, (made, given) in sizes.items()
+    )
+    prefix = f"unit_{name}"
+    text = f'#include "{path}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
+    return _Text(name, components, glsl_file(prefix, text), prefix)
+
+
+def _with_includes(path: Path) -> str:
+    """A file and what it includes; empty where that cannot be read, which its compiler says with the line."""
+    try:
+        return Source(path).text
+    except UsageError:
+        return ""
+
+
+def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """An encode and a decode that raise NoTwinError."""
+
+    def lacking(*_: Any) -> Any:
+        raise NoTwinError(reason)
+
+    return lacking, lacking
+
+
+def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
+    if not path.exists():
+        return _lacking(f"{path} is not there: this encoding has no Python twin")
+    try:
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        assert spec and spec.loader
+        module = importlib.util.module_from_spec(spec)
+        # What it prints is no part of a table.
+        with redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
+        return _guarded(path, module.encode, (Vec2, Vec3)), _guarded(path, module.decode, (Vec3,))
+    except (Exception, SystemExit) as error:  # whatever a user's own file raises
+        raise UsageError(f"{path}: {type(error).__name__}: {error}") from error
+
+
+def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) -> Callable[..., Any]:
+    """A user's function that raises NoTwinError where it fails or gives something else."""
+    wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+
+    def guarded(*given: Any) -> Any:
+        try:
+            made = function(*given)
+        except Exception as error:
+            lines = [
+                frame.lineno for frame in extract_tb(error.__traceback__) if Path(frame.filename).name == path.name
+            ]
+            where = f" in line {lines[-1]}" if lines else ""
+            raise NoTwinError(f"{path}: {type(error).__name__}{where}: {error}") from error
+        if not isinstance(made, kinds):
+            kind = "an array" if hasattr(made, "shape") else type(made).__name__
+            raise NoTwinError(f"{path}: {function.__name__} returns {kind}, not {wanted}")
+        return made
+
+    return guarded
+
+
+@dataclass(frozen=True)
+class Looks:
+    """What a first look found, see first_look.py.
+
+    Attributes:
+        glsl: of the shader.
+        said: what a translation says of it.
+        twin: of the Python twin; empty where there is none, or the shader is of no use.
+        fault: why the twin cannot be measured; empty where it can be.
+        is_asked: whether the user says what it is made for.
+    """
+
+    glsl: dict[str, Any]
+    twin: dict[str, Any]
+    fault: str
+    said: tuple[str, ...] = ()
+    is_asked: bool = False
+
+    def encoding(self, path: Path) -> Encoding:
+        """The encoding that was looked at."""
+        read = read_encoding(path, self.fault, self.is_unit, self.glsl.get("by", ""))
+        return self.domain.measured(read)
+
+    @property
+    def is_unit(self) -> bool:
+        """Whether its codes lie in [0, 1]."""
+        return self.glsl.get("is_unit", False)
+
+    @property
+    def domain(self) -> Domain:
+        """What the shader is made for, as far as what comes back of it says."""
+        return Domain(self.glsl.get("domain") or SPHERE.name, *self.glsl.get("half", ()))
+
+    @property
+    def wrong(self) -> list[str]:
+        """What is likely wrong with a shader that can be measured."""
+        return self.glsl.get("wrong", [])
+
+    @property
+    def notes(self) -> list[str]:
+        """What was guessed of it."""
+        domain = self.domain
+        turned = "; tables turn it, so that this is their z >= 0" if domain.is_turned else ""
+        made_for = [f"taken to be made for {domain.made_for} alone: no others come back{turned}"]
+        notes = [*self.said, *self.glsl.get("notes", []), *([UNIT] if self.is_unit else [])]
+        return [*notes, *(made_for if domain.made_for and not self.is_asked else [])]
+
+
+def _look(path: Path, domain: str = "") -> Looks:
+    """A first look in a process of its own; see `first_look`.
+
+    Raises:
+        UsageError: it cannot be translated, or its shader does not let that process end well.
+        MissingError: the compiler of its language is not there.
+    """
+    try:
+        done = forks.finished(FIRST_LOOK, [str(path), *([domain] if domain else [])], TIME_LIMIT)
+        said, ended = done.stdout, children.how_it_ended(done)
+    except subprocess.TimeoutExpired as error:
+        said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
+    lines = list(_answers(said))
+    if not lines:
+        raise UsageError(f"{path}: its shader {ended}")
+    said_of_it, is_asked = () if "error" in lines[0] else _said_of(path), domain not in ("", ANY)
+    has_twin = twin_is_looked_at(path, lines[0])
+    if has_twin and len(lines) < 2:
+        return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
+    twin = lines[1] if has_twin else {}
+    return Looks(lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
+
+
+def _said_of(path: Path) -> tuple[str, ...]:
+    """What the text of a file says by itself."""
+    if is_translated(path):
+        return tuple(translated(path).notes)
+    name, _, others = encode_of(path, read_shader(path))
+    return tuple(f"{name} alone is measured; move {other} into a file of its own" for other in others)
+
+
+def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:
+    """Whether a shader of which this was found has a twin, and is of use."""
+    return not {"error", "broken"} & set(found) and twin_of(path).exists()
+
+
+def _answers(said: str) -> Iterator[dict[str, Any]]:
+    for line in said.splitlines():
+        try:
+            yield json.loads(line)
+        except ValueError:
+            return
+
+
+def _check(path: Path, found: dict[str, Any]) -> None:
+    """Raises UsageError where a shader does not compile, or is not finite."""
+    if "error" in found:
+        raise UsageError(found["error"])
+    if "broken" in found:
+        raise UsageError(f"{path}: {found['broken']}")

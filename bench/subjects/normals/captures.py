@@ -1,0 +1,404 @@
+"""Captured frames as sets of normals: which channels, what they mean, what is background, and what is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codecs.files import called, file_text
+from ....encodings.storages.rounding import from_srgb, to_srgb
+from ...ground.options.option import Reading
+from ...ground.output.errors import UsageError, pick_one
+from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
+from .normal_sets import NormalSet, from_arrays
+from .pixel_files import READERS, Pixels, read_pixels, refused
+
+# Shorter is not a direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
+BACKGROUND = 0.02
+# 8 bits cut off are up to 0.014 off, a filter at an edge more.
+UNIT_WITHIN = 0.05
+# And that is what few normals, at edges, may be beyond.
+OFF_UNIT_SHARE = 0.01
+# What stands for 1 in files of 8 bits.
+EIGHT_BITS = 255
+# Lengths this near to 1 are rounding of float32: such normals are measured as they are.
+ROUNDING = 1e-6
+ROTATION_WITHIN = 1e-3
+AXES = ("XYZ", "xyz", "RGB", "rgb")
+NORMAL_WORDS = re.compile(r"n|nrm.*|.*norm.*", re.IGNORECASE)
+# A left-handed view space, z into the screen, as Direct3D and most engines on it have it.
+SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
+    {"view": np.eye(3), "view-left-handed": MIRRORED, "world": None}
+)
+CODE_SPACES = ("view", "world")
+
+
+def _by(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda stored: np.asarray(curve(jnp.asarray(stored)))
+
+
+# What takes a curve off that the components of a file were given, (3, ...) in [0, 1].
+CURVES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
+    {"linear": lambda stored: stored, "srgb": _by(from_srgb), "srgb-removed": _by(to_srgb)}
+)
+
+
+def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
+    """The normals of an image file, and what is to be said of them.
+
+    Raises:
+        UsageError: it cannot be read, or does not hold unit normals as `reading` says.
+    """
+    reading = checked(reading)
+    turns, notes = turns_of(reading)
+    chosen: list[str] = []
+
+    def choose(names: Sequence[str]) -> Sequence[str]:
+        chosen[:] = chosen_channels(path, names, reading.channels)
+        return chosen
+
+    pixels = read_pixels(path, choose)
+    surface = _mask(path, reading, pixels.shape)
+    n, covered, of_lengths = _directions(path, pixels, surface, reading)
+    not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
+    n = np.where(covered, n, 0)
+    notes += of_lengths + _which_way(n, covered, turns.to_view, reading, chosen)
+    if pixels.full == EIGHT_BITS:
+        notes.append(
+            "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
+            "they are; 16 bits or floats do not favour any"
+        )
+    if not np.array_equal(turns.to_code, np.eye(3)):
+        n = np.tensordot(turns.to_code, n, 1)
+    shape = pixels.shape if len(pixels.shape) == 2 else None
+    n = np.moveaxis(n, 0, -1).astype(np.float32)
+    name = called(path.name)
+    rays = (_rays(n, reading.fov) @ turns.of_rays.T).astype(np.float32)
+    made = from_arrays(name, f"normals of {name}", n, rays, covered, shape, not_finite)
+    return replace(made, code_space=reading.code_space), notes
+
+
+def checked(reading: Reading) -> Reading:
+    """How files are read, by the names that are known. Raises UsageError."""
+    if not 0 <= reading.nan_share <= 1:
+        raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
+    if reading.fov is not None and not 1 <= reading.fov <= 175:
+        raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
+    space, curve = pick_one("space", reading.space, SPACES), pick_one("curve", reading.curve, CURVES)
+    code_space = pick_one("code space", reading.code_space, CODE_SPACES)
+    return replace(reading, space=space, curve=curve, code_space=code_space)
+
+
+# Channels
+
+
+def _layers(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
+    """Three channels that belong together, with their layer's name: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2."""
+    known = set(names)
+    for name in names:
+        stem, axis = name[:-1], name[-1:]
+        for axes in AXES:
+            three = [stem + other for other in axes]
+            if axis == axes[0] and known.issuperset(three):
+                yield stem.rstrip("._"), three
+    if known.issuperset("012"):
+        yield "", list("012")
+
+
+def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
+    """Three channels: those asked for, or those that are called like normals, or the only ones, or R, G and B.
+
+    Raises:
+        UsageError: there are none, or several that could be meant.
+    """
+    layers = dict(_layers(names))
+    shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
+    if len(names) < 3:
+        remedy = "a normal has three channels; save z too, which is sqrt(max(0, 1 - x*x - y*y)) if it is not negative"
+        raise refused(path, f"it has {shown}", remedy)
+    if asked is not None:
+        words = [word.strip() for word in asked.split(",")]
+        if len(words) == 1 and words[0] in layers:
+            return layers[words[0]]
+        if len(words) == 3 and set(words) <= set(names):
+            return words
+        raise refused(path, f"no channels {asked!r}; it has {shown}", "--channels takes a layer, or x,y,z by name")
+    likely = [layer for layer in layers if NORMAL_WORDS.fullmatch(re.split(r"[._ ]", layer)[-1])]
+    if len(likely) > 1:
+        raise refused(path, f"layers {', '.join(likely)} may all be normals", f"--channels {likely[0]} names one")
+    if likely or "" in layers or len(layers) == 1:
+        return layers[likely[0] if likely else "" if "" in layers else next(iter(layers))]
+    raise refused(path, f"no channels that are called like normals; it has {shown}", "--channels x,y,z names three")
+
+
+# What is surface
+
+
+def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
+    """Where there is surface as far as a mask says, bool of the image's shape."""
+    asked = reading.mask
+    if asked is None:
+        return np.ones(shape, bool)
+    named = Path(asked)
+    if named.suffix.lower() in READERS:
+        where, found = f"--mask {named}", _mask_of_file(named)
+        found = found.reshape(-1) if len(shape) == 1 else found
+    else:
+        where, found = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
+    if found.shape != shape:
+        sides = " x ".join(map(str, found.shape))
+        raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "one of one size")
+    return np.isfinite(found) & (found != 0)
+
+
+def _mask_of_file(path: Path) -> np.ndarray:
+    """The first channel of an image, (height, width)."""
+    if path.suffix.lower() != ".npy":
+        return read_pixels(path, lambda names: names[:1]).planes[0]
+    found = read_pixels(path, lambda names: names).planes
+    # An array of (height, width) comes as `width` channels of `height` numbers.
+    return found[0] if found.ndim == 3 else found.T
+
+
+def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
+    if asked not in names:
+        raise refused(path, f"no channel {asked!r} for a mask; it has {', '.join(names[:40])}", "or --mask FILE")
+    return [asked]
+
+
+def _directions(
+    path: Path, pixels: Pixels, surface: np.ndarray, reading: Reading
+) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Normals as planes, unit where they count; where they do; and what is to be said of them."""
+    stored = pixels.planes if pixels.full is None else pixels.planes / pixels.planes.dtype.type(pixels.full)
+    stored = CURVES[reading.curve](stored)
+    unpack = pixels.full is not None if reading.unpack is None else reading.unpack
+    # What a cleared target holds is background however it is packed.
+    surface = surface & (stored != 0).any(axis=0)
+    finite = np.asarray(np.isfinite(stored).all(axis=0))
+    _check_finite(path, surface, finite, reading.nan_share)
+    n = stored * 2 - 1 if unpack else stored
+    length = _lengths(n)
+    covered = surface & finite & (length >= BACKGROUND)
+    if not covered.any():
+        raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
+    notes = _checked_unit(path, stored, length, covered, reading, unpack)
+    far = covered & (abs(length - 1) > ROUNDING)
+    return np.divide(n, length, out=n.copy(), where=far), covered, notes
+
+
+def _lengths(n: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore", over="ignore"):
+        squares = sum(np.square(plane, dtype=np.float64) for plane in n)
+        return np.sqrt(squares).astype(n.dtype)
+
+
+def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: float) -> None:
+    bad = surface & ~finite
+    count, most = int(bad.sum()), max(int(surface.sum()), 1)
+    if count > share * most:
+        first = ", ".join(f"{word} {at}" for word, at in zip(("row", "column"), np.argwhere(bad)[0], strict=False))
+        needed = math.ceil(1e6 * count / most) / 1e6
+        raise refused(
+            path,
+            f"{count} of {most} normals are NaN or infinite, the first at {first}",
+            f"--nan-share {needed:g} masks and counts them, --mask leaves them out",
+        )
+
+
+def _checked_unit(
+    path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, reading: Reading, unpacked: bool
+) -> list[str]:
+    """What is to be said where a few normals are not unit. Raises UsageError where more are, with the option that would
+    read them."""
+    off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
+    said = f"{off:.1%} of the normals are not unit"
+    if off <= OFF_UNIT_SHARE:
+        return [] if off == 0 or reading.normalise else [f"{off:.3%} of the normals are not unit: normalised"]
+    found = stored[:, covered]
+    low, high = (float(f(found)) for f in (np.min, np.max))
+    remedy = next(_readings_that_fit(found, reading.curve, unpacked), None)
+    if reading.normalise:
+        return [f"{said}, normalised; {remedy} would read them as unit"] if remedy else []
+    if remedy:
+        raise refused(path, f"{said}, all components are in [{low:.3g}, {high:.3g}]", f"{remedy} reads them")
+    median = float(np.median(length[covered]))
+    raise refused(
+        path,
+        f"{said}: lengths {length[covered].min():.3g} to {length[covered].max():.3g}, median {median:.3g}, "
+        f"components in [{low:.3g}, {high:.3g}]",
+        "--normalise takes them all the same; --channels names others",
+    )
+
+
+def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
+    """Options with which normals are unit that are not as they are read.
+
+    Args:
+        found: the components, (3, count), by `curve`.
+    """
+    if curve != "linear":
+        return
+    is_share = bool((found >= 0).all() and (found <= 1).all())
+    for name, apply in CURVES.items():
+        for unpack in (True, False):
+            if (name, unpack) == (curve, unpacked) or not (is_share or (name, unpack) == ("linear", False)):
+                continue
+            read = apply(found) * 2 - 1 if unpack else found
+            lengths = _lengths(read)
+            # A grey background of packed normals has no length when unpacked.
+            surface = lengths[lengths >= BACKGROUND]
+            if len(surface) and np.mean(abs(surface - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE:
+                packing = "" if unpack == unpacked else " --unpack" if unpack else " --no-unpack"
+                yield ("" if name == curve else f" --curve {name}").strip() + packing
+
+
+# Where they point
+
+
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """How a frame is turned, (3, 3) for column vectors.
+
+    Attributes:
+        to_view: the file's normals to view space; None where nobody says.
+        to_code: the file's normals to the space that they are encoded in.
+        of_rays: rays in view space to that space.
+    """
+
+    to_view: np.ndarray | None
+    to_code: np.ndarray
+    of_rays: np.ndarray
+
+
+def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
+    """How a frame is turned, and what is to be said of it.
+
+    Raises:
+        UsageError: two spaces without a matrix between them, a matrix that nothing needs, or one that does not rotate.
+    """
+    known, is_world, same = SPACES[reading.space], reading.code_space == CODE_SPACES[1], np.eye(3)
+    if reading.view_matrix is None:
+        if (known is None) != is_world:
+            raise _no_matrix(reading)
+        if known is None and reading.fov is not None:
+            raise UsageError("--fov gives rays in view space; --view-matrix turns them to world space")
+        return Turns(known, same if known is None else known, same), []
+    if known is not None and not is_world:
+        raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
+    matrix, notes = _rotation(reading.view_matrix)
+    if not is_world:
+        return Turns(matrix, matrix, same), notes
+    return Turns(matrix, same, matrix.T) if known is None else Turns(known, matrix.T @ known, matrix.T), notes
+
+
+def _no_matrix(reading: Reading) -> UsageError:
+    asked, other = f"--space {reading.space}", ""
+    if SPACES[reading.space] is None:
+        other = "; or --code-space world, where the engine encodes world-space normals"
+    else:
+        asked += f" --code-space {reading.code_space}"
+    return UsageError(
+        f"{asked} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which turn world space to "
+        f"view space: x right, y up, z towards the viewer{other}"
+    )
+
+
+def _rotation(text: str) -> tuple[np.ndarray, list[str]]:
+    said = f"--view-matrix {text}"
+    matrix = _numbers_of(text, said)
+    linear = matrix[:3, :3]
+    if matrix.shape == (4, 4):
+        _check_affine(matrix, said)
+    square = linear @ linear.T
+    scale = np.trace(square) / 3
+    if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
+        raise UsageError(f"{said}: not a rotation: its rows are not at right angles, or of different lengths")
+    size = math.sqrt(scale)
+    is_scaled = abs(size - 1) > ROTATION_WITHIN
+    return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is left out"] * is_scaled
+
+
+def _numbers_of(text: str, said: str) -> np.ndarray:
+    """A matrix of 3 or 4 rows."""
+    if re.search(r"[^-+0-9.eE,;\s]", text):
+        try:
+            text = file_text(Path(text))[:4096]
+        except (OSError, ValueError) as error:
+            raise UsageError(f"{said}: neither numbers nor a text file of numbers: {error}") from error
+    try:
+        numbers = [float(word) for word in re.split(r"[\s,;\[\]()]+", text) if word]
+    except ValueError as error:
+        raise UsageError(f"{said}: neither numbers nor a text file of numbers") from error
+    if len(numbers) not in (9, 16):
+        raise UsageError(f"{said}: {len(numbers)} numbers; 9 or 16, row by row")
+    side = math.isqrt(len(numbers))
+    return np.array(numbers).reshape(side, side)
+
+
+def _check_affine(matrix: np.ndarray, said: str) -> None:
+    """Raises UsageError for a matrix of 4 x 4 numbers that moves row vectors, or projects."""
+    below, beside = matrix[3, :3], matrix[:3, 3]
+    if below.any() and not beside.any():
+        turned = typed(matrix[:3, :3].T)
+        raise UsageError(
+            f"{said}: its translation is in the last row, for row vectors; --view-matrix {turned} turns it"
+        )
+    if below.any():
+        raise UsageError(f"{said}: its last row is not 0, 0, 0, 1: is a projection in it? give the view matrix alone")
+
+
+def typed(matrix: np.ndarray) -> str:
+    """A matrix as --view-matrix takes it."""
+    return ",".join(f"{value + 0.0:.7g}" for value in matrix.ravel())
+
+
+def _which_way(
+    n: np.ndarray, covered: np.ndarray, to_view: np.ndarray | None, reading: Reading, chosen: Sequence[str]
+) -> list[str]:
+    """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
+    if to_view is None:
+        return []
+    is_world = SPACES[reading.space] is None
+    pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
+    found = which_way(pixels, to_view, reading.fov, is_world)
+    return [f"{found.said}: {_remedy(found.remedy, is_world, chosen)}"] if found else []
+
+
+def _remedy(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
+    if found is SWAPPED:
+        return f"read it with --channels {','.join(reversed(chosen))}"
+    if isinstance(found, np.ndarray):
+        space = next(
+            (name for name, known in SPACES.items() if known is not None and np.array_equal(known, found)), None
+        )
+        return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(found)}"
+    if found is not None:
+        return "check --fov, which is the vertical angle"
+    if is_world:
+        return "check --view-matrix"
+    return (
+        "is it in world space? --space world --view-matrix turns it to view space; where the engine encodes "
+        "world-space normals, --space world --code-space world leaves it as it is"
+    )
+
+
+def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:
+    """View-space positions one unit away, (..., 3): through each pixel's centre, or straight ahead."""
+    view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    if fov is None or n.ndim != 3:
+        return view
+    height, width = n.shape[:2]
+    half = math.tan(math.radians(fov) / 2)
+    view = view.copy()
+    view[..., 0] = ((np.arange(width) + 0.5) / width * 2 - 1) * half * width / height
+    view[..., 1] = ((1 - (np.arange(height) + 0.5) / height * 2) * half)[:, None]
+    return view

@@ -1,0 +1,36 @@
+"""Normals that are computed from their numbers, by the C compiler's code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ....encodings.vec import Vec3
+from ...ground.native.elementwise import c_function, c_type
+from ...ground.native.library import address, library, source
+
+LANE = np.dtype(np.uint32)
+
+
+class Fill:
+    """Makes planes of normals.
+
+    Args:
+        made: (number, *given) -> a normal of float32; elementwise.
+        types: those of `given`, numbers that a float64 holds.
+
+    Raises:
+        NotElementwiseError, NoCompilerError: it cannot be compiled here.
+    """
+
+    def __init__(self, made: Callable[..., Vec3], types: Sequence[np.dtype]):
+        function = c_function("made", made, LANE, *types)
+        self._library = library(source("fill.c", function, [*map(c_type, types)]), "fill")
+
+    def __call__(self, count: int, *given: int) -> Vec3:
+        """The normals of numbers 0 to count - 1."""
+        numbers = np.array(given, np.float64)
+        planes = Vec3(*(np.empty(count, np.float32) for _ in range(3)))
+        self._library.fill(count, address(numbers), *map(address, planes))
+        return planes

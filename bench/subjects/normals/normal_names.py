@@ -1,0 +1,112 @@
+"""Sets of normals as they are named: those there are, and users' captures and meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, get_type_hints
+
+from ....encodings.codecs.files import called
+from ....gbuffer.scenes.files import read as files
+from ...ground.options.counts import checked_sides
+from ...ground.options.option import Count, Reading, fields_of
+from ...ground.options.scene_names import mesh_file, say_notes
+from ...ground.options.words import given_in
+from ...ground.output.errors import UsageError, names_a_folder, pick_or_read, tell
+from .captures import CODE_SPACES, capture
+from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from .pixel_files import MAX_PIXELS
+from .pixel_files import READERS as IMAGES
+
+WORLD = CODE_SPACES[1]
+SEES_NOTHING = "its camera sees nothing; move it, or leave it out to have everything framed"
+MAX_SIDE = 16384
+ENDINGS = (*IMAGES, *files.READERS)
+JPEG = "JPEG changes normals; save the frame as EXR or PNG"
+# By its ending, why a file of another kind is not read, and what is.
+OTHERS: Mapping[str, str] = MappingProxyType(
+    {".jpg": JPEG, ".jpeg": JPEG, ".npz": "an archive of arrays; save one array by np.save, as .npy"}
+)
+
+
+def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs_rays: bool = False) -> list[NormalSet]:
+    """The sets that comma-separated names stand for: those of the catalogue, captures, or meshes seen by a camera.
+
+    Where something to be measured `needs_rays`, a capture without any is named on standard error.
+
+    Raises:
+        UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
+    """
+    for word in map(str.strip, names.split(",")):
+        _check_kind(word)
+    typed = [Path(word.strip()).suffix.lower() for word in names.split(",")]
+    if reading != Reading(size=reading.size) and not any(ending in IMAGES for ending in typed):
+        raise UsageError(f"options of captures are given, but --normals {names} names none ({', '.join(IMAGES)})")
+
+    notes: dict[Path, list[str]] = {}
+
+    def read(path: Path) -> Callable[[int, int], NormalSet]:
+        if path.suffix.lower() in IMAGES:
+            made, notes[path] = capture(path, reading)
+            if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
+                raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
+            if needs_rays and reading.fov is None:
+                notes[path].append("without --fov, rays are parallel for codes that need them")
+        else:
+            made, notes[path] = mesh_set(path, reading.size)
+        return given(made)
+
+    known = {**NORMAL_SETS, **{name: given(made) for name, made in given_in(names).items()}}
+    made = [make(count, seed) for make in pick_or_read("normal set", names, known, ENDINGS, read)]
+    say_notes(notes)
+    return made
+
+
+def _check_kind(word: str) -> None:
+    """Raises UsageError for a file of a kind that is not read, and for a folder."""
+    if (ending := Path(word).suffix.lower()) in OTHERS:
+        raise UsageError(f"{word}: {OTHERS[ending]}")
+    if names_a_folder(word) and word not in NORMAL_SETS and ending not in ENDINGS:
+        raise UsageError(f"{word}: it is a folder; name the files in it, separated by commas")
+
+
+def say_count_is_unused(options: Any) -> None:
+    """Say that --count changes nothing where it is given for files alone."""
+    known = fields_of(type(options))
+    if not isinstance(options, Reading) or "count" not in known:
+        return
+    if getattr(options, "count", None) == known["count"].default or not _is_of_normals(type(options)):
+        return
+    words = [word.strip() for word in (getattr(options, "normals", None) or "sphere").split(",")]
+    if all(Path(word).suffix.lower() in ENDINGS for word in words):
+        tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
+
+
+def _is_of_normals(options: type) -> bool:
+    """Whether its count is that of normals in a set, and not of what is made of them."""
+    return get_type_hints(options, include_extras=True)["count"] == Count
+
+
+def given(made: NormalSet) -> Callable[[int, int], NormalSet]:
+    """A set that is what it is, whatever count and seed are asked for."""
+    return lambda *_: made
+
+
+def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
+    """The meshes of a file as its camera sees them, or one that frames them; and what is to be said of them.
+
+    Raises UsageError.
+    """
+    sides = checked_sides(size, MAX_SIDE, "for the picture of a mesh")
+    if math.prod(sides) > MAX_PIXELS:
+        raise UsageError(f"--size {size}: {math.prod(sides)} pixels; the most is {MAX_PIXELS} (2^25)")
+    file = mesh_file(path)
+    seen = files.seen(file, sides)
+    if not seen.covered.any():
+        raise UsageError(f"{path}: {SEES_NOTHING}")
+    notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
+    name = called(path.name)
+    made = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])
+    return made, notes

@@ -1,0 +1,222 @@
+"""Pixels of users' files by the names of their channels: images by OpenImageIO, and NPY.
+
+Sizes are taken from headers and refused before anything is allocated.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ....gbuffer.scenes.files.source import SceneFileError, file_bytes
+from ...ground.output.errors import UsageError
+from . import png
+
+# An 8K frame; and all the channels of a file together, which the library reads at once.
+MAX_PIXELS = 2**25
+MAX_NUMBERS = 2**29
+MAX_CHANNELS = 1024
+SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are read: crop it"
+SECONDS = 120
+EXR = "openexr"
+TIFF = rb"(II|MM)(\*\0|\0\*|\+\0|\0\+)"
+# By a file's ending: OpenImageIO's name of the format, and how such a file starts.
+FORMATS: Mapping[str, tuple[str, bytes]] = MappingProxyType(
+    {
+        ".exr": (EXR, rb"\x76\x2f\x31\x01"),
+        ".png": ("png", rb"\x89PNG\r\n\x1a\n.{4}IHDR"),
+        ".tif": ("tiff", TIFF),
+        ".tiff": ("tiff", TIFF),
+        ".dds": ("dds", rb"DDS "),
+        ".hdr": ("hdr", rb"#\?"),
+        ".webp": ("webp", rb"RIFF.{4}WEBP"),
+    }
+)
+# The library's names of types of numbers.
+TYPES = ("uint8", "uint16", "half", "float", "double")
+# What a status of `pixel_process.py` says, and the remedy; any other is a damaged file.
+FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
+    {
+        2: ("a channel has fewer samples than pixels", "save it in full"),
+        3: ("its header says far more pixels than it can hold", SMALLER),
+    }
+)
+
+# From the names of a file's channels to those that are wanted.
+Choice = Callable[[Sequence[str]], Sequence[str]]
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Some channels of a file.
+
+    Attributes:
+        planes: (channels, height, width) or (channels, count), float32; float64 where the file has that.
+        full: what stands for 1 in a file of whole numbers, None in one of floats.
+    """
+
+    planes: np.ndarray
+    full: int | None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.planes.shape[1:]
+
+
+def read_pixels(path: Path, choose: Choice) -> Pixels:
+    """The channels of a file that `choose` picks of their names.
+
+    Raises:
+        UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` raises.
+    """
+    return READERS[path.suffix.lower()](path, choose)
+
+
+def refused(path: Path, what: str, remedy: str = "save it again") -> UsageError:
+    """What is wrong with a file, in one line."""
+    return UsageError(f"{path}: {what}; {remedy}")
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return file_bytes(path)
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
+
+
+def check_pixels(path: Path, pixels: int, channels: int) -> None:
+    """Raises UsageError where an image is larger than is read."""
+    if channels > MAX_CHANNELS:
+        raise refused(path, f"{channels} channels", f"at most {MAX_CHANNELS} are read")
+    if pixels > MAX_PIXELS or pixels * channels > MAX_NUMBERS:
+        raise refused(path, f"{pixels} pixels of {channels} channels", SMALLER)
+
+
+# Images
+
+
+def _read_image(path: Path, choose: Choice) -> Pixels:
+    kind, start = FORMATS[path.suffix.lower()]
+    data = _bytes(path)
+    if not re.match(start, data, re.DOTALL):
+        raise refused(path, f"no {path.suffix[1:].upper()} file, by its first bytes")
+    if kind == "png" and max(png.sides(data)) > png.MAX_SIDE:
+        width, height = png.sides(data)
+        raise refused(path, f"{width} x {height} pixels", f"at most {png.MAX_SIDE} a side are read")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out"
+        _in_a_process(path, kind, out, "header")
+        parts = json.loads(out.read_text(encoding="utf-8"))
+        chosen = list(choose(_checked_parts(path, kind, parts)))
+        _check_alike(path, kind, parts, chosen)
+        _in_a_process(path, kind, out, "pixels", *chosen)
+        found = np.load(out, allow_pickle=False)
+    if kind == "png" and png.has_surplus(data):
+        raise refused(path, "it holds more rows than its header says: it is damaged")
+    # Whole numbers of an EXR file are identities and counts.
+    full = np.iinfo(found.dtype).max if found.dtype.kind == "u" and kind != EXR else None
+    return Pixels(_planes(np.moveaxis(found, 0, -1), range(len(found))), full)
+
+
+def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
+    """Runs `pixel_process.py`. Raises UsageError where it cannot read the file."""
+    script = Path(__file__).with_name("pixel_process.py")
+    command = [sys.executable, "-P", str(script), mode, kind, str(path.resolve()), str(out), *names]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise refused(path, f"not read within {SECONDS} seconds") from error
+    if done.returncode:
+        # What the library says of a damaged file is another matter each time, and mostly of an index.
+        raise refused(path, *FAILURES.get(done.returncode, ("it is cut off or damaged",)))
+
+
+def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]]) -> list[str]:
+    """The names of all channels. Raises UsageError for what is too large or of a kind that is not read."""
+    for part in parts:
+        where = f"part {part['name']!r}: " if len(parts) > 1 else ""
+        if part["deep"]:
+            raise refused(path, f"{where}deep samples", "flatten it")
+        width, height, depth = part["sides"]
+        if depth != 1 or min(width, height) < 1:
+            raise refused(path, f"{where}an image of {width} x {height} x {depth}", "one of width x height is read")
+        check_pixels(path, width * height, len(part["names"]))
+        other = [word for word in part["types"] if word not in (*TYPES, *(["uint"] if kind == EXR else []))]
+        if other:
+            raise refused(path, f"{where}numbers of type {other[0]}", f"{', '.join(TYPES)} are read")
+    names = [name for part in parts for name in part["names"]]
+    if not names or len(set(names)) < len(names):
+        raise refused(path, "no channels, or two of one name")
+    return names
+
+
+def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
+    """Raises UsageError where channels are of parts that do not lie over each other, or whose 1 is another."""
+    used = [part for part in parts if set(chosen) & set(part["names"])]
+    found = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
+    if any(one != found[0] for one in found):
+        raise refused(path, f"{', '.join(chosen)} lie in parts of different sizes or types")
+
+
+def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
+    """Channels of (..., channels) as planes; of float64 and as they are where that is what they are."""
+    kind = np.float64 if found.dtype.itemsize == 8 else np.float32
+    with np.errstate(invalid="ignore"):
+        return np.stack([found[..., channel].astype(kind) for channel in chosen])
+
+
+# NPY
+
+
+def _read_npy(path: Path, choose: Choice) -> Pixels:
+    stream = io.BytesIO(_bytes(path))
+    shape, in_columns, kind = _npy_header(path, stream)
+    if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):
+        signed = f"; save array / {np.iinfo(kind).max} as float32" if kind.kind == "i" else ""
+        raise refused(path, f"numbers of type {kind}", f"float16, float32, float64, uint8 and uint16 are read{signed}")
+    if len(shape) not in (2, 3) or min(shape) < 1:
+        raise refused(path, f"an array of shape {shape}", "(height, width, 3) or (count, 3) is read")
+    count = math.prod(shape)
+    left = len(stream.getbuffer()) - stream.tell()
+    if count * kind.itemsize > left:
+        raise refused(path, f"shape {shape} needs {count * kind.itemsize} bytes, the file has {left}: it is cut off")
+    check_pixels(path, math.prod(shape[:-1]), shape[-1])
+    flat = np.frombuffer(stream.getbuffer(), kind, count, stream.tell())
+    found = flat.reshape(shape, order="F" if in_columns else "C")
+    names = [str(channel) for channel in range(shape[-1])]
+    if len(shape) == 3 and shape[0] in (3, 4) < (shape[-1],):
+        raise refused(path, f"an array of shape {shape}", "channels come last: save np.moveaxis(array, 0, -1)")
+    chosen = [names.index(name) for name in choose(names)]
+    return Pixels(_planes(found, chosen), np.iinfo(kind).max if kind.kind == "u" else None)
+
+
+def _npy_header(path: Path, stream: io.BytesIO) -> tuple[tuple[int, ...], bool, np.dtype]:
+    readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            version = np.lib.format.read_magic(stream)
+            shape, in_columns, kind = readers[version](stream)
+    except Exception as error:  # numpy, ast and tokenize raise a dozen kinds
+        raise refused(path, "no NPY header that can be read", "save it with np.save") from error
+    if not all(type(side) is int for side in shape):
+        raise refused(path, f"an array of shape {shape}")
+    return shape, in_columns, kind
+
+
+READERS: Mapping[str, Callable[[Path, Choice], Pixels]] = MappingProxyType(
+    dict.fromkeys(FORMATS, _read_image) | {".npy": _read_npy}
+)

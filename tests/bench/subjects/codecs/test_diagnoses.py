@@ -1,0 +1,307 @@
+"""What is likely wrong with a user's encoder is named; of a right one nothing is said but what it is made for."""
+
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.subjects.codecs.doctor.diagnoses import diagnosed
+from normalbench.bench.subjects.codecs.doctor.domains import Domain
+from normalbench.bench.subjects.codecs.doctor.probe import probe_of
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.encodings.catalogue import ENCODINGS
+
+ENCODE = """vec2 mine_encode(vec3 n, vec3 view) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 f = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    p = n.z < 0.0 ? f : p;
+    return CODE;
+}
+"""
+DECODE = """vec3 mine_decode(vec2 e, vec3 view) {
+    BEFORE
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float t = max(-n.z, 0.0);
+    n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
+    return RESULT;
+}
+"""
+PI = "3.14159265358979"
+BY_ANGLES = f"""vec3 mine_decode(vec2 e, vec3 view) {{
+    BEFORE
+    float a = e.x * {PI}, s = sqrt(max(0.0, 1.0 - e.y * e.y));
+    return vec3(cos(a) * s, sin(a) * s, e.y);
+}}
+"""
+ANGLES = f"vec2 mine_encode(vec3 n, vec3 view) {{ return vec2(atan(n.y, n.x) / {PI}, n.z); }}\n"
+INCLINED = f"""vec2 mine_encode(vec3 n, vec3 view) {{
+    return vec2(atan(n.y, n.x), 2.0 * acos(clamp(n.z, -LARGEST, LARGEST)) - {PI}) / {PI};
+}}
+vec3 mine_decode(vec2 e, vec3 view) {{
+    float a = e.x * {PI}, t = (e.y + 1.0) * 0.5 * {PI};
+    return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));
+}}
+"""
+ALL_THREE = """vec3 mine_encode(vec3 n, vec3 view) { return n; }
+vec3 mine_decode(vec3 e, vec3 view) { return RESULT; }
+"""
+FLAT = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
+vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e)))); }
+"""
+HALF = """vec2 mine_encode(vec3 n, vec3 view) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return vec2(p.x + p.y, p.x - p.y);
+}
+vec3 mine_decode(vec2 e, vec3 view) {
+    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
+    return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
+}
+"""
+DISC = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / sqrt(1.0 + max(n.z, 0.0)); }
+vec3 mine_decode(vec2 e, vec3 view) { float f = dot(e, e); return vec3(e * sqrt(max(0.0, 2.0 - f)), 1.0 - f); }
+"""
+STEREO = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (1.0 + max(n.z, 0.0)); }
+vec3 mine_decode(vec2 e, vec3 view) { float d = 1.0 + dot(e, e); return vec3(2.0 * e, 2.0 - d) / d; }
+"""
+
+
+# What a code is, its encode of n, and its decode of e.
+OF_THE_SPHERE = {
+    "three in [0, 1]": ("vec3", "return n * 0.5 + 0.5;", "return e * 2.0 - 1.0;"),
+    "three rounded to 5 bits": (
+        "vec3",
+        "return round((n * 0.5 + 0.5) * 31.0) / 31.0;",
+        "return normalize(e * 2.0 - 1.0);",
+    ),
+    "two angles in [0, 1]": (
+        "vec2",
+        f"return vec2(atan(n.y, n.x) / (2.0 * {PI}) + 0.5, acos(clamp(n.z, -1.0, 1.0)) / {PI});",
+        f"float a = (e.x - 0.5) * 2.0 * {PI}, t = e.y * {PI}; return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+    ),
+    # P. Lagarde's acos, a hundredth off.
+    "an approximated acos": (
+        "vec2",
+        f"float x = abs(n.z), r = (-0.156583 * x + 1.570796) * sqrt(1.0 - x); r = n.z >= 0.0 ? r : {PI} - r; "
+        f"return vec2(atan(n.y, n.x) / {PI}, r / {PI} * 2.0 - 1.0);",
+        f"float a = e.x * {PI}, t = (e.y * 0.5 + 0.5) * {PI}; return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+    ),
+    "two paraboloids": (
+        "vec3",
+        "return vec3(n.xy / (1.0 + abs(n.z)), n.z < 0.0 ? -1.0 : 1.0);",
+        "float d = dot(e.xy, e.xy); return vec3(2.0 * e.xy, (1.0 - d) * (e.z < 0.0 ? -1.0 : 1.0)) / (1.0 + d);",
+    ),
+    "two and a sign": (
+        "vec3",
+        "return vec3(n.xy, n.z < 0.0 ? -1.0 : 1.0);",
+        "return vec3(e.xy, sqrt(max(0.0, 1.0 - dot(e.xy, e.xy))) * e.z);",
+    ),
+    "an octant and two": (
+        "vec3",
+        "vec3 a = abs(n) / (abs(n.x) + abs(n.y) + abs(n.z)); "
+        "return vec3(a.xy, ((n.x < 0.0 ? 1.0 : 0.0) + (n.y < 0.0 ? 2.0 : 0.0) + (n.z < 0.0 ? 4.0 : 0.0)) / 7.0);",
+        "float o = floor(e.z * 7.0 + 0.5); vec3 a = vec3(e.xy, 1.0 - e.x - e.y); "
+        "return normalize(a * vec3(mod(o, 2.0) >= 1.0 ? -1 : 1, mod(o, 4.0) >= 2.0 ? -1 : 1, o >= 4.0 ? -1 : 1));",
+    ),
+    "cryengine": (
+        "vec2",
+        "return normalize(n.xy + vec2(1e-20)) * sqrt(n.z * 0.5 + 0.5);",
+        "float z = dot(e, e) * 2.0 - 1.0; return vec3(normalize(e + vec2(1e-20)) * sqrt(max(0.0, 1.0 - z * z)), z);",
+    ),
+}
+OF_A_HALF = {
+    "two of three in [0, 1]": (
+        "vec2",
+        "return n.xy * 0.5 + 0.5;",
+        "e = e * 2.0 - 1.0; return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))));",
+    ),
+    # With room for more than a half: what the half is given lies around the middle of [0, 1].
+    "stereographic in [0, 1]": (
+        "vec2",
+        "return n.xy / (n.z + 1.0 + 1e-6) / 1.7777 * 0.5 + 0.5;",
+        "vec3 m = vec3((e * 2.0 - 1.0) * 1.7777, 1.0); float g = 2.0 / dot(m, m); return vec3(g * m.xy, g - 1.0);",
+    ),
+    "an equal-area disc of |z|": (
+        "vec2",
+        "return n.xy * inversesqrt(1.0 + abs(n.z));",
+        "float f = dot(e, e); return vec3(e * sqrt(max(0.0, 2.0 - f)), 1.0 - f);",
+    ),
+}
+
+
+def both(kind: str, encode: str, decode: str) -> str:
+    """Two functions of a code of a kind, by their bodies."""
+    return f"{kind} mine_encode(vec3 n) {{ {encode} }}\nvec3 mine_decode({kind} e) {{ {decode} }}\n"
+
+
+def octahedral(code="p", before="", result="normalize(n)") -> str:
+    return (ENCODE + DECODE).replace("CODE", code).replace("BEFORE", before).replace("RESULT", result)
+
+
+def three(text: str) -> str:
+    """An encoding of two numbers with a third that is always 0."""
+    return (
+        text.replace("vec2 mine", "vec3 mine")
+        .replace("return p;", "return vec3(p, 0.0);")
+        .replace("decode(vec2 e,", "decode(vec3 e,")
+        .replace("vec3(e, 1.0", "vec3(e.xy, 1.0")
+    )
+
+
+WRONG = {
+    "a share of it": (octahedral("p * 0.7", "e /= 0.7;"), "number 1 of the code is -0.7 to 0.7: 30 % is unused"),
+    "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "number 1 of the code is 1.4 for (1, 0, 0)"),
+    "a mirrored half": (
+        octahedral(result="normalize(vec3(abs(n.x), n.yz))"),
+        "decode loses directions with x < 0, which come back with x reversed: encode gives them codes of their own",
+    ),
+    "a fold without .yx": (
+        octahedral().replace("abs(p.yx)", "abs(p)"),
+        "encode is octahedral, but its fold has .xy where .yx belongs: directions with z < 0 are lost",
+    ),
+    "a scale on one side": (
+        HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1),
+        "encode gives 0.98 times number 2 of the code",
+    ),
+    "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
+    "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
+    "swapped axes of a half": (
+        FLAT.replace("return n.xy", "return n.yx"),
+        "directions with z >= 0 come back with x and y swapped",
+    ),
+    "a flipped axis of a half": (
+        STEREO.replace("vec3(2.0 * e,", "vec3(2.0 * e * vec2(-1, 1),"),
+        "directions with z >= 0 come back with x reversed",
+    ),
+    "a wrong scale of a half": (
+        STEREO.replace("return n.xy", "return 0.5 * n.xy"),
+        "of directions with z >= 0 without any storage; encode gives 0.5 times the code that decode takes",
+    ),
+    "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
+    "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
+    "NaN": (
+        ANGLES.replace("n.z)", "n.z + 1e-9 * acos(n.z * 1.001))") + BY_ANGLES.replace("BEFORE", ""),
+        "no number",
+    ),
+    "a seam": (
+        ANGLES + BY_ANGLES.replace("BEFORE", "if (e.x > 0.97) e.x = -0.9;"),
+        "a seam: 84 of 4338 directions that were tried come back more than 1 degree off",
+    ),
+    "a number of nothing": (three(octahedral()), "number 3 of the code carries nothing: it is always 0"),
+    "an angle of half a turn": (
+        both(
+            "vec2",
+            f"return vec2(atan(n.y, n.x) / {PI}, acos(clamp(n.z, -1.0, 1.0)) / {PI} * 2.0 - 1.0);",
+            f"float a = e.x * {PI}, t = (e.y + 1.0) * {PI} / 4.0; "
+            "return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
+        ),
+        "encode gives 0.5 times number 2 of the code that decode takes",
+    ),
+    "atan of one argument": (
+        both(
+            "vec2",
+            f"return vec2(atan(n.y / n.x) / {PI}, n.z);",
+            f"float a = e.x * {PI}, s = sqrt(max(0.0, 1.0 - e.y * e.y)); return vec3(cos(a) * s, sin(a) * s, e.y);",
+        ),
+        "encode loses directions with x < 0, which come back with x and y reversed",
+    ),
+    "a range of one number": (
+        octahedral("vec2(p.x * 0.5 + 0.5, p.y)"),
+        "encode gives 0.5 times number 1 plus 0.5 of the code that decode takes",
+    ),
+    "half of [0, 1]": (
+        both("vec3", "return n * 0.5 + 0.5;", "return normalize(e);"),
+        "c * 2 - 1 between the two makes one",
+    ),
+    "a step too many": (
+        octahedral("floor((p * 0.5 + 0.5) * 256.0) / 255.0 * 2.0 - 1.0"),
+        "encode gives 256/255 times the code that decode takes: it rounds to 256 steps",
+    ),
+    "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "the pole +z loses its neighbourhood: directions 0.057"),
+}
+RIGHT = {
+    "octahedral": (octahedral(), "sphere"),
+    "angle and z": (ANGLES + BY_ANGLES.replace("BEFORE", ""), "sphere"),
+    "two angles": (INCLINED.replace("LARGEST", "1.0"), "sphere"),
+    "three numbers": (ALL_THREE.replace("RESULT", "e"), "sphere"),
+    "three, normalised": (ALL_THREE.replace("RESULT", "normalize(e)"), "sphere"),
+    "turned on its side": (octahedral().replace("n.xy / (", "n.yx / (").replace("vec3(e, 1", "vec3(e.yx, 1"), "sphere"),
+    "two of three": (FLAT, "hemisphere"),
+    "half an octahedron": (HALF, "hemisphere"),
+    "an equal-area disc": (DISC, "hemisphere"),
+    "stereographic": (STEREO, "hemisphere"),
+    **{name: (both(*parts), "sphere") for name, parts in OF_THE_SPHERE.items()},
+    **{name: (both(*parts), "hemisphere") for name, parts in OF_A_HALF.items()},
+}
+
+
+def looked_at(folder: Path, text: str) -> dict:
+    path = folder / "mine.glsl"
+    path.write_text(text)
+    return first_look(path)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_named_first(tmp_path, what):
+    text, said = WRONG[what]
+    found = looked_at(tmp_path, text)
+    first, *_ = [found["broken"]] if "broken" in found else found["wrong"]
+    assert said in first, found
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("what", RIGHT)
+def test_of_a_right_encoder_nothing_is_said(tmp_path, what):
+    text, domain = RIGHT[what]
+    found = looked_at(tmp_path, text)
+    assert (found["domain"], found["wrong"]) == (domain, []) and "half" not in found
+
+
+@pytest.mark.parametrize("name", ENCODINGS)
+def test_of_the_catalogue_nothing_is_said(gl, name):
+    """And what each is made for is found."""
+    encoding = ENCODINGS[name]
+    found = diagnosed(probe_of(gl, encoding), gl)
+    assert (found.domain, found.wrong) == (Domain(encoding.domain), [])
+
+
+@pytest.mark.usefixtures("gl")
+def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
+    path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.png"
+    path.write_text(octahedral(result="normalize(n.yxz)"))
+    status, out, err = run("doctor", str(path), "--plot", str(picture), "--format", "json")
+    assert status == 1 and "x and y swapped" in out and str(picture) in err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    path.write_text(octahedral())
+    status, out, err = run("doctor", str(path))
+    assert (status, err) == (0, "") and "nothing is likely wrong" in out
+    path.write_text(octahedral().replace("mine_", "spherical_"))
+    status, out, err = run("doctor", str(path))
+    assert (status, err) == (0, "") and "there is an encoding named spherical already" in " ".join(out.split())
+    path.write_text(FLAT)
+    status, out, err = run("doctor", str(path))
+    assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_table_says_it_too(run, tmp_path):
+    path = tmp_path / "mine.glsl"
+    path.write_text(octahedral("p * 0.7", "e /= 0.7;"))
+    status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--backend", "glsl", "--count", "64")
+    assert status == 0 and f"{path}: number 1 of the code is -0.7 to 0.7: 30 % is unused" in err
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (("--plot", "a.png"), "name it"),
+        (("--domain", "sphere"), "name it"),
+        (("a.glsl", "--domain", "z"), "unknown domain 'z'"),
+        (("a.glsl", "--storage", "rg8,rg16"), "doctor measures in one storage"),
+        ((".",), ".: it is a folder; name a file"),
+        (("nothing.glsl",), "there is no such file"),
+        (("a.glsl", "--plot", "a.txt"), "a.txt"),
+    ],
+)
+def test_what_doctor_cannot_do_is_one_line(run, words, said):
+    status, out, err = run("doctor", *words)
+    assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err

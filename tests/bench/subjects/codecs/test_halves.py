@@ -1,0 +1,202 @@
+"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+
+import json
+import re
+from dataclasses import replace
+
+import pytest
+
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.bench.subjects.codecs.user_encodings import encodings_named
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+
+pytestmark = pytest.mark.usefixtures("gl")
+FOLD = "vec2 fold(vec2 p) { return (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0); }\n"
+NO_FOLD = f"""{FOLD}vec2 dir_encode(vec3 n) {{ n /= abs(n.x) + abs(n.y) + abs(n.z); return n.xy; }}
+vec3 dir_decode(vec2 e) {{
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    if (n.z < 0.0) n.xy = fold(n.xy);
+    return normalize(n);
+}}
+"""
+NO_UNFOLD = f"""{FOLD}vec2 dir_encode(vec3 n) {{
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    return n.z >= 0.0 ? n.xy : fold(n.xy);
+}}
+vec3 dir_decode(vec2 e) {{ return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }}
+"""
+# The third number says the side, and is never read.
+SIGN_UNREAD = """vec3 dir_encode(vec3 n) {
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    float y = n.y * 0.5 + 0.5;
+    return vec3(n.x * 0.5 + y, y - n.x * 0.5, n.z < 0.0 ? 0.0 : 1.0);
+}
+vec3 dir_decode(vec3 p) {
+    vec3 n = vec3(p.x - p.y, p.x + p.y - 1.0, 0.0);
+    n.z = 1.0 - abs(n.x) - abs(n.y);
+    return normalize(n);
+}
+"""
+# A decoder of the whole spheremap, whose encoder mirrors: no octahedron, so that the sides alone say who loses it.
+MIRRORED = """vec2 dir_encode(vec3 n) { n.z = abs(n.z); return n.xy / sqrt(2.0 * n.z + 2.0); }
+vec3 dir_decode(vec2 e) { float f = min(dot(e, e), 1.0); return vec3(2.0 * e * sqrt(1.0 - f), 1.0 - 2.0 * f); }
+"""
+LOST = {
+    "no fold": (NO_FOLD, "encode is octahedral, but its fold is missing: directions with z < 0 are lost"),
+    "no unfold": (NO_UNFOLD, "decode is octahedral, but its unfold is missing: directions with z < 0 are lost"),
+    "a sign that is not read": (
+        SIGN_UNREAD,
+        "decode does not read number 3 of the code, which encode fills",
+    ),
+    "a mirror": (
+        MIRRORED,
+        "encode loses directions with z < 0, which come back with z reversed: it gives them",
+    ),
+}
+# Designs for z >= 0, as functions of m, which is n in other axes.
+DESIGNS = {
+    "xy": ("m.xy", "vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))))"),
+    "hemi-octahedral": (
+        "vec2(m.x + m.y, m.x - m.y) / (abs(m.x) + abs(m.y) + abs(m.z))",
+        "normalize(vec3(e.x + e.y, e.x - e.y, 2.0 - abs(e.x + e.y) - abs(e.x - e.y)))",
+    ),
+    "a disc of equal areas": (
+        "m.xy / sqrt(1.0 + max(m.z, 0.0))",
+        "vec3(e * sqrt(max(0.0, 2.0 - dot(e, e))), 1.0 - dot(e, e))",
+    ),
+    "stereographic": ("m.xy / (1.0 + max(m.z, 0.0))", "vec3(2.0 * e, 1.0 - dot(e, e)) / (1.0 + dot(e, e))"),
+    "paraboloid in [0, 1]": (
+        "m.xy / (1.0 + abs(m.z)) * 0.5 + 0.5",
+        "normalize(vec3(e * 4.0 - 2.0, 4.0 * dot(e, 1.0 - e) - 1.0))",
+    ),
+}
+# The half of each pair of axes and sign, m of n, and n of m.
+HALVES = {
+    "z >= 0": ("n", "m"),
+    "z <= 0": ("vec3(n.xy, -n.z)", "vec3(m.xy, -m.z)"),
+    "y >= 0": ("n.zxy", "m.yzx"),
+    "y <= 0": ("-n.zxy", "-m.yzx"),
+    "x >= 0": ("n.yzx", "m.zxy"),
+    "x <= 0": ("-n.yzx", "-m.zxy"),
+}
+
+
+def design(name: str, half: str) -> str:
+    encode, decode = DESIGNS[name]
+    to, back = HALVES[half]
+    return (
+        f"vec2 dir_encode(vec3 n) {{ vec3 m = {to}; return {encode}; }}\n"
+        f"vec3 dir_decode(vec2 e) {{ vec3 m = {decode}; return {back}; }}\n"
+    )
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("what", LOST)
+def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
+    text, said = LOST[what]
+    (tmp_path / "dir.glsl").write_text(text)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    rows = json.loads(out)
+    assert status == 1 and said in rows[0]["finding"] and rows[0]["domain"] == "sphere", rows
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "hemisphere", "--format", "json")
+    assert json.loads(out)[0]["domain"] == "hemisphere" and "directions with" not in out, out
+    # The mirrored spheremap leaves the rim of its square unused, whatever it is meant for.
+    assert status == (what == "a mirror")
+
+
+@pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("what", ["no fold", "no unfold"])
+def test_a_lost_half_is_found_along_any_axis(tmp_path, what, half):
+    """An octahedron with y up, of left-handed view space, or of -n."""
+    to, back = HALVES[half]
+    text = LOST[what][0].replace("dir_encode", "own_in").replace("dir_decode", "own_out")
+    text += f"vec2 dir_encode(vec3 n) {{ return own_in({to}); }}\n"
+    text += f"vec3 dir_decode(vec2 e) {{ vec3 m = own_out(e); return {back}; }}\n"
+    (tmp_path / "dir.glsl").write_text(text)
+    (said,) = first_look(tmp_path / "dir.glsl")["wrong"]
+    lost = half.replace(">=", "<") if ">=" in half else half.replace("<=", ">")
+    side = "encode is octahedral, but its fold" if what == "no fold" else "decode is octahedral, but its unfold"
+    assert f"{side} is missing: directions with {lost} are lost" in said
+
+
+@pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("what", DESIGNS)
+def test_a_design_for_a_half_is_none(tmp_path, what, half):
+    (tmp_path / "dir.glsl").write_text(design(what, half))
+    found = first_look(tmp_path / "dir.glsl")
+    axis, side = found.get("half", (2, 1))
+    assert found["wrong"] == [] and found["domain"] == "hemisphere", found
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
+
+
+def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
+    """Whichever it is, its figures are those of the same code for z >= 0, and a line says which half."""
+    means = {}
+    for half in HALVES:
+        (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+        words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "65536", "--backend", "glsl")
+        status, out, err = run("quality", "--encoding", "dir.glsl", *words, "--format", "json")
+        (row,) = json.loads(out)
+        means[half] = row["angle_mean_deg"]
+        assert status == 0 and f"taken to be made for normals with {half} alone" in err
+        assert row["domain"] == "hemisphere" and row["encoding"] == "dir"
+    assert min(means.values()) == pytest.approx(max(means.values()), rel=0.01)
+    assert means["z >= 0"] == pytest.approx(0.239, abs=0.003)
+
+
+@pytest.mark.parametrize("half", ["y >= 0", "z <= 0"])
+def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
+    """What is written for an engine has the axes of the engine's file, though tables turn it."""
+    (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+    status, out, _ = run("code", "dir.glsl", "--storage", "rg8", "--to", "glsl")
+    assert status == 0 and f"Normals: unit vectors with {half}." in out
+    (tmp_path / "written.glsl").write_text(out)
+    found = first_look(tmp_path / "written.glsl")
+    axis, side = found.get("half", (2, 1))
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and found["wrong"] == []
+
+
+def test_a_layout_in_world_space_keeps_the_axes_of_a_half(tmp_path):
+    """A code for y >= 0 holds what looks up in the world, and of view space what looks at the viewer."""
+    (tmp_path / "dir.glsl").write_text(design("xy", "y >= 0"))
+    (encoding,) = encodings_named("dir.glsl")
+    layout = replace(LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rg8"])), space="view")
+    assert (layout.encoding.axis, layout.encoding.is_turned) == ("x", True)
+    assert not replace(layout, space="world").encoding.is_turned
+
+
+def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
+    (tmp_path / "dir.glsl").write_text(design("xy", "z >= 0"))
+    assert run("doctor", "dir.glsl")[0] == run("doctor", "dir.glsl", "--domain", "hemisphere")[0] == 0
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
+    assert status == 1 and "directions with z <= 0 come back with z reversed" in out
+
+
+def test_directions_that_are_lost_are_counted(run, tmp_path):
+    """Most of a half comes back as it was: how many do not, and how far at most, not what the median direction does."""
+    text = NO_FOLD.replace("return n.xy; }", "return n.z >= 0.0 ? n.xy : fold(n.xy); }")
+    wrong = text.replace("return normalize(n);", "if (n.z < -0.6) n.x += 0.3 * sign(n.x); return normalize(n);")
+    assert wrong != text
+    (tmp_path / "dir.glsl").write_text(wrong)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    (said, *_) = [row["finding"] for row in json.loads(out)]
+    found = re.fullmatch(
+        r"of directions with z < 0 (\d+) of (\d+) come back more than 1 degree off, up to ([\d.]+): .*", said
+    )
+    assert status == 1 and found, said
+    count, among, largest = map(float, found.groups())
+    assert 0.1 < count / among < 0.9 and 15 < largest < 40
+
+
+def test_a_square_that_is_half_used_is_a_finding(run, tmp_path):
+    """Neither folds: each number is used from -1 to 1, and half of the square is not."""
+    text = NO_FOLD.split("vec3 dir_decode")[0] + NO_UNFOLD[NO_UNFOLD.index("vec3 dir_decode") :]
+    (tmp_path / "dir.glsl").write_text(text)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    assert status == 1 and "% of the square that the storage spends bits on" in out, out

@@ -1,0 +1,210 @@
+"""Users' own encodings from GLSL files: measured, and what is wrong with them said in a line that spares the others."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.ground.directions import directions
+from normalbench.bench.ground.machine import forks
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.codecs import user_encodings
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.bench.subjects.codecs.user_encodings import read_encoding
+from normalbench.encodings.catalogue import NAMES
+
+pytestmark = pytest.mark.usefixtures("gl")
+(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[3] / "README.md").read_text(), re.S)
+TWIN = """
+from normalbench.encodings.vec import Vec2, Vec3, normalize
+
+
+def encode(n, view):
+    s = abs(n.x) + abs(n.y) + abs(n.z)
+    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
+
+
+def decode(e, view):
+    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
+    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
+"""
+QUICK = ("--normals", "hemisphere", "--count", "65536", "--format", "json")
+
+
+def written(folder: Path, text: str = MINE, name: str = "mine.glsl") -> str:
+    (folder / name).write_text(text)
+    return str(folder / name)
+
+
+def test_two_functions_are_measured_like_any_other(run, tmp_path):
+    """Half the sphere in the whole square: about a bit more than the octahedron is worth there."""
+    path = written(tmp_path)
+    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
+    rows = {row["encoding"]: row for row in json.loads(out)}
+    assert status == 0 and err.endswith(
+        "mine.glsl: taken to be made for normals with z >= 0 alone: no others come back\n"
+    )
+    assert err.count("\n") == 1
+    assert 0.8 < rows["mine"]["effective_bits"] - rows["octahedral"]["effective_bits"] < 1.2, rows
+    status, out, _ = run("render", "--encoding", path, "--size", "64x48", "--repeats", "1", "--format", "json")
+    assert status == 0 and json.loads(out)[0]["encoding"] == "mine"
+
+
+def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path):
+    path = written(tmp_path)
+    status, out, err = run("quality", "--encoding", path, *QUICK)
+    jax_row, gl_row = json.loads(out)
+    assert status == 0 and "has no Python twin" in jax_row["skipped"] and "mine.py is not there" in err
+    _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
+    assert "| mine " in out and "jax" not in out.partition("- not shown")[0], "a row by GLSL alone"
+    assert f"not shown, without figures: mine/rgba8 on hemisphere by jax ({jax_row['skipped']})" in out
+    (tmp_path / "mine.py").write_text(TWIN)
+    _, out, err = run("quality", "--encoding", path, *QUICK)
+    by_jax, by_gl = json.loads(out)
+    assert err.count("\n") == 1 and by_jax["psnr_db"] == pytest.approx(by_gl["psnr_db"], abs=0.02)
+    assert by_gl["psnr_db"] == gl_row["psnr_db"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        (MINE.replace("p.x + p.y, p.x", "q.x + p.y, p.x"), "mine.glsl:4: error"),
+        (MINE.replace("mine_encode", "mine_pack"), "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"),
+        (MINE.replace("mine_decode", "my_decode"), "no function vec3 mine_decode(vec2 e, vec3 view)"),
+        (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
+        (MINE.replace("mine_", "octahedral_"), "there is an encoding named octahedral already"),
+        (MINE + "float2 half_of(float2 e) { return e * 0.5; }", "(float2 is HLSL: rename float2 to vec2"),
+        ("", "no function vec2"),
+    ],
+)
+def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
+    path = written(tmp_path, text)
+    status, out, err = run("quality", "--encoding", path, *QUICK)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
+    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
+    assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
+
+
+def test_two_files_of_one_name_are_told_apart(run, tmp_path):
+    one, other = written(tmp_path), written(tmp_path, name="other.glsl")
+    status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
+    assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
+
+
+@pytest.mark.slow
+def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
+    """A session of tests, or a file of gates, measures the same in any order."""
+    path = written(tmp_path)
+    assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
+    assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
+    assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
+
+
+@pytest.mark.parametrize(
+    "parameters", ["in vec3 n, in vec3 view", "const in vec3 n,\n    vec3 view", "vec3 n , vec3 v"]
+)
+def test_parameters_are_written_as_glsl_allows(tmp_path, parameters):
+    path = tmp_path / "mine.glsl"
+    path.write_text(
+        f"vec2 mine_encode({parameters}) {{ return n.xy; }}\n"
+        "vec3 mine_decode(in vec2 e, const vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }"
+    )
+    assert first_look(path) == {"domain": "hemisphere", "wrong": []}
+
+
+def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
+    told = MINE.replace("mine", "other")
+    path = written(
+        tmp_path,
+        "uniform float unread; uniform float half_of_it = 0.5;\nbuffer B { int q; } b;\nbuffer C { float x; };\n"
+        + MINE
+        + told,
+    )
+    assert user_encodings.examined(Path(path)).notes[0] == "mine alone is measured; move other into a file of its own"
+
+
+@pytest.mark.parametrize(
+    "before, told",
+    [
+        ("layout(std140) uniform Camera { mat4 view; mat4 proj; };", ""),
+        ("uniform vec3[4] kernel;", ""),
+        ("#if 0\nuniform float k;\n#else\nconst float k = 2.0;\n#endif\nfloat q() { return k; }", ""),
+        ("uniform vec3[4] kernel; vec3 q() { return kernel[0]; }", "the uniform kernel"),
+        ("uniform U { float a[4], k; } u; float q() { return u.k; }", "the block u"),
+        ("uniform U { float a[4], k; }; float q() { return a[0]; }", "a of a block"),
+        ('#include "below.glsl"\nfloat q() { return below; }', "the uniform below"),
+    ],
+)
+def test_only_what_is_read_from_outside_is_refused(tmp_path, before, told):
+    written(tmp_path, "uniform float below;", "below.glsl")
+    path = Path(written(tmp_path, f"{before}\n{MINE}"))
+    if not told:
+        assert read_encoding(path).name == "mine"
+        return
+    with pytest.raises(UsageError, match=f"mine.glsl: it reads {told}, which has no value here"):
+        read_encoding(path)
+
+
+def test_a_missing_file_is_one_line(run, tmp_path):
+    status, _, err = run("quality", "--encoding", str(tmp_path / "none.glsl"), *QUICK)
+    assert (status, err) == (2, f"normalbench: {tmp_path / 'none.glsl'}: there is no such file\n")
+
+
+GOOD_ENCODE = "from normalbench.encodings.vec import Vec2\ndef encode(n, view):\n    return Vec2(n.x, n.y)\n"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "twin, said",
+    [
+        (
+            "def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n",
+            "mine.py: AttributeError in line 2",
+        ),
+        (
+            GOOD_ENCODE + "def decode(e, view):\n    return [e.x, e.y, e.x]\n",
+            "mine.py: decode returns list, not a Vec3",
+        ),
+        ("print('hello')\nraise SystemExit(0)\n", "mine.py: SystemExit"),
+    ],
+)
+def test_a_twin_that_fails_costs_the_rows_by_jax(run, tmp_path, twin, said):
+    (tmp_path / "mine.py").write_text(twin)
+    status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
+    by_jax, by_gl = json.loads(out)
+    assert status == 0 and said in by_jax["skipped"] and by_gl["psnr_db"]
+    assert said in err and [line for line in err.splitlines() if "taken to be made for" not in line] == [
+        err.splitlines()[-1]
+    ], err
+
+
+def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):
+    path = written(tmp_path)
+    monkeypatch.setattr(user_encodings, "TIME_LIMIT", 0.01)
+    status, _, err = run("quality", "--encoding", path, *QUICK)
+    assert status == 2 and "did not end within 0.01 s" in err
+    monkeypatch.setattr(user_encodings, "TIME_LIMIT", 60.0)
+    killer = tmp_path / "python"
+    killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
+    killer.chmod(0o755)
+    # What was started before is another Python.
+    forks._forking.end()
+    monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
+    status, _, err = run("quality", "--encoding", path, *QUICK)
+    assert status == 2 and "killed the process (SIGSEGV)" in err
+
+
+def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
+    path = written(tmp_path, MINE.replace("vec3(p, 1.0", "vec3(p * p, 1.0"))
+    status, out, err = run("quality", "--encoding", path, "--backend", "glsl", *QUICK)
+    assert status == 0 and len(json.loads(out)) == 1 and "encode and decode are not a pair" in err
+
+
+def test_the_first_look_finds_the_domain(tmp_path):
+    found = first_look(Path(written(tmp_path)))
+    assert found == {"domain": "hemisphere", "wrong": []}
+    assert len(directions()) > 4000
+    assert read_encoding(Path(written(tmp_path))).components == 2

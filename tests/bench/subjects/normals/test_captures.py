@@ -1,0 +1,468 @@
+"""Captured frames as sets of normals: channels, packing, spaces, masks, and what bad files get."""
+
+import json
+import struct
+import time
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from damaged import in_this_process, refusal
+from PIL import Image
+from written import (
+    chunk,
+    dds_bytes,
+    given,
+    packed,
+    planes_of,
+    png_bytes,
+    some_normals,
+    write_exr,
+    write_image,
+)
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.normals import captures, pixel_files, pixel_process
+from normalbench.bench.subjects.normals.captures import Reading, checked, chosen_channels, turns_of
+from normalbench.bench.subjects.normals.normal_sets import NormalSet, playground
+from normalbench.bench.subjects.normals.pixel_files import read_pixels
+from normalbench.bench.tables.quality.measure import Case, measure
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.scenes.playground import CAMERA
+from normalbench.gbuffer.scenes.playground import playground as rendered
+
+RG8 = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
+ROTATION = np.array([(2, -1, 2), (2, 2, -1), (-1, 2, 2)]) / 3
+
+
+def capture(path: Path, reading: Reading) -> NormalSet:
+    """The set alone."""
+    return captures.capture(path, reading)[0]
+
+
+def figures(made, codec: Codec = RG8) -> dict:
+    row = measure(Case(codec, made, "jax"))
+    hidden = ("normals", "not_finite", "code_space")
+    return {column: value for column, value in row.items() if column not in hidden}
+
+
+# Round trips
+
+
+@pytest.mark.slow
+def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):
+    """To the bit, by EXR in float and NPY in float32 and float64; the counts are its own too."""
+    n = rendered().normals
+    write_exr(tmp_path / "frame.exr", planes_of(n))
+    np.save(tmp_path / "frame32.npy", n)
+    np.save(tmp_path / "frame64.npy", np.asfortranarray(n.astype(np.float64)))
+    expected = figures(playground())
+    for name in ("frame.exr", "frame32.npy", "frame64.npy"):
+        assert figures(capture(tmp_path / name, Reading())) == expected, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how, angle", [("half", 0.03), ("half npy", 0.03), ("png16", 0.002), ("png8", 0.4)])
+def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how, angle):
+    """Half steps of half floats are 2^-12 beside 1, of 16 bits 2^-16, of 8 bits 1/255; up to sqrt 3 of that is lost."""
+    n = rendered().normals
+    if how == "half":
+        path = write_exr(tmp_path / "frame.exr", planes_of(n.astype(np.float16)))
+    elif how == "half npy":
+        path = tmp_path / "frame.npy"
+        np.save(path, n.astype(np.float16))
+    else:
+        path = tmp_path / "frame.png"
+        path.write_bytes(png_bytes(packed(n, np.uint16 if how == "png16" else np.uint8)))
+    made, covered = given(capture(path, Reading()))
+    assert np.array_equal(covered, rendered().covered.ravel())
+    dot = np.sum(made[covered].astype(np.float64) * n.reshape(-1, 3)[covered], axis=1)
+    cross = np.linalg.norm(np.cross(made[covered].astype(np.float64), n.reshape(-1, 3)[covered]), axis=1)
+    off = np.degrees(np.arctan2(cross, dot))
+    assert off.max() < angle and off.max() > angle / 20, f"{off.max():.4f} degrees"
+    assert abs(np.linalg.norm(made[covered].astype(np.float64), axis=1) - 1).max() < 2e-6
+
+
+def test_rays_of_a_field_of_view_are_the_cameras(tmp_path):
+    """Per-pixel view space on the playground's normals with its field of view, within 0.01 dB of the playground's."""
+    np.save(tmp_path / "frame.npy", rendered().normals)
+    codec = Codec(ENCODINGS["per_pixel_view"], STORAGES["rg8"])
+    made = capture(tmp_path / "frame.npy", Reading(fov=CAMERA.fov))
+    own, parallel = figures(playground(), codec)["psnr_db"], figures(replace(made), codec)["psnr_db"]
+    assert parallel == pytest.approx(own, abs=0.01)
+    without = figures(capture(tmp_path / "frame.npy", Reading()), codec)["psnr_db"]
+    assert abs(without - own) > 5, "parallel rays are another matter"
+
+
+def test_a_list_of_normals_is_a_set_without_a_picture(tmp_path, run):
+    np.save(tmp_path / "list.npy", some_normals().reshape(-1, 3))
+    arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json")
+    status, out, err = run("quality", "--normals", f"axes,{tmp_path / 'list.npy'}", *arguments)
+    assert status == 0 and err == ""
+    axes, row = json.loads(out)
+    assert (axes["normals"], axes["not_finite"]) == ("axes", None)
+    assert (row["normals"], row["count"], row["not_finite"]) == ("list.npy", 48 * 64, 0)
+
+
+@pytest.mark.slow
+def test_pictures_are_drawn_of_a_capture(tmp_path, run):
+    (tmp_path / "frame.png").write_bytes(png_bytes(packed(some_normals(), np.uint16)))
+    arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--images", str(tmp_path / "p"))
+    assert run("quality", "--normals", str(tmp_path / "frame.png"), *arguments)[0] == 0
+    with Image.open(tmp_path / "p" / "frame.png-octahedral-rg8-decoded.png") as image:
+        shown = np.asarray(image).astype(int)
+    assert shown.shape == (48, 64, 3) and abs(shown - (some_normals() * 0.5 + 0.5) * 255).max() < 4
+
+
+# Channels
+
+NAMES = {
+    "a layer N": (["N.X", "N.Y", "N.Z", "R", "G", "B"], None, ["N.X", "N.Y", "N.Z"]),
+    "small letters": (["B", "G", "R", "normal.x", "normal.y", "normal.z"], None, ["normal.x", "normal.y", "normal.z"]),
+    "as colours": (["A", "B", "G", "R", "WorldNormal.B", "WorldNormal.G", "WorldNormal.R"], None, "WorldNormal.{RGB}"),
+    "a view layer": (["V.R", "V.G", "V.B", "V.Normal.X", "V.Normal.Y", "V.Normal.Z"], None, "V.Normal.{XYZ}"),
+    "without a dot": (["Nx", "Ny", "Nz", "Px", "Py", "Pz"], None, ["Nx", "Ny", "Nz"]),
+    "an underscore": (["normal_x", "normal_y", "normal_z", "depth"], None, ["normal_x", "normal_y", "normal_z"]),
+    "the picture itself": (["A", "B", "G", "R", "Z"], None, ["R", "G", "B"]),
+    "the only layer": (["gbuffer1.X", "gbuffer1.Y", "gbuffer1.Z", "id"], None, "gbuffer1.{XYZ}"),
+    "a layer named": (["a.X", "a.Y", "a.Z", "b.R", "b.G", "b.B"], "b", ["b.R", "b.G", "b.B"]),
+    "channels named": (["p", "q", "r"], "r, p,q", ["r", "p", "q"]),
+    "an array's": (["0", "1", "2", "3"], None, ["0", "1", "2"]),
+}
+
+
+@pytest.mark.parametrize("what", NAMES)
+def test_the_channels_that_are_normals_are_found(what):
+    names, asked, expected = NAMES[what]
+    if isinstance(expected, str):
+        stem, axes = expected[:-1].split("{")
+        expected = [stem + axis for axis in axes]
+    assert chosen_channels(Path("f.exr"), names, asked) == expected
+
+
+@pytest.mark.parametrize(
+    "names, asked, said",
+    [
+        (["depth", "id"], None, ["it has depth, id; a normal has three channels"]),
+        (["depth", "id", "mask"], None, ["it has depth, id, mask", "--channels x,y,z"]),
+        (["N.X", "N.Y", "N.Z", "normal.R", "normal.G", "normal.B"], None, ["N, normal", "--channels N"]),
+        (["R", "G", "B"], "N", ["no channels 'N'", "it has R, G, B"]),
+        (["R", "G", "B"], "R,G", ["no channels 'R,G'"]),
+        (["Y"], None, ["it has Y"]),
+    ],
+)
+def test_channels_that_cannot_be_found_are_listed(names, asked, said):
+    with pytest.raises(UsageError) as error:
+        chosen_channels(Path("f.exr"), names, asked)
+    assert all(part in str(error.value) for part in ("f.exr: ", *said)), error.value
+
+
+@pytest.mark.slow
+def test_layers_and_parts_of_an_exr_by_name(tmp_path):
+    n, other = some_normals(), some_normals(seed=1)
+    planes = planes_of(other, ("R", "G", "B")) | planes_of(n.astype(np.float16), ("Nx", "Ny", "Nz"))
+    write_exr(tmp_path / "layers.exr", planes, compression="piz")
+    assert np.allclose(given(capture(tmp_path / "layers.exr", Reading()))[0], n.reshape(-1, 3), atol=1e-3)
+    made = given(capture(tmp_path / "layers.exr", Reading(channels="B,G,R")))[0]
+    assert np.array_equal(made, other.reshape(-1, 3)[:, ::-1])
+    write_exr(tmp_path / "parts.exr", {"beauty": planes_of(other, tuple("XYZ")), "normal": planes_of(n, tuple("XYZ"))})
+    assert np.array_equal(given(capture(tmp_path / "parts.exr", Reading()))[0], n.reshape(-1, 3))
+    made = given(capture(tmp_path / "parts.exr", Reading(channels="beauty")))[0]
+    assert np.array_equal(made, other.reshape(-1, 3))
+
+
+# Packing, spaces, masks
+
+
+def test_packed_floats_are_read_with_unpack(tmp_path, run):
+    np.save(tmp_path / "frame.npy", some_normals() * np.float32(0.5) + np.float32(0.5))
+    err = refusal(run, tmp_path / "frame.npy")
+    assert "all components are in [0" in err and "--unpack reads them" in err
+    made, covered = given(capture(tmp_path / "frame.npy", Reading(unpack=True)))
+    assert covered.all() and np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
+
+
+def test_floats_that_are_not_packed_are_not_read_with_unpack(tmp_path, run):
+    np.save(tmp_path / "frame.npy", some_normals())
+    assert "--no-unpack reads them" in refusal(run, tmp_path / "frame.npy", "--unpack")
+
+
+def test_what_is_not_unit_is_refused_with_what_it_is(tmp_path, run):
+    np.save(tmp_path / "frame.npy", 3 * some_normals())
+    err = refusal(run, tmp_path / "frame.npy")
+    assert "100.0% of the normals are not unit" in err and "median 3" in err and "--normalise" in err
+    made, _ = given(capture(tmp_path / "frame.npy", Reading(normalise=True)))
+    assert np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
+    codes = some_normals()
+    codes[..., 2] = 0
+    np.save(tmp_path / "codes.npy", codes)
+    assert "are not unit" in refusal(run, tmp_path / "codes.npy")
+
+
+def test_a_few_normals_off_unit_length_are_normalised_and_it_is_said(tmp_path):
+    n = some_normals()
+    n[0, :10] *= 0.5
+    np.save(tmp_path / "frame.npy", n)
+    made, notes = captures.capture(tmp_path / "frame.npy", Reading())
+    assert np.allclose(given(made)[0], some_normals().reshape(-1, 3), atol=2e-7)
+    assert notes == ["0.326% of the normals are not unit: normalised"]
+
+
+def test_world_space_is_turned_to_view_space(tmp_path):
+    """By nine numbers, by sixteen with a move, by a file, with a scale or a mirror; what comes out is in view space."""
+    n = some_normals()
+    np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
+    four = np.eye(4)
+    four[:3, :3], four[:3, 3] = ROTATION * 2, (5, 6, 7)
+    np.savetxt(tmp_path / "matrix.txt", four)
+    typed = [",".join(map(str, ROTATION.ravel())), " ".join(map(str, four.ravel())), str(tmp_path / "matrix.txt")]
+    broken = np.load(tmp_path / "world.npy")
+    broken[0, 0], broken[1, 1] = np.nan, np.inf
+    np.save(tmp_path / "broken.npy", broken)
+    made, covered = given(capture(tmp_path / "broken.npy", Reading(space="world", view_matrix=typed[0], nan_share=0.1)))
+    assert covered.sum() == 48 * 64 - 2 and np.allclose(made[covered], n.reshape(-1, 3)[covered], atol=2e-7)
+    for matrix in typed:
+        made, _ = given(capture(tmp_path / "world.npy", Reading(space="world", view_matrix=matrix)))
+        assert np.allclose(made, n.reshape(-1, 3), atol=2e-7), matrix
+    np.save(tmp_path / "left.npy", n * np.float32([1, 1, -1]))
+    made, _ = given(capture(tmp_path / "left.npy", Reading(space="view-left-handed")))
+    assert np.array_equal(made, n.reshape(-1, 3))
+    assert captures.capture(tmp_path / "left.npy", Reading(space="view-left-handed"))[1] == []
+    (note,) = captures.capture(tmp_path / "left.npy", Reading())[1]
+    assert "if z points the other way: read it with --space view-left-handed" in note
+
+
+def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_path):
+    """A frame in world space of an engine that encodes there is measured as it is, with or without the matrix; one in
+    view space is turned back. Rays are turned with the normals."""
+    n, matrix = some_normals(), ",".join(map(str, ROTATION.ravel()))
+    world = (n.astype(np.float64) @ ROTATION).astype(np.float32)
+    for name, frame in (("world", world), ("view", n), ("left", n * np.float32([1, 1, -1]))):
+        np.save(tmp_path / f"{name}.npy", frame)
+    spaces = {"world": "world", "view": "view", "left": "view-left-handed"}
+    for name, space in spaces.items():
+        reading = Reading(space=space, code_space="world", view_matrix=matrix, fov=60)
+        made = capture(tmp_path / f"{name}.npy", reading)
+        assert np.allclose(given(made)[0], world.reshape(-1, 3), atol=2e-7) and made.code_space == "world"
+        seen = capture(tmp_path / "view.npy", Reading(fov=60))
+        ours, views = (np.stack([np.asarray(c) for c in next(s.loads())().view], 1) for s in (made, seen))
+        assert np.allclose(ours, views @ ROTATION, atol=2e-7) and seen.code_space == "view"
+    made = capture(tmp_path / "world.npy", Reading(space="world", code_space="world"))
+    assert np.array_equal(given(made)[0], world.reshape(-1, 3))
+    assert playground().code_space is None
+
+
+def test_the_space_of_codes_is_in_the_row_and_named_by_the_hint(run, tmp_path):
+    """Octahedral in world space is not octahedral in view space: the same frame has other errors."""
+    n = rendered().normals[1::4, 1::4]
+    np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
+    matrix = ",".join(map(str, ROTATION.ravel()))
+    words = ["quality", "--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json"]
+    words += ["--normals", str(tmp_path / "world.npy")]
+    found = {}
+    for space in ("view", "world"):
+        more = ["--space", "world", "--code-space", space, "--view-matrix", matrix]
+        (row,) = json.loads(run(*words, *more)[1])
+        assert row["code_space"] == space
+        found[space] = row["angle_mean_deg"]
+    assert found["view"] != pytest.approx(found["world"], rel=1e-4)
+    (row,) = json.loads(run(*words, "--space", "world", "--code-space", "world")[1])
+    assert row["angle_mean_deg"] == found["world"]
+    err = run(*words)[2]
+    assert "--space world --view-matrix" in err and "--space world --code-space world" in err
+
+
+def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
+    np.save(tmp_path / "world.npy", some_normals())
+    words = ("quality", "--normals", str(tmp_path / "world.npy"), "--space", "world", "--code-space", "world")
+    status, out, err = run(*words, "--encoding", "per_pixel_view", "--storage", "rg8")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "need --view-matrix where they are in world space" in err
+    status, out, err = run(*words, "--encoding", "octahedral", "--storage", "rg8", "--fov", "60")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "--fov gives rays in view space" in err
+
+
+@pytest.mark.parametrize(
+    "space, matrix, said",
+    [
+        ("world", None, "needs --view-matrix"),
+        ("screen", None, "unknown space 'screen'; known: view, view-left-handed, world"),
+        ("view", "1,0,0,0,1,0,0,0,1", "--space view needs none"),
+        ("world", "1,0,0,0,1,0", "6 numbers; 9 or 16"),
+        ("world", "1,0,0,0,2,0,0,0,1", "not a rotation"),
+        ("world", "0,0,0,0,0,0,0,0,0", "not a rotation"),
+        ("world", "nan,0,0,0,1,0,0,0,1", "neither numbers nor a text file"),
+        ("world", "missing.txt", "neither numbers nor a text file of numbers: there is no such file"),
+    ],
+)
+def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix, said):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UsageError, match=said) as error:
+        turns_of(checked(Reading(space=space, view_matrix=matrix)))
+    assert "\n" not in str(error.value)
+
+
+def test_a_space_of_codes_that_cannot_be_is_one_line():
+    with pytest.raises(UsageError, match="unknown code space 'screen'; known: view, world"):
+        checked(Reading(code_space="screen"))
+    with pytest.raises(UsageError, match="--space view --code-space world needs --view-matrix"):
+        turns_of(checked(Reading(code_space="world")))
+    with pytest.raises(UsageError, match=r"--space world needs --view-matrix.*or --code-space world"):
+        turns_of(checked(Reading(space="world")))
+
+
+def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
+    """Garbage under the mask is never looked at."""
+    monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
+    n, surface = some_normals(), np.zeros((48, 64), bool)
+    surface[10:30, 5:60] = True
+    n[~surface] = np.nan
+    n[0, 0] = (5, 5, 5)
+    write_exr(tmp_path / "frame.exr", planes_of(n) | {"A": surface.astype(np.float16)})
+    (tmp_path / "mask.png").write_bytes(png_bytes(surface[..., None].astype(np.uint16) * 7))
+    Image.fromarray(surface).save(tmp_path / "one.png")
+    np.save(tmp_path / "mask.npy", surface)
+    write_exr(tmp_path / "mask.exr", {"mask": surface.astype(np.float32)})
+    for mask in ("A", *(str(tmp_path / name) for name in ("mask.png", "one.png", "mask.npy", "mask.exr"))):
+        made = capture(tmp_path / "frame.exr", Reading(mask=mask))
+        assert np.array_equal(given(made)[1], surface.ravel()), mask
+        assert (made.background, made.not_finite) == (48 * 64 - 20 * 55, 0), mask
+    np.save(tmp_path / "small.npy", surface[:5])
+    for mask, said in ((str(tmp_path / "small.npy"), "5 x 64, the normals are 48 x 64"), ("B", "no channel 'B'")):
+        with pytest.raises(UsageError, match=said):
+            capture(tmp_path / "frame.exr", Reading(mask=mask))
+
+
+def test_nan_is_refused_or_masked_and_counted_as_is_asked_for(tmp_path, run):
+    n = some_normals()
+    n[3, 4:7] = [(np.nan,) * 3, (np.inf, 0, 0), (0, 0, np.nan)]
+    n[5, :10] = 0
+    np.save(tmp_path / "frame.npy", n)
+    err = refusal(run, tmp_path / "frame.npy")
+    assert "3 of 3062 normals are NaN or infinite, the first at row 3, column 4" in err
+    (share,) = [word for word in err.split() if word.startswith("0.0")]
+    arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json")
+    status, out, _ = run("quality", "--normals", str(tmp_path / "frame.npy"), *arguments, "--nan-share", share)
+    (row,) = json.loads(out)
+    assert status == 0 and (row["not_finite"], row["background"], row["count"]) == (3, 10, 48 * 64 - 13)
+    assert row["angle_max_deg"] < 1 and row["invalid"] == 0
+    assert "--nan-share 0.001 masks" not in refusal(run, tmp_path / "frame.npy", "--nan-share", "0.0005")
+
+
+def test_normals_of_no_length_are_background(tmp_path):
+    """Zero, less than a code of 8 bits from zero, and a cleared packed target; never NaN."""
+    n = some_normals()
+    n[:5] = 0
+    np.save(tmp_path / "frame.npy", n)
+    stored = packed(n, np.uint8)
+    stored[2:4] = (127, 128, 127)
+    Image.fromarray(stored).save(tmp_path / "frame.png")
+    for name in ("frame.npy", "frame.png"):
+        made = capture(tmp_path / name, Reading())
+        n_made, covered = given(made)
+        assert made.background == 5 * 64 and not covered[: 5 * 64].any() and covered[5 * 64 :].all()
+        assert np.isfinite(n_made).all()
+
+
+# Formats
+
+
+def all_of(path: Path):
+    """Every channel of a file, (channels, height, width), and what stands for 1."""
+    made = read_pixels(path, lambda names: names)
+    return made.planes, made.full
+
+
+# Of each format: the type of its numbers, and how OpenImageIO is to write it.
+FORMATS = {
+    "a.png": (np.uint16, {}),
+    "b.png": (np.uint8, {}),
+    "a.tif": (np.uint8, {"compression": "lzw"}),
+    "b.tif": (np.uint16, {"compression": "zip"}),
+    "c.tif": (np.float16, {"compression": "zip"}),
+    "d.tiff": (np.float32, {"compression": "none"}),
+    "e.tiff": (np.float64, {"compression": "zip", "planarconfig": "separate"}),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_numbers_of_every_format_come_back_as_they_are(tmp_path, name):
+    """Colour is neither multiplied by alpha nor converted, and 16 bits stay 16."""
+    kind, how = FORMATS[name]
+    pixels = np.random.default_rng(0).integers(0, 2**16, (9, 7, 4))
+    pixels = pixels.astype(kind) if np.issubdtype(kind, np.integer) else (pixels / 2**16 - 0.5).astype(kind)
+    pixels[0, :, 3] = 0
+    planes, full = all_of(write_image(tmp_path / name, pixels, **how))
+    assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)), abs(planes - np.moveaxis(pixels, -1, 0)).max()
+    assert full == (np.iinfo(kind).max if np.issubdtype(kind, np.integer) else None)
+    assert planes.dtype == (np.float64 if kind is np.float64 else np.float32)
+
+
+def test_dds_webp_and_radiance_files_are_read(tmp_path):
+    """Whole numbers to the last one, also under an alpha of 0; Radiance's to the 8 bits that it has."""
+    pixels = np.random.default_rng(0).integers(0, 256, (9, 7, 4), np.uint8)
+    (tmp_path / "a.dds").write_bytes(dds_bytes(pixels))
+    Image.fromarray(pixels).save(tmp_path / "a.webp", lossless=True, exact=True)
+    for name in ("a.dds", "a.webp"):
+        planes, full = all_of(tmp_path / name)
+        assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)) and full == 255, name
+    exact = pixels[..., :3].astype(np.float32) / 256
+    exact[..., 2] = np.maximum(exact[..., 2], 0.5)
+    planes, full = all_of(write_image(tmp_path / "a.hdr", exact))
+    assert np.array_equal(planes, np.moveaxis(exact, -1, 0)) and full is None
+
+
+def test_pages_of_a_file_are_layers(tmp_path):
+    pages = [np.random.default_rng(seed).integers(1, 256, (9, 7, 3), np.uint8) for seed in range(2)]
+    Image.fromarray(pages[0]).save(tmp_path / "a.tif", save_all=True, append_images=[Image.fromarray(pages[1])])
+    seen = []
+    made = read_pixels(tmp_path / "a.tif", lambda names: seen.extend(names) or ["2.R", "G"])
+    assert seen == ["R", "G", "B", "2.R", "2.G", "2.B"]
+    assert np.array_equal(made.planes, [pages[1][..., 0], pages[0][..., 1]])
+    assert chosen_channels(tmp_path / "a.tif", seen, None) == ["R", "G", "B"]
+
+
+def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
+    """An object's number is not a share of 2^32."""
+    objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
+    planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
+    assert np.array_equal(planes, [objects]) and full is None
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_png_of_every_filter_and_depth(tmp_path, kind, channels):
+    """Written byte by byte as the specification has it; noise on a ramp, so that every predictor is taken."""
+    rng = np.random.default_rng(0)
+    ramp = np.arange(21 * 17 * channels).reshape(21, 17, channels) * (np.iinfo(kind).max // 4000)
+    pixels = (ramp + rng.integers(0, np.iinfo(kind).max // 3, ramp.shape)).astype(kind)
+    (tmp_path / "a.png").write_bytes(png_bytes(pixels, [4, 3, 2, 1, 0, 4, 4]))
+    names = [["Y"], ["Y", "A"], list("RGB"), list("RGBA")][channels - 1]
+    found = pixel_process.read_pixels("png", str(tmp_path / "a.png"), names)
+    assert found.dtype == kind and np.array_equal(found, np.moveaxis(pixels, -1, 0))
+
+
+@pytest.mark.parametrize("size", [(9, 13), (1, 1), (3, 2)])
+def test_an_interlaced_png_is_read(tmp_path, size):
+    """Its seven passes one after the other, each as an image of its own."""
+    pixels = np.random.default_rng(0).integers(0, 2**16, (*size, 3), np.uint16)
+    passes = [(0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1)]
+    parts = [pixels[y::down, x::across].astype(">u2") for y, x, down, across in passes]
+    rows = b"".join(b"\0" + row.tobytes() for part in parts if part.size for row in part)
+    head = struct.pack(">IIBBBBB", size[1], size[0], 16, 2, 0, 0, 1)
+    body = chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n" + body)
+    assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(pixels, -1, 0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", [(1080, 1920, 3), (1, 262144, 3), (262144, 1, 3)])
+def test_16_bits_of_any_shape_are_read_in_seconds(tmp_path, shape):
+    n = np.random.default_rng(0).integers(0, 2**16, shape, np.uint16)
+    (tmp_path / "a.png").write_bytes(png_bytes(n))
+    start = time.perf_counter()
+    assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(n, -1, 0))
+    assert time.perf_counter() - start < 10
