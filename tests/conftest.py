@@ -30,7 +30,7 @@ from normalbench.bench.ground.machine.memory import (
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.metrics import published
+from normalbench.bench.measures.metrics import published
 from normalbench.bench.results import measuring
 from normalbench.bench.results.machine import require_mobile
 from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv

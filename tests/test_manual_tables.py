@@ -9,8 +9,8 @@ from manual_tables.measuring import measure
 from manual_tables.table import KEPT, page_with
 from manual_tables.tables import TABLES
 
-from normalbench.bench.metrics import published
-from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.measures.metrics import published
+from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
 VENDORS = PAGES[ROOT / "docs" / "vendors.md"]
 MARKER = re.compile(r"^<!-- (headline|answer: [\w ]+|workers simulated|normalbench [\w ]+) -->$", re.M)

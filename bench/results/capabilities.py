@@ -9,8 +9,8 @@ from ...reports import tables
 from ..ground.machine.devices import require_device, require_jax
 from ..ground.output import cache
 from ..ground.output.errors import MissingError
-from ..metrics.images import require_flip
-from ..metrics.visibility import require_rays
+from ..measures.metrics.images import require_flip
+from ..measures.metrics.visibility import require_rays
 from ..shaders.code.run import c, msl, slang, wgsl
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device

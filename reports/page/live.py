@@ -30,7 +30,7 @@ class Live:
     """What the laboratory is given of a run.
 
     Attributes:
-        codecs: as `bench.live.programs` makes them.
+        codecs: as `bench.measures.live.programs` makes them.
         storages: the functions of storages, in the same form, for an encoder that the reader types.
         left_out: by codec, why a browser cannot be given it.
         scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the rays

@@ -10,9 +10,9 @@ from exact_codes import storage as made
 from scipy.spatial import cKDTree
 from slowly import all_but
 
+from normalbench.bench.measures.worst_case.search import worst_case
 from normalbench.bench.subjects.normals.normal_sets import from_arrays, sphere
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.worst_case.search import worst_case
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals.tetrahedral import SIDE, UP
@@ -108,7 +108,7 @@ def test_no_row_is_better_than_its_codes_allow(normalbench, name):
 
 def test_effective_bits_of_the_limit_itself():
     """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
-    from normalbench.bench.metrics.code_limits import effective_bits
+    from normalbench.bench.measures.metrics.code_limits import effective_bits
 
     assert effective_bits(0.31773, 4 * math.pi) == pytest.approx(16, abs=1e-4)
 

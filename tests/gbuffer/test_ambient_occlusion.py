@@ -24,7 +24,7 @@ from occluded import (
 )
 
 from normalbench.bench.ground.angles import angles_deg
-from normalbench.bench.metrics.visibility import RayCaster, triangles_of
+from normalbench.bench.measures.metrics.visibility import RayCaster, triangles_of
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
 from normalbench.gbuffer.effects.effect import EffectError, chosen

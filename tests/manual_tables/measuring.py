@@ -66,14 +66,14 @@ def for_every_storage(rows: list[Row]) -> list[Row]:
 
 def of_the_article(rows: list[Row]) -> list[Row]:
     """With the article's figure."""
-    from normalbench.bench.metrics.published import PSNR_DB
+    from normalbench.bench.measures.metrics.published import PSNR_DB
 
     return [row | {"article_db": PSNR_DB.get(row["encoding"])} for row in rows]
 
 
 def with_limits(rows: list[Row]) -> list[Row]:
     """With the bound of two bytes for each domain, which `quality` prints for people alone."""
-    from normalbench.bench.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+    from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
     names = {"angle_mean_deg": "mean_deg", "angle_rms_deg": "rms_deg", "angle_sup_deg": "max_deg"}
     return rows + [

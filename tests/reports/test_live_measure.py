@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from browsing import AXE, PHONE, Laboratory
 
-from normalbench.bench.live import checks, normals, programs
+from normalbench.bench.measures.live import checks, normals, programs
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals.octahedral import encode

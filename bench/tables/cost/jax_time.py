@@ -14,7 +14,7 @@ import jax.numpy as jnp
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
 from ...ground.output.errors import MissingError
-from ...metrics.moments import FAST_BLOCK, LANES
+from ...measures.metrics.moments import FAST_BLOCK, LANES
 from ...subjects.normals.directions import CORES, make_input
 from .clocks import summary
 from .measure import Case, Row

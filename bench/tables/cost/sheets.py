@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 
-from ...metrics import published
+from ...measures.metrics import published
 from .measure import Row, listings_of
 from .table import TABLE
 

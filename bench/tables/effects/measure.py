@@ -22,9 +22,9 @@ from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.angles import angles_deg
 from ...ground.output.errors import MissingError, tell
-from ...metrics.images import flip, squared_error
-from ...metrics.occlusion_error import method_error
-from ...metrics.totals import psnr_db
+from ...measures.metrics.images import flip, squared_error
+from ...measures.metrics.occlusion_error import method_error
+from ...measures.metrics.totals import psnr_db
 from ..render.measure import UNMEASURABLE
 from .table import TABLE
 

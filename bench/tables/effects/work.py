@@ -28,7 +28,7 @@ from ...ground.options.scene_names import scenes_named
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, pick, pick_one
 from ...ground.output.writing import check_folder
-from ...metrics.images import require_flip
+from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having

@@ -15,9 +15,9 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES, across
 from ...ground.machine.devices import require_device
 from ...ground.output.errors import MissingError
+from ...measures.worst_case.search import worst_case
 from ...subjects.codecs.names import codecs_named
 from ...subjects.normals.normal_sets import sphere
-from ...worst_case.search import worst_case
 from ..quality import measure as quality
 from ..sweep import measure as sweep
 from ..sweep.table import SweepOptions

@@ -12,7 +12,7 @@ from ...ground.machine.devices import require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.output.errors import UsageError, pick
 from ...ground.output.writing import check_plot, save_plot
-from ...metrics.growth import exponent, growth_lines
+from ...measures.metrics.growth import exponent, growth_lines
 from ..charts import drawing, having
 from ..table import GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure

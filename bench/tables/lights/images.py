@@ -26,8 +26,8 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import Colour, Scene
 from ...ground.output.errors import UsageError
-from ...metrics.images import squared_error
-from ...metrics.totals import psnr_db
+from ...measures.metrics.images import squared_error
+from ...measures.metrics.totals import psnr_db
 
 Row = dict[str, Any]
 # Lamps and sun this much brighter: highlights then reach several times what a display shows.

@@ -21,8 +21,8 @@ from ....encodings.storages.storage import STORAGES
 from ....encodings.vec import Vec3
 from ....gbuffer.gl.compressed import device_texels
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ...metrics.meter import Decoded, Meter
-from ...metrics.totals import Statistics, psnr_db
+from ...measures.metrics.meter import Decoded, Meter
+from ...measures.metrics.totals import Statistics, psnr_db
 from ...shaders.code.twin import NoTwinError
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, NormalSet
 from ..quality.measure import Row, identity, planes_of

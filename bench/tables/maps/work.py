@@ -14,7 +14,7 @@ from ...ground.options.targets import what_is_left
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import MissingError, UsageError, leave_out, pick
 from ...ground.output.writing import check_folder, check_plot, save_plot
-from ...metrics import published
+from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.user_encodings import encodings_named
 from ...subjects.normals.normal_names import normal_sets_named

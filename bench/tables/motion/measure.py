@@ -22,7 +22,7 @@ from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.gloss import POWERS
 from ....gbuffer.scenes.scene import Scene, View
 from ....gbuffer.scenes.setting import Setting
-from ...metrics.totals import psnr_db
+from ...measures.metrics.totals import psnr_db
 from ..quality.measure import UNMEASURABLE
 from . import highlights, turning
 from .code_wobble import Motion, code_wobble

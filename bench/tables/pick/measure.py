@@ -27,8 +27,8 @@ from ....gbuffer.scenes.setting import Setting
 from ...ground.output import cache as kept
 from ...ground.output.errors import tell
 from ...ground.output.sources import sources
-from ...metrics.images import squared_error
-from ...metrics.totals import psnr_db
+from ...measures.metrics.images import squared_error
+from ...measures.metrics.totals import psnr_db
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
 from ..mix import judge

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from ....encodings.catalogue import ENCODINGS
-from ...metrics import published
+from ...measures.metrics import published
 from . import counts
 from .figure import DECIBELS, DEGREES, Figure, Measure
 from .measures import ArticleMse, Counted, InACube, Instructions, Quality

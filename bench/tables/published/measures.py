@@ -13,7 +13,7 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ...ground.output import cache as kept
 from ...ground.output.sources import sources
-from ...metrics import published
+from ...measures.metrics import published
 from ...subjects.codecs.names import codecs_named
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..cost import measure as cost

@@ -27,16 +27,16 @@ from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
 from ...ground.native.library import LARGE, NoCompilerError
 from ...ground.output.errors import MissingError
-from ...metrics.code_limits import AREAS, effective_bits
-from ...metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
-from ...metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
-from ...native.meter import NativeMeter
+from ...measures.metrics.code_limits import AREAS, effective_bits
+from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
+from ...measures.metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
+from ...measures.native.meter import NativeMeter
+from ...measures.worst_case import exact_figures
 from ...shaders.code import trip as wgsl_trip
 from ...shaders.code.twin import NoTwinError, has_twin
 from ...subjects.codecs.half import compute as half_compute
 from ...subjects.codecs.half.round_trip import HalfPasses
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
-from ...worst_case import exact_figures
 from .table import TABLE
 
 # Why a device may not be able to give a row.

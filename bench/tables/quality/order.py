@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from ...metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from ...measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
 Row = dict[str, Any]
 # What a limit row has in common with every row above it, if these have it in common.

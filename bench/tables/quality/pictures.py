@@ -19,8 +19,8 @@ from ....reports.page.verdict import LEADING, is_count, is_number
 from ...ground.angles import angles_deg
 from ...ground.output.arrays import DamagedError, read_npz
 from ...ground.output.writing import files_of, whole_file
-from ...live.scenes import write_scene
-from ...metrics import published
+from ...measures.live.scenes import write_scene
+from ...measures.metrics import published
 from ..table import Row
 from . import measure
 

@@ -21,7 +21,7 @@ from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
 from ...ground.output.arrays import DamagedError, read_npz
 from ...ground.output.writing import whole_file
-from ...metrics.meter import angle_between, readable
+from ...measures.metrics.meter import angle_between, readable
 from ...shaders.code.twin import has_twin
 from .measure import UNMEASURABLE, rgba, round_trip
 

@@ -15,7 +15,7 @@ from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.output.errors import UsageError, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
-from ...metrics import published
+from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.normals.normal_names import normal_sets_named
 from ..charts import backends_of, drawing, having, one_backend
@@ -213,7 +213,7 @@ def _write(done: Measured, _: Tick) -> None:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
     if done.outputs.live:
         # It imports what writes GLSL ES, which rows alone do not need.
-        from ...live.kept import write_live
+        from ...measures.live.kept import write_live
 
         write_live((step.case.codec for step in done.steps), done.outputs.live)
         pictures.write_scenes([step.case for step in done.steps], done.outputs.live)

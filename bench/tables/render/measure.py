@@ -22,8 +22,8 @@ from ....gbuffer.scenes.scene import KINDS, Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.angles import angles_deg
 from ...ground.output.errors import UsageError
-from ...metrics.images import flip, squared_error
-from ...metrics.totals import Worst, psnr_db
+from ...measures.metrics.images import flip, squared_error
+from ...measures.metrics.totals import Worst, psnr_db
 from ...subjects.normals.normal_names import SEES_NOTHING
 from .table import TABLE
 

@@ -27,7 +27,7 @@ from ...ground.options.scene_names import powers_named, scenes_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, by_reason, pick, pick_one
 from ...ground.output.writing import check_folder, without
-from ...metrics.images import require_flip
+from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import check_twin, codecs_named
 from ..charts import drawing, having

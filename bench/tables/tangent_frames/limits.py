@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import root_scalar
 
-from ...metrics.code_limits import SCATTER, CodeLimit
+from ...measures.metrics.code_limits import SCATTER, CodeLimit
 
 HANDS = 2
 # Of Gauss and Legendre; what they integrate is as smooth as a cosine.

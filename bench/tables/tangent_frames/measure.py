@@ -20,8 +20,8 @@ from ....encodings.vec import Vec3
 from ....gbuffer.codecs.frame_passes import FramePasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
-from ...metrics.code_limits import is_measurable
-from ...worst_case.frame_search import worst_frame
+from ...measures.metrics.code_limits import is_measurable
+from ...measures.worst_case.frame_search import worst_frame
 from .limits import frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
 from .table import TABLE

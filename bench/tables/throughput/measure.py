@@ -19,9 +19,9 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import STORAGES
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.library import compiler
-from ...metrics.meter import in_groups
-from ...metrics.moments import FAST_BLOCK, squared_errors
-from ...native.meter import NativeMeter
+from ...measures.metrics.meter import in_groups
+from ...measures.metrics.moments import FAST_BLOCK, squared_errors
+from ...measures.native.meter import NativeMeter
 from ...shaders.code.twin import NoTwinError
 from ...subjects.normals.directions import CORES, Input, make_input
 from ..quality import measure as quality

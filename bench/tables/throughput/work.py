@@ -11,7 +11,7 @@ from ...ground.options.counts import MAX_TIMED_COUNT, checked_numbers
 from ...ground.options.targets import that_fit
 from ...ground.output.errors import pick
 from ...ground.output.writing import check_plot, save_plot
-from ...metrics.growth import growth_lines
+from ...measures.metrics.growth import growth_lines
 from ...subjects.codecs.names import check_twin, codecs_named
 from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each

@@ -22,7 +22,7 @@ from ....encodings.codecs.codec import LEAST_BITS, Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage, across
 from ....encodings.vec import Vec3, dot, maximum, minimum
-from ...metrics.meter import angle_between, readable
+from ...measures.metrics.meter import angle_between, readable
 from .expected_errors import Normals, moved_squares, smooth_objective
 
 # Normals that are descended on, and that a measured error is of, at most.

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench.metrics import published
+from normalbench.bench.measures.metrics import published
 from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.bench.tables.quality.table import COMMON, TWO, WIDE
 from normalbench.bench.tables.registry import TABLES

@@ -9,7 +9,7 @@ import pytest
 from written import as_document
 
 from normalbench.bench.ground.machine import devices
-from normalbench.bench.metrics.code_limits import SCATTER
+from normalbench.bench.measures.metrics.code_limits import SCATTER
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.metrics.growth import exponent
+from normalbench.bench.measures.metrics.growth import exponent
 from normalbench.bench.tables.growth import measure
 from normalbench.bench.tables.growth.measure import Case
 from normalbench.bench.tables.growth.table import KINDS, GrowthOptions

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from normalbench.bench.metrics.totals import Total, Worst, total_of
+from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
 from normalbench.bench.results.measuring import Nothing, asked, measured_steps
 from normalbench.bench.results.runs import facts_of, opened, read_run
 from normalbench.bench.subjects.normals import normal_sets

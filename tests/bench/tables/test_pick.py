@@ -10,8 +10,8 @@ import pytest
 from manual import ROOT
 
 from normalbench.bench.ground.output import cache
-from normalbench.bench.metrics.images import squared_error
-from normalbench.bench.metrics.totals import psnr_db
+from normalbench.bench.measures.metrics.images import squared_error
+from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.pick import measure

@@ -3,7 +3,7 @@
 import csv
 import io
 
-from normalbench.bench.metrics.code_limits import code_limit
+from normalbench.bench.measures.metrics.code_limits import code_limit
 from normalbench.bench.tables.quality.order import in_order, with_limits
 from normalbench.bench.tables.quality.table import TABLE
 

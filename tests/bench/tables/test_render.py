@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 from written import as_document
 
-from normalbench.bench.metrics import images as image_metrics
+from normalbench.bench.measures.metrics import images as image_metrics
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render import measure as rendering
 from normalbench.bench.tables.render.measure import STAGES

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from normalbench.bench.metrics import histogram as metrics
+from normalbench.bench.measures.metrics import histogram as metrics
 from normalbench.bench.subjects.normals.normal_sets import hemisphere, playground
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps

@@ -1,6 +1,6 @@
 "use strict";
 
-// The normals that this device encodes, bit for bit those of bench/live/normals.py, and checksums of the run's codes.
+// The normals that this device encodes, bit for bit those of bench/measures/live/normals.py, and checksums of the run's codes.
 
 // How many differing normals are kept to be shown.
 const EXAMPLES = 8;
@@ -48,7 +48,7 @@ class Normals {
     return (hashed(word, this.common.hash) >>> 8) * 2 ** -23 - 1;
   }
 
-  // G. Marsaglia (1972), as in bench/live/normals.py. Every step is rounded to float32: a sum or a
+  // G. Marsaglia (1972), as in bench/measures/live/normals.py. Every step is rounded to float32: a sum or a
   // product of two such numbers, rounded to a double and then to float32, is what float32 makes of it (S. Figueroa, 1995).
   random(index, to, at) {
     const { count, hash } = this.common, f = Math.fround;

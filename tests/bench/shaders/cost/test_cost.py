@@ -10,7 +10,7 @@ import pytest
 from costing import glsl
 
 from normalbench.bench.ground.options.gpu_families import CHOICES
-from normalbench.bench.metrics import published
+from normalbench.bench.measures.metrics import published
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.shaders.isa.disassembly import KINDS, issue_slots, kind, kinds, names
 from normalbench.bench.tables.cost import measure as cost

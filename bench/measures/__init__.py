@@ -1,0 +1,1 @@
+"""How errors are measured: angles, images, bounds, the worst case, and the meters."""

@@ -1,0 +1,121 @@
+"""What a codec's codes must be, in few bytes: checksums that tell which number of which normal is one step away.
+
+Codes of 2^16 normals would be hundreds of kilobytes for each codec. For each group of 128 normals the page holds one
+word: the sum of weight(normal, number) code(normal, number), modulo 2^32. A browser takes the sum of its own codes from
+it. If the difference is 0, all codes are equal. If it is plus or minus one weight, this number of this normal is one
+step away. Codes are counted in the order of the numbers that they stand for, so that a step of a float is one as well.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ...ground.angles import angles_deg
+from ...ground.output import cache as kept
+from ...ground.output.sources import sources
+from ...shaders.code.channels import Channels
+from ...shaders.code.reference import Reference, reference_of, signed
+from . import normals
+from .normals import COUNT, checksum, hashed
+
+GROUP = 128
+# Numbers of a code, at most.
+NUMBERS = 4
+# Every so many normals one travels with its codes, so that a page can say what they should be.
+STRIDE = 2048
+DOMAINS = ("sphere", "hemisphere", "view")
+
+
+def common() -> dict[str, Any]:
+    """What browsers need to make the normals, and the weights of checksums."""
+    given = normals.hard()
+    starts = {"normals": normals.NORMALS, "views": normals.VIEWS, "weights": normals.WEIGHTS, "sums": normals.SUMS}
+    return {
+        "count": COUNT,
+        "group": GROUP,
+        "numbers": NUMBERS,
+        "stride": STRIDE,
+        "hash": {"shifts": normals.SHIFTS, "factors": normals.FACTORS, "starts": starts},
+        "hard": {"count": len(given), "data": _text(given, "<f4")},
+        "sums": {domain: sums(domain) for domain in DOMAINS},
+    }
+
+
+@cache
+def sums(domain: str) -> list[int]:
+    """The checksums of a domain's normals and views, by which a browser knows that it makes the same."""
+    return [checksum(made) for made in normals.normals(domain)]
+
+
+def is_whole(found: Mapping[str, Any], domain: str, size: int) -> bool:
+    """Whether checks are of the normals that this version makes, and as many as codes of `size` numbers have."""
+    counts = {"groups": COUNT // GROUP, "numbers": size, "sample": COUNT // STRIDE * size}
+    try:
+        is_there = all(len(base64.b64decode(found[name], validate=True)) == 4 * count for name, count in counts.items())
+    except ValueError:
+        return False
+    return is_there and found["normals"] == sums(domain)[0]
+
+
+def checks(codec: Codec) -> dict[str, Any]:
+    """What a codec's codes of its domain's normals must be; kept in the cache.
+
+    Returns:
+        `normals`: the checksum of the normals. `groups`: one of each group of codes; `numbers`: one of each number of
+        the codes; `sample`: codes in the order of their numbers, of every STRIDE-th normal; each as base64 of integers
+        of 32 bits. `mean_deg`, `max_deg`: of the angle between the normals and what these codes are decoded to, in
+        degrees.
+
+    Raises:
+        ShaderError, NoDeviceError: of an encoding without a Python twin, which OpenGL is asked about.
+        OSError: the encoding's files cannot be read.
+    """
+    key = kept.key_of("live", codec.name, codec.encoding.fingerprint, repr(codec.storage), sources())
+    return kept.kept(key, lambda: _made(codec))
+
+
+def _made(codec: Codec) -> dict[str, Any]:
+    n, view = normals.normals(codec.encoding.domain)
+    made = reference_of(codec, n, view, compiled=False)
+    codes = ordered(codec, made)
+    angles = angles_deg(n, made.decoded)
+    # What is not a number is as far as can be.
+    angles = np.where(np.isfinite(angles), angles, 180.0)
+    return {
+        "normals": sums(codec.encoding.domain)[0],
+        "groups": _text(group_sums(codes), "<u4"),
+        "numbers": _text(np.array([checksum(number) for number in codes.T], np.uint32), "<u4"),
+        "sample": _text(codes[::STRIDE], "<i4"),
+        "mean_deg": float(angles.mean()),
+        "max_deg": float(angles.max()),
+    }
+
+
+def ordered(codec: Codec, made: Reference) -> np.ndarray:
+    """Stored codes as integers in the order of the numbers that they stand for: int32 of shape (count, components)."""
+    channels = Channels(codec).channels
+    whole = [signed(channel, made.integers[:, at]) for at, channel in enumerate(channels)]
+    return np.stack(whole, axis=1).astype(np.int32)
+
+
+def weights() -> np.ndarray:
+    """The odd weights of a group, uint32 of shape (GROUP, NUMBERS)."""
+    index = np.arange(GROUP * NUMBERS, dtype=np.uint32).reshape(GROUP, NUMBERS)
+    return hashed(np.uint32(normals.WEIGHTS) + index) | np.uint32(1)
+
+
+def group_sums(codes: np.ndarray) -> np.ndarray:
+    """A checksum of each group of codes: uint32 of shape (count / GROUP,)."""
+    size = codes.shape[1]
+    weighted = codes.view(np.uint32).reshape(-1, GROUP, size) * weights()[:, :size]
+    return weighted.sum(axis=(1, 2), dtype=np.uint32)
+
+
+def _text(values: np.ndarray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")

@@ -1,0 +1,136 @@
+"""A run's codecs for the laboratory of its page: a file for each, read again as what somebody may have edited."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, Literal, NotRequired
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+from typing_extensions import TypedDict
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.files import file_bytes
+from ....gbuffer.gl.device import NoDeviceError
+from ....gbuffer.gl.shader import ShaderError
+from ...ground.output.writing import files_of, whole_file
+from . import checks
+from .programs import MOST_TABLES, NotLiveError, Record, program
+
+# Of a file: GLSL, and look-up tables as base64.
+MOST_BYTES = 2**18
+STRICT = ConfigDict(strict=True, extra="forbid")
+Text = Annotated[str, Field(max_length=MOST_BYTES)]
+Name = Annotated[str, Field(max_length=200)]
+Number = Annotated[int, Field(ge=0, lt=2**32)]
+Base64 = Annotated[str, Field(max_length=2**14, pattern=r"^[A-Za-z0-9+/]*=*$")]
+Degrees = Annotated[float, Field(ge=0, le=180)]
+
+
+@with_config(STRICT)
+class Channel(TypedDict):
+    """Where a number of a code lies in its texel."""
+
+    kind: Literal["unorm", "snorm", "float"]
+    bits: Annotated[int, Field(ge=1, le=32)]
+    first: Annotated[int, Field(ge=0, lt=128)]
+    integer: Number
+
+
+@with_config(STRICT)
+class Table(TypedDict):
+    """A look-up table, float32 in base64."""
+
+    width: Annotated[int, Field(ge=1, le=4096)]
+    height: Annotated[int, Field(ge=1, le=4096)]
+    channels: Literal[1, 2, 4]
+    data: Annotated[str, Field(max_length=2 * MOST_TABLES, pattern=r"^[A-Za-z0-9+/]*=*$")]
+
+
+@with_config(STRICT)
+class Checks(TypedDict):
+    """What the codec's codes must be, as `checks.checks` makes it."""
+
+    normals: Number
+    groups: Base64
+    numbers: Base64
+    sample: Base64
+    mean_deg: Degrees
+    max_deg: Degrees
+
+
+@with_config(STRICT)
+class Kept(TypedDict):
+    """A codec as `programs.program` makes it."""
+
+    encoding: Name
+    storage: Name
+    rounding: Name
+    title: Name
+    target: Name
+    domain: Literal["sphere", "hemisphere", "view"]
+    source: Text
+    text: Text
+    bits: Number
+    format: Number
+    size: Literal[2, 3, 4]
+    words: Literal[1, 2, 4]
+    sign_bits: Literal[0, 1]
+    bytes: Annotated[int, Field(ge=0, le=4)]
+    takes_view: bool
+    channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
+    tables: dict[Name, Table]
+    checks: NotRequired[Checks | None]
+
+
+KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
+
+
+def file_name(codec: Codec) -> str:
+    """What a codec's file is called."""
+    return codec.name.replace("/", "-").replace(" ", "-").replace(":", "-") + ".json"
+
+
+def write_live(codecs: Iterable[Codec], folder: Path) -> None:
+    """A file for each codec, which says why where a browser cannot be given it. Raises UsageError where one cannot be
+    written."""
+    for codec in dict.fromkeys(codecs):
+        try:
+            made = {**program(codec), "checks": _checks(codec)}
+        except NotLiveError as error:
+            made = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
+        with whole_file(folder / file_name(codec)) as partial:
+            partial.write_text(json.dumps(made), encoding="utf-8")
+
+
+def _checks(codec: Codec) -> Record | None:
+    """What its codes must be; None where the emulation cannot say it."""
+    try:
+        return checks.checks(codec)
+    except (NoDeviceError, ShaderError):
+        return None
+
+
+def _current(record: Record) -> Record:
+    """A record whose checks are of the normals that the page makes; without them where they are of others."""
+    found = record.get("checks")
+    is_whole = found and checks.is_whole(found, record["domain"], len(record["channels"]))
+    return record if is_whole else {**record, "checks": None}
+
+
+def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
+    """The codecs of a run's folder, and by name why others are left out; damaged files among them."""
+    found, left_out = [], {}
+    for name, path in sorted(files_of(folder).items()):
+        if path.suffix != ".json":
+            continue
+        try:
+            record = json.loads(file_bytes(path, MOST_BYTES))
+            if isinstance(record, dict) and isinstance(record.get("left_out"), str):
+                left_out[f"{record.get('encoding')} {record.get('storage')}"] = record["left_out"]
+            else:
+                found.append(_current(KEPT.validate_python(record)))
+        except (OSError, ValueError, RecursionError, ValidationError):
+            left_out[name] = "its file is damaged"
+    return found, left_out

@@ -1,0 +1,129 @@
+"""The normals that browsers encode, bit for bit those of live/measure.js: hard ones, then random ones from a hash.
+
+Random ones come from integers by a hash, and by sums, products and roots of float32, which every machine rounds alike.
+Hard ones travel inside the page, as their bits.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ...ground.directions import RANDOM, directions
+
+COUNT = 2**16
+# lowbias32 of C. Wellons, "Prospecting for Hash Functions" (2018): x ^= x >> shift, then x *= factor, in turn.
+SHIFTS, FACTORS = (16, 15, 16), (0x7FEB352D, 0x846CA68B)
+# Where each use of the hash begins to count.
+NORMALS, VIEWS, WEIGHTS, SUMS = 0, 1 << 30, 2 << 30, 3 << 30
+# Numbers of the hash that a normal takes at each try, and a view.
+PER_TRY, PER_VIEW = 2, 3
+# Points on each line where maps fold, and how far beside it they lie.
+ON_LINES, BESIDE = 24, (0.0, -0.0, 1e-7, -1e-7)
+NEXT_TO_0 = 1e-30
+PAIRS = ((0, 1), (1, 2), (2, 0))
+
+
+def hashed(words: np.ndarray) -> np.ndarray:
+    """Integers (uint32, any shape) well mixed."""
+    mixed = words.astype(np.uint32)
+    for shift, factor in zip(SHIFTS, (*FACTORS, 1), strict=True):
+        mixed = (mixed ^ mixed >> np.uint32(shift)) * np.uint32(factor)
+    return mixed
+
+
+def _uniform(words: np.ndarray) -> np.ndarray:
+    """Numbers in [-1, 1) from the upper 24 bits of hashed words, exact in float32."""
+    return (hashed(words) >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-23) - np.float32(1)
+
+
+def _random(index: np.ndarray) -> np.ndarray:
+    """Uniform unit normals, float32 of shape (count, 3); the same for the same index.
+
+    G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1 gives
+    (2 a sqrt(1 - s), 2 b sqrt(1 - s), 1 - 2 s).
+    """
+    one, two = np.float32(1), np.float32(2)
+    a, b, open_, turn = (np.zeros(len(index), kind) for kind in ("f4", "f4", "?", "u4"))
+    open_[:] = True
+    while open_.any():
+        word = np.uint32(NORMALS) + np.uint32(PER_TRY) * (turn[open_] * np.uint32(COUNT) + index[open_])
+        a[open_], b[open_] = _uniform(word), _uniform(word + np.uint32(1))
+        turn += 1
+        open_ = a * a + b * b >= one
+    s = a * a + b * b
+    root = np.sqrt(one - s)
+    return np.stack([two * a * root, two * b * root, one - two * s], axis=1)
+
+
+def _at_length_1(vectors: np.ndarray) -> np.ndarray:
+    return (vectors / np.linalg.norm(vectors, axis=1, keepdims=True)).astype(np.float32)
+
+
+def _lines() -> np.ndarray:
+    """Normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to those of zeros."""
+    points, found = _random(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
+    for one, other in PAIRS:
+        for value in BESIDE:
+            found.append(points.copy())
+            found[-1][:, one] = value
+        for sign in (1.0, -1.0):
+            found.append(points.copy())
+            found[-1][:, other] = sign * points[:, one]
+    return _at_length_1(np.concatenate(found))
+
+
+def _neighbours(n: np.ndarray) -> np.ndarray:
+    """Normals with one component one float32 up or down; next to 0 a number that stays normal where it is multiplied,
+    because devices may flush subnormal ones."""
+    found = []
+    for axis in range(3):
+        for toward in (-2.0, 2.0):
+            next_ = np.nextafter(n[:, axis], np.float32(toward))
+            found.append(n.copy())
+            found[-1][:, axis] = np.where(n[:, axis] == 0, np.float32(np.sign(toward) * NEXT_TO_0), next_)
+    return np.concatenate(found)
+
+
+@cache
+def hard() -> np.ndarray:
+    """Axes with both zeros and what lies next to them, diagonals and their neighbours, and lines where maps fold:
+    float32 of shape (count, 3)."""
+    known = directions()[:-RANDOM]
+    diagonals = known[-26:]
+    return np.concatenate([known, _neighbours(diagonals), _lines()])
+
+
+@cache
+def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
+    """Unit normals of a domain, and view-space positions: float32 of shape (COUNT, 3) each.
+
+    Args:
+        domain: as an encoding's.
+    """
+    given = hard()
+    n = np.concatenate([given, _random(np.arange(len(given), COUNT, dtype=np.uint32))])
+    view = _views()
+    if domain == "hemisphere":
+        n[:, 2] = np.abs(n[:, 2])
+    if domain == "view":
+        # summed in this order, which is the browser's
+        away = n[:, 0] * view[:, 0] + n[:, 1] * view[:, 1] + n[:, 2] * view[:, 2] > 0
+        n[away] = -n[away]
+    return n, view
+
+
+def _views() -> np.ndarray:
+    """Positions in front of a viewer: x and y in [-1, 1), z in [-3, -1/2)."""
+    index = np.arange(COUNT * PER_VIEW, dtype=np.uint32).reshape(COUNT, PER_VIEW)
+    view = _uniform(np.uint32(VIEWS) + index)
+    view[:, 2] = view[:, 2] * np.float32(1.25) - np.float32(1.75)
+    return view
+
+
+def checksum(values: np.ndarray) -> int:
+    """A sum of hashed words, modulo 2^32, of an array of 32-bit numbers; it depends on their order."""
+    words = np.ascontiguousarray(values).view(np.uint32).ravel()
+    places = hashed(np.uint32(SUMS) + np.arange(len(words), dtype=np.uint32))
+    return int(np.sum(hashed(words ^ places), dtype=np.uint32))

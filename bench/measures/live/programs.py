@@ -1,0 +1,116 @@
+"""A codec as a browser runs it: its functions in GLSL ES 3.00, and where its numbers lie in a texel."""
+
+from __future__ import annotations
+
+import base64
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.storage import STORAGES, Storage
+from ....encodings.vec import CONSTANTS
+from ....gbuffer.gl.shader import ShaderError, Source
+from ...ground.output.errors import UsageError
+from ...shaders.code.channels import Channels
+from ...shaders.code.files import Code, code_of
+from ...shaders.code.verify import is_catalogues
+
+Record = dict[str, Any]
+LANGUAGE, PREFIX = "essl", "codec"
+# What look-up tables of a codec may take in a page, in bytes before they are packed.
+MOST_TABLES = 2**16
+# Of each number of numbers, an encoding whose storage functions serve all others: a code is as many numbers in [-1, 1].
+STAND_INS = {2: "octahedral", 3: "xyz"}
+USUAL = ("rgba8", "rgb10a2", "rg8", "rg16", "rg16f", "rgb8_12_12", "r11g11b10f")
+HELPERS = "vec.glsl"
+TABLES_TOO_LARGE = "its look-up tables are too large for a page"
+
+
+class NotLiveError(ValueError):
+    """A codec that no browser can be given, and why."""
+
+
+@cache
+def program(codec: Codec) -> Record:
+    """A codec as the page's scripts read it; flat but for `channels` and `tables`.
+
+    Raises:
+        NotLiveError: its GLSL cannot be translated, or its look-up tables are too large.
+    """
+    try:
+        code = code_of(codec, LANGUAGE, PREFIX)
+    except (UsageError, ShaderError) as error:
+        raise NotLiveError(str(error)) from error
+    size = sum(table.nbytes for table in code.interface.tables.values())
+    if size > MOST_TABLES:
+        raise NotLiveError(TABLES_TOO_LARGE)
+    encoding = codec.encoding
+    own = encoding.source or encoding.glsl
+    return {
+        "encoding": encoding.name,
+        "rounding": codec.rounding,
+        "domain": encoding.domain,
+        "source": code.body,
+        "text": "" if is_catalogues(encoding) else _read(own),
+        "sign_bits": code.interface.sign_bits,
+        "takes_view": code.interface.takes_view,
+        "tables": {name: _table(table) for name, table in code.interface.tables.items()},
+        **_stored(codec, code),
+    }
+
+
+def _read(own: Path) -> str:
+    """A user's file. Raises NotLiveError."""
+    try:
+        return own.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise NotLiveError(f"{own} cannot be read") from error
+
+
+def _stored(codec: Codec, code: Code) -> Record:
+    """Where the numbers of a code lie."""
+    storage, channels = codec.storage, Channels(codec)
+    return {
+        "storage": storage.name,
+        "title": storage.title,
+        "bits": codec.bits,
+        "format": storage.target.internal_format,
+        "target": storage.target.title,
+        "size": code.interface.size,
+        "words": code.interface.words,
+        "bytes": channels.bytes if storage.is_packed else 0,
+        "channels": [
+            {"kind": c.kind, "bits": c.bits, "first": c.first, "integer": c.integer} for c in channels.channels
+        ],
+    }
+
+
+def _table(table: np.ndarray) -> Record:
+    height, width, channels = table.shape
+    data = base64.b64encode(np.ascontiguousarray(table, "<f4").tobytes()).decode("ascii")
+    return {"width": width, "height": height, "channels": channels, "data": data}
+
+
+def storage_functions(names: list[str]) -> list[Record]:
+    """What an encoder that is typed into a page can be stored by: functions of storages, for codes of two and three
+    numbers.
+
+    Args:
+        names: storages that the run has; unknown ones are left out. The usual ones are there as well.
+    """
+    chosen = [STORAGES[name] for name in dict.fromkeys((*USUAL, *names)) if name in STORAGES]
+    return [program(codec) for storage in chosen for codec in _stand_ins(storage)]
+
+
+def helpers() -> str:
+    """GLSL ES of the functions that users' encoders may call."""
+    return Source(HELPERS, CONSTANTS).text
+
+
+def _stand_ins(storage: Storage) -> list[Codec]:
+    codecs = [Codec(ENCODINGS[name], storage, "nearest") for name in STAND_INS.values()]
+    return [codec for codec in codecs if not codec.misfit]

@@ -1,0 +1,82 @@
+"""The sets of normals of a run that are images, for the laboratory of its page: small ones, as a run keeps them.
+
+A pixel's normal is kept as 12 bits in each of two numbers. It is turned first, by a rotation that has no axis in common
+with any encoding. So the normals that a page puts through a codec do not lie on the codec's own grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....encodings.normals.octahedral import encode
+from ....encodings.vec import Vec3
+from ...ground.output.arrays import DamagedError, read_npz
+from ...ground.output.writing import files_of, whole_file
+
+Record = dict[str, Any]
+FIELDS = ("codes", "covered", "slope")
+# Pixels on the longer side, levels of a number, and bytes of a file.
+SIDE, LEVELS, MOST_BYTES = 320, 4095, 2**20
+# Rows of a rotation by 1 radian around the direction (1, 2, 3) (O. Rodrigues, 1840).
+_AXIS = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
+_ACROSS = np.cross(np.eye(3), _AXIS)
+ROTATION = np.eye(3) + np.sin(1.0) * _ACROSS + (1.0 - np.cos(1.0)) * _ACROSS @ _ACROSS
+
+
+def write_scene(name: str, n: np.ndarray, view: np.ndarray, covered: np.ndarray, folder: Path) -> None:
+    """A set of normals as a small image. Raises UsageError where it cannot be written.
+
+    Args:
+        name: the set's, which is the file's.
+        n, view: unit normals and positions in view space, float32 of shape (height, width, 3).
+        covered: bool of shape (height, width).
+    """
+    step = -(-max(covered.shape) // SIDE)
+    turned = Vec3(*np.moveaxis(np.nan_to_num(n[::step, ::step]).astype(np.float64) @ ROTATION.T, -1, 0))
+    numbers = np.stack([np.asarray(number) for number in encode(turned, turned)], axis=-1)
+    codes = np.rint((np.clip(np.nan_to_num(numbers), -1.0, 1.0) * 0.5 + 0.5) * LEVELS).astype(np.uint16)
+    with whole_file(folder / f"{name}.npz") as partial, partial.open("wb") as file:
+        np.savez_compressed(file, codes=codes, covered=covered[::step, ::step], slope=_slope(view))
+
+
+def _slope(view: np.ndarray) -> np.ndarray:
+    """x / -z of the ray through the picture's right edge, and y / -z through its upper one; float32."""
+    height, width = view.shape[:2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across, up = (np.nanmax(np.abs(view[..., axis] / view[..., 2])) for axis in range(2))
+    # The outermost pixels' middles lie half a pixel inside.
+    edges = np.array([across * width / (width - 1), up * height / (height - 1)], np.float32)
+    return np.where(np.isfinite(edges), edges, np.float32(0))
+
+
+def read_scenes(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """What a run keeps: names, pixels as uint8 of shape (height, width, 4), and slopes. Damaged files are left out.
+
+    A pixel's first 12 bits are the first number, the next 12 the second one; the fourth byte is 255 on a surface.
+    """
+    for name, path in sorted(files_of(folder).items()):
+        if path.suffix != ".npz":
+            continue
+        try:
+            codes, covered, slope = read_npz(path, FIELDS, MOST_BYTES)
+        except (OSError, DamagedError):
+            continue
+        fits = codes.ndim == 3 and codes.shape[2] == 2 and covered.shape == codes.shape[:2] and slope.shape == (2,)
+        kinds = (codes.dtype, covered.dtype, slope.dtype) == (np.uint16, np.bool_, np.float32)
+        if fits and kinds and max(codes.shape) <= SIDE and np.isfinite(slope).all():
+            yield name.removesuffix(".npz"), _pixels(codes, covered), slope
+
+
+def _pixels(codes: np.ndarray, covered: np.ndarray) -> np.ndarray:
+    x, y = np.moveaxis(codes, -1, 0)
+    planes = (x >> 4, (x & 15) << 4 | y >> 8, y & 255, covered * 255)
+    return np.where(covered[..., None], np.stack(planes, axis=-1), 0).astype(np.uint8)
+
+
+def unpacking() -> Mapping[str, Any]:
+    """What a page needs to read the pixels again: levels, and the rows of the rotation back."""
+    return {"levels": LEVELS, "back": ROTATION.T.tolist()}

@@ -1,0 +1,40 @@
+"""How far two rendered images are apart, as displayed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...ground.output.errors import MissingError
+
+
+def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]:
+    """Mean squared error over every pixel and channel of two displayed images of shape (height, width, 3), in [0, 1].
+
+    Returns:
+        the error, and how many pixels are no number; each of those counts as 1 in every channel.
+    """
+    finite = np.isfinite(image)
+    # An image seldom has such a pixel, and looking at each one's three channels takes NumPy long.
+    if finite.all():
+        return float(np.mean((image - reference) ** 2)), 0
+    broken = ~finite.all(axis=-1, keepdims=True)
+    difference = np.where(broken, 1.0, np.nan_to_num(image) - reference)
+    return float(np.mean(difference**2)), int(broken.sum())
+
+
+def require_flip() -> None:
+    """Raises MissingError where FLIP cannot be measured."""
+    try:
+        import flip_evaluator  # noqa: F401 # asked for, not used
+    except ImportError as error:
+        raise MissingError(f"--flip needs flip-evaluator ({error}); pip install flip-evaluator") from error
+
+
+def flip(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images at its usual 67 pixels a degree: 0 to 1 for each
+    pixel, (height, width)."""
+    from flip_evaluator import evaluate
+
+    # It passes over a pixel that is not a number; as black it differs.
+    exact, measured = (np.nan_to_num(i).astype(np.float32) for i in (reference, image))
+    return evaluate(exact, measured, "LDR", applyMagma=False)[0][..., 0]

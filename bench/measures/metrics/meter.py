@@ -1,0 +1,279 @@
+"""What is measured of a decoded normal, accumulated in a stream.
+
+The angle between a and b is atan2(|a x b|, a . b). Written as a x (b - a) the cross product needs no more than float32:
+the difference of two close floats is exact, so the angle keeps six digits however small it is, where the arc cosine of
+a float32 dot product cannot tell angles below 0.02 degrees from zero. Sums are float64. Percentiles come from a
+histogram whose bins are 2^-10 of an octave wide, so they hold to 0.1 %.
+"""
+
+from __future__ import annotations
+
+import itertools
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import reduce
+from threading import Lock
+from typing import Any, NamedTuple, Protocol
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.elementary import atan2_pi
+from ....encodings.vec import Vec3, cross, dot, minimum, select
+from ...ground.angles import angles_deg
+from ...ground.machine.cores import on_all_cores
+from .histogram import bin_of, bins_of, tally
+from .totals import Figures, Part, Statistics, Total, Worst, statistics
+
+# Lanes that are summed apart, and the rows added to them at a time. XLA copies a computation into each of its uses, up
+# to 15, and computes it anew for each. With 16 rows each number is computed once.
+SUM_LANES, ROWS = 1024, 16
+# A row's article error is at most 3 x 255^2 = 2^17.6: the sum of up to 86 rows leaves the bits from here to others.
+INVALID_BIT = 24
+# An angle in float32 below this share of another one is the smaller of the two in float64 as well.
+SAME_ANGLE = 0.999
+
+# What gives a chunk of normals.
+Load = Callable[[], Any]
+
+
+def idle() -> None:
+    """What is done at each chunk when nobody watches."""
+
+
+def angle_between(a: Vec3, b: Vec3):
+    """The angle between a unit vector and one of any length, in degrees; 180 where the other is zero."""
+    crossed = cross(a, b - a)
+    across = jnp.sqrt(dot(crossed, crossed))
+    return jnp.where(dot(b, b) > 0.0, 180.0 * atan2_pi(across, dot(a, b)), 180.0)
+
+
+def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
+    """Decodes, the opposite direction where one is not a number; and which of them are numbers."""
+    finite = jnp.isfinite(dot(decoded, decoded))
+    return select(finite, decoded, -n), finite
+
+
+def errors(n: Vec3, decoded: Vec3, covered):
+    """Per normal: squared error, the article's squared error, a whole number, and angle, all float32; and whether the
+    decode is not a number, which then counts as the opposite direction."""
+    decoded, finite = readable(n, decoded)
+    difference = select(covered, n - decoded, n * 0.0)
+    # The article's difference image was |n - n'| in eight bits per channel.
+    eighths = Vec3(*(jnp.round(minimum(abs(c), 1.0) * 255.0) for c in difference))
+    angle = jnp.where(covered, angle_between(n, decoded), 0.0)
+    return dot(difference, difference), dot(eighths, eighths), angle, ~finite & covered
+
+
+def _packed(squared, article, angle, invalid):
+    """The same in three: 2^INVALID_BIT is added to the article's where the decode is not a number; int32."""
+    return squared, jnp.asarray(article, jnp.int32) + (jnp.asarray(invalid, jnp.int32) << INVALID_BIT), angle
+
+
+class Decoded(NamedTuple):
+    """CHUNK normals, what they were decoded as, and which of them count."""
+
+    n: Vec3
+    decoded: Vec3
+    covered: Any
+
+
+def _blocks(chunk):
+    return jax.tree.map(lambda a: a.reshape(-1, ROWS, SUM_LANES), chunk)
+
+
+def _as_it_is(row):
+    return row
+
+
+def _added(start, rows, of=_as_it_is):
+    """`of` a lane's numbers added one row after the other: the same bits however many rows a block has.
+
+    A row is computed and converted when it is added. XLA would write whole blocks in float64 first.
+    """
+    return reduce(operator.add, (of(rows[row]).astype(start.dtype) for row in range(ROWS)), start)
+
+
+def _traced_scan(chunk: Decoded):
+    """Figures of one chunk, float64 in the order of `Figures`; how many normals lie in each bin; each normal's bin."""
+
+    def step(carry: Figures, block: Decoded):
+        # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
+        squared, article, angle = jax.lax.optimization_barrier(_packed(*errors(*block)))
+        article = _added(jnp.zeros(SUM_LANES, jnp.int32), article).astype(jnp.int64)
+        added = Figures(
+            squared=_added(carry.squared, squared),
+            article_squared=carry.article_squared + article % 2**INVALID_BIT,
+            angle=_added(carry.angle, angle),
+            angle_squared=_added(carry.angle_squared, angle, lambda row: row * row),
+            invalid=carry.invalid + (article >> INVALID_BIT),
+            largest=reduce(jnp.maximum, (angle[row] for row in range(ROWS)), carry.largest),
+        )
+        return added, bins_of(angle, block.covered)
+
+    zero, whole = jnp.zeros(SUM_LANES, jnp.float64), jnp.zeros(SUM_LANES, jnp.int64)
+    start = Figures(zero, whole, zero, zero, whole, zero.astype(jnp.float32))
+    found, bins = jax.lax.scan(step, start, _blocks(chunk))
+    figures = [*(total.sum().astype(jnp.float64) for total in found[:-1]), found.largest.max().astype(jnp.float64)]
+    return jnp.stack(figures), tally(bins), bins.ravel()
+
+
+_scan = jax.jit(_traced_scan)
+
+
+def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
+    """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
+    at = np.flatnonzero(bins == bin_of(largest))
+    if not at.size:
+        return None
+    normals, found = ([np.asarray(plane).ravel()[at] for plane in planes] for planes in (n, decoded))
+    # What comes back as it was has an angle of 0: the first of these stands for all.
+    moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
+    some = np.concatenate([[0], np.flatnonzero(moved)])
+    return worst_of(*(np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found)))
+
+
+def worst_of(normals: np.ndarray, decoded: np.ndarray) -> Worst | None:
+    """The normal with the largest angle, the first of them; None of none.
+
+    Args:
+        normals, decoded: float32 of shape (count, 3).
+    """
+    if not len(normals):
+        return None
+    angles = _angles(normals, decoded)
+    first = int(np.argmax(angles))
+    return Worst(normals[first], decoded[first], float(angles[first]))
+
+
+def is_smaller(largest: float, met_deg: float) -> bool:
+    """Whether the largest angle of a chunk, in float32, is below one that another chunk has."""
+    return largest < SAME_ANGLE * met_deg
+
+
+def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
+    """As `angle_between`, in float64, of rows; 180 where a decode is not a number."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        angles = angles_deg(n, decoded)
+    return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
+
+
+def _on_device(plane: Any) -> Any:
+    """A plane as JAX has it. To ask this of each is ten times as fast as to convert what is there already."""
+    return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
+
+
+class Measures(Protocol):
+    """What measures chunks of normals."""
+
+    @property
+    def compiler(self) -> str:
+        """What compiled it."""
+        ...
+
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+        """What they add up to, in one part or several; as for `Meter.one`."""
+        ...
+
+
+class Once:
+    """A load that is done once, by whoever asks first, and kept for the others."""
+
+    def __init__(self, load: Load):
+        self._load, self._lock = load, Lock()
+
+    def __call__(self) -> Any:
+        with self._lock:
+            if self._load:
+                self._value, self._load = self._load(), None
+        return self._value
+
+
+class Meter:
+    """Measures what a decoder makes of normal sets; compiled once and used for every chunk.
+
+    Two programs: the decoder's own, and the statistics', which is the same for all and takes longer to compile.
+
+    Args:
+        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit normals
+            `n`, which of them count, `covered`, and whatever else the decoder needs.
+        given: what it is called with besides, the same for every block.
+    """
+
+    def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
+        self._decode, self._given = decode, given
+
+    @property
+    def compiler(self) -> str:
+        """What compiled it."""
+        return "XLA"
+
+    def decoded(self, block: Any) -> Vec3:
+        """What a block is decoded as."""
+        return self._decode(block, *self._given)
+
+    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> Part:
+        """One chunk's part of the statistics, by one of JAX's devices. Its worst normal is not looked for where an
+        angle of `met_deg`, which another chunk has, is larger than all of its own."""
+        with jax.enable_x64(True), jax.default_device(device):
+            chunk = jax.tree.map(_on_device, load())
+            decoded = self.decoded(chunk)
+            found = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
+        figures, histogram, bins = Figures(*found[0].tolist()), *found[1:]
+        if is_smaller(figures.largest, met_deg):
+            return figures, histogram, None
+        return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
+
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+        """The parts of several chunks; as for `one`."""
+        return [self.one(load, met_deg, device) for load in loads]
+
+    def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> Total:
+        """What the chunks of a set, shared among the cores, add up to.
+
+        Args:
+            loads: for each chunk a function that gives it. The iterable is run in the calling thread, which a GL
+                context is bound to; the functions in worker threads.
+            tick: called when a chunk is done.
+        """
+        return measure_together([self], loads, lambda _: tick())[0]
+
+    def measure(self, loads: Iterable[Load], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
+        """Statistics of a set of so many normals, background included; the rest is as for `total`."""
+        return statistics(pixels, self.total(loads, tick))
+
+
+def measure_together(
+    meters: Sequence[Measures],
+    loads: Iterable[Load],
+    tick: Callable[[int], None],
+    at_once: int = 1,
+) -> list[Total]:
+    """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
+
+    Chunks are dealt to all devices that JAX has, so many at once. The rest is as for `Meter.total`.
+    """
+    totals = [Total() for _ in meters]
+    whose = itertools.cycle(range(len(meters)))
+    dealt = zip(in_groups(map(Once, loads), at_once), itertools.cycle(jax.local_devices()), strict=False)
+    work = ((*each, *group) for group in dealt for each in zip(meters, totals, strict=True))
+
+    def measured(item: tuple[Measures, Total, list[Load], Any]) -> tuple[int, list[Part]]:
+        meter, total, chunks, device = item
+        return len(chunks), meter.parts(chunks, total.met_deg, device)
+
+    for count, parts in on_all_cores(measured, work):
+        index = next(whose)
+        for part in parts:
+            totals[index].add(part)
+        for _ in range(count):
+            tick(index)
+    return totals
+
+
+def in_groups(loads: Iterable[Load], size: int) -> Iterator[list[Load]]:
+    """Loads, so many at a time."""
+    iterator = iter(loads)
+    while group := list(itertools.islice(iterator, size)):
+        yield group

@@ -1,0 +1,120 @@
+"""How far a method of ambient occlusion is from rays through the scene's own triangles."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.effects.effect import ChosenEffect, EffectError
+from ....gbuffer.effects.occlusion.passes import AmbientOcclusion
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import rendering
+from ....gbuffer.scenes.scene import KINDS, Scene
+from .visibility import NEARER, RayCaster, triangles_of
+
+PIXELS, RAYS = 4096, 1024
+HAIR = KINDS.index("hair")
+
+
+class OcclusionError(NamedTuple):
+    """A method's visibility less that of rays, over pixels.
+
+    Attributes:
+        rms: its root mean square, without what the rays scatter by.
+        mean: its mean; above 0 where the method is too bright.
+        standard_error: of `rms`, from how many pixels and rays there were.
+        least: the smallest difference that the rays can tell from none: the RMS of their own standard errors.
+        visibility: the mean visibility by rays.
+    """
+
+    rms: float
+    mean: float
+    standard_error: float
+    least: float
+    visibility: float
+
+
+class Pixels(NamedTuple):
+    """What was drawn at some pixels: world-space positions, drawn towards the eye, and normals, (pixels, 3); visibility
+    by the effect, (pixels,)."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+    visibility: np.ndarray
+
+
+def method_error(
+    device: Device,
+    chosen: ChosenEffect,
+    scene: Scene,
+    size: tuple[int, int],
+    pixels: int = PIXELS,
+    rays: int = RAYS,
+    seed: int = 0,
+) -> OcclusionError:
+    """A method of ambient occlusion against rays of its own radius and fall-off, from the same fp32 G-buffer.
+
+    Args:
+        device: where it is drawn, by pipeline deferred.
+        chosen: the method and its settings; its effect is an `AmbientOcclusion`.
+        scene: what is seen, by the scene's own view.
+        size: of the picture.
+        pixels: drawn by lot from those that are covered; not of hair, of which the G-buffer keeps no normal.
+        rays: for each pixel.
+        seed: of the lot and the rays.
+
+    Raises:
+        MissingError: embreex is not installed.
+        EffectError: the effect is not a method of ambient occlusion.
+    """
+    method = chosen.effect
+    if not isinstance(method, AmbientOcclusion):
+        raise EffectError(f"effect {method.name} is not a method of ambient occlusion")
+    caster, drawn = RayCaster(triangles_of(scene)), drawn_pixels(device, chosen, scene, size, pixels, seed)
+    radius = dict(chosen.values)["radius"]
+    exact = caster.visible(drawn.positions, drawn.normals, rays, lambda far: method.falls_off(far / radius), seed)
+    return compared(drawn.visibility, exact.visibility, exact.error)
+
+
+def compared(found: np.ndarray, exact: np.ndarray, error: np.ndarray) -> OcclusionError:
+    """Visibilities, (pixels,), against those of rays with their standard errors."""
+    difference, noise = found - exact, float(np.mean(error**2))
+    square = difference**2
+    rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
+    # rms = sqrt(mean of squares): its error is that of the mean over 2 rms
+    scatter = float(square.std(ddof=1) / np.sqrt(len(square))) if len(square) > 1 else np.inf
+    return OcclusionError(
+        rms=rms,
+        mean=float(difference.mean()),
+        standard_error=scatter / (2 * max(rms, np.sqrt(noise), 1e-9)),
+        least=float(np.sqrt(noise)),
+        visibility=float(exact.mean()),
+    )
+
+
+def drawn_pixels(
+    device: Device, chosen: ChosenEffect, scene: Scene, size: tuple[int, int], pixels: int, seed: int
+) -> Pixels:
+    """An effect drawn over an fp32 G-buffer, at covered pixels drawn by lot."""
+    plan = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0)
+    pipeline = PIPELINES["deferred"].with_effect(chosen.passes())
+    with rendering(device, pipeline, scene, plan) as made:
+        made.draw()
+        position, direction, *_ = made.gbuffer()
+        visibility = made.read(chosen.effect.result)[0].reshape(position.shape[:2])
+    there = np.flatnonzero((position[..., 2] != 0) & (direction[..., 3] != HAIR))
+    lot = np.random.default_rng(seed).permutation(there)[:pixels]
+    return Pixels(
+        *_in_world(scene, position.reshape(-1, 4)[lot, :3], direction.reshape(-1, 4)[lot, :3]), visibility.ravel()[lot]
+    )
+
+
+def _in_world(scene: Scene, position: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    to_world = np.linalg.inv(scene.view.matrix())
+    nearer = position.astype(np.float64) * (1 - NEARER)
+    return nearer @ to_world[:3, :3].T + to_world[:3, 3], direction.astype(np.float64) @ to_world[:3, :3].T

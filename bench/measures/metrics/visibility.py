@@ -1,0 +1,129 @@
+"""Visibility of points of a scene by rays: what methods of ambient occlusion are judged by.
+
+The visibility of a point with normal n is V = (1/pi) times the integral of (1 - w(t)) cos over the hemisphere of n. A
+ray goes t far until it meets a surface, and w is the share of light that a surface at that distance takes away. The
+textbook has w = 1 at all distances. A method with a radius has its own w, and rays without it would measure the
+fall-off in place of the method. Rays are drawn with the density of the cosine, so V is the mean of 1 - w.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from ....gbuffer.scenes.scene import Scene
+from ...ground.output.errors import MissingError
+
+# Rays in flight: some 50 MB.
+BLOCK = 2**19
+# Rays start closer to the eye by this share of the distance, so that float32 keeps them over their own surface. The eye
+# sees the point: nothing lies between.
+NEARER = 1e-4
+
+
+class Visible(NamedTuple):
+    """What rays say of points.
+
+    Attributes:
+        visibility: (points,).
+        error: its standard error, (points,).
+        bent: the mean direction that light arrives from, times how much does, (points, 3).
+    """
+
+    visibility: np.ndarray
+    error: np.ndarray
+    bent: np.ndarray
+
+
+def triangles_of(scene: Scene) -> np.ndarray:
+    """The corners of all that is opaque, in world space, (triangles, 3, 3)."""
+    there = [
+        part.mesh.positions[part.mesh.triangles] @ model[:3, :3].T + model[:3, 3]
+        for part in scene.parts
+        for model, material in zip(part.models, part.materials, strict=True)
+        if scene.materials[material].alpha == 1
+    ]
+    return np.concatenate(there) if there else np.zeros((0, 3, 3))
+
+
+def require_rays() -> None:
+    """Raises MissingError where there is no ray caster."""
+    try:
+        import embreex.mesh_construction  # noqa: F401 # asked for, not used
+    except ImportError as error:
+        raise MissingError(f"rays need embreex ({error}); pip install embreex") from error
+
+
+class RayCaster:
+    """Triangles that rays can meet, by Embree in float32.
+
+    Args:
+        triangles: corners, (triangles, 3, 3). Either side of them stops a ray.
+
+    Raises:
+        MissingError: embreex is not installed.
+    """
+
+    def __init__(self, triangles: np.ndarray):
+        require_rays()
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene
+
+        self._scene = EmbreeScene(robust=True)
+        TriangleMesh(self._scene, np.ascontiguousarray(triangles, np.float32))
+
+    def distances(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        """How far rays go until they meet a triangle, (rays,); more than 1e30 where they meet none.
+
+        Args:
+            origins, directions: (rays, 3), directions of length 1.
+        """
+        given = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
+        return self._scene.run(*given, query="DISTANCE")
+
+    def visible(
+        self,
+        positions: np.ndarray,
+        normals: np.ndarray,
+        rays: int,
+        lost: Callable[[np.ndarray], np.ndarray],
+        seed: int = 0,
+    ) -> Visible:
+        """The visibility of points.
+
+        Args:
+            positions: (points, 3), each a little over its own surface.
+            normals: (points, 3), unit.
+            rays: for each point, 2 or more.
+            lost: w of distances.
+            seed: of the directions.
+        """
+        rng, blocks = np.random.default_rng(seed), []
+        for first, count in _blocks(len(positions), max(BLOCK // rays, 1)):
+            n = normals[first : first + count]
+            directions = cosine_directions(n, rays, rng)
+            origins = np.broadcast_to(positions[first : first + count, None], directions.shape)
+            far = self.distances(origins.reshape(-1, 3), directions.reshape(-1, 3)).reshape(count, rays)
+            light = 1 - lost(far.astype(np.float64))
+            error = light.std(axis=1, ddof=1) / np.sqrt(rays)
+            blocks.append((light.mean(axis=1), error, np.mean(light[..., None] * directions, axis=1)))
+        return Visible(*(np.concatenate(each) for each in zip(*blocks, strict=True)))
+
+
+def _blocks(total: int, most: int) -> Iterator[tuple[int, int]]:
+    yield from ((first, min(most, total - first)) for first in range(0, total, most))
+
+
+def cosine_directions(normals: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Directions over each normal, as dense as the cosine of their angle to it: (normals, count, 3), unit.
+
+    A point on the unit ball around the tip of the normal, seen from the origin: the cosine's density exactly.
+    """
+    z, turn = rng.uniform(-1, 1, (2, len(normals), count)) * np.array([1.0, np.pi])[:, None, None]
+    ring = np.sqrt(1 - z**2)
+    ball = np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=-1)
+    found = normals[:, None] + ball
+    # At the foot of the ball all directions are in the tangent plane; the length is 0 there and the odds are nil.
+    return found / np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-12)

@@ -1,0 +1,182 @@
+"""The corners of codes' cells: where the worst normals of most codecs are.
+
+A cell is what is stored as one code. Its corners are found by asking the storage where each number's share begins and
+ends, so any rounding and any format will do; a code just inside is decoded, and the normal is a candidate. Nobody
+relies on that: what is then measured is the error that this normal itself makes.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from functools import partial
+
+import numpy as np
+
+from ...ground.machine.cores import on_all_cores
+from .exact_codec import SLAB, ExactCodec
+
+ALL_CORNERS, SOME_CORNERS, NEAREST, NONE = "all corners", "corners", "nearest codes", ""
+# Cells whose corners are all tried; codes whose convex hull is computed; the sides of a plane that is climbed over.
+MOST_CELLS, MOST_POINTS, MOST_NUMBERS = 2**24, 2**18, 2**16
+# How far inside its cell a corner is tried, in the cell's width; and halvings that find its edge.
+INSIDE, HALVINGS = 1e-9, 60
+CLIMBERS, CLIMBS = 2**11, 150
+COLUMNS, KEPT = 2**12, 2**8
+# Parts of a hull, and how far from the middle of their faces corners are: times the side of a square that is as large
+# as a corner's share of the sphere.
+BANDS, REACH = 16, 2.0
+
+
+def way_to_corners(exact: ExactCodec) -> str:
+    """How the corners of a codec's cells are found; NONE where they cannot be."""
+    counts = [exact.codec.storage.count(i) for i in exact.free]
+    if not counts and exact.codec.codes <= MOST_POINTS:
+        return NEAREST
+    if len(counts) != 2 or max(counts) > MOST_NUMBERS:
+        return NONE
+    return ALL_CORNERS if exact.codec.codes <= MOST_CELLS else SOME_CORNERS
+
+
+def corners(exact: ExactCodec, way: str) -> np.ndarray:
+    """Normals at the worst corners of cells, shape (3, count), as `way_to_corners` says; not for NONE."""
+    if way == NEAREST:
+        return _across_faces(exact)
+    tables = sides(exact)
+    cells = _all_cells(exact, tables) if way == ALL_CORNERS else _climb_cells(exact, tables)
+    return _corners_of(exact, tables, cells)
+
+
+def sides(exact: ExactCodec) -> list[np.ndarray]:
+    """For each free component where the share of each of its numbers begins and ends, just inside: two for each; for
+    the others their numbers."""
+    return [_sides(exact, i) if i in exact.free else exact.codec.numbers(i) for i in range(exact.size)]
+
+
+def _sides(exact: ExactCodec, component: int) -> np.ndarray:
+    numbers = exact.codec.numbers(component)
+    middle = (numbers[:-1] + numbers[1:]) / 2
+    low, high = numbers[:-1], numbers[1:]
+    for _ in range(HALVINGS):
+        tried = (low + high) / 2
+        is_low = exact.stored(np.tile(tried, (exact.size, 1)))[component] < middle
+        low, high = np.where(is_low, tried, low), np.where(is_low, high, tried)
+    first, last = np.concatenate([[-1.0], high]), np.concatenate([low, [1.0]])
+    margin = INSIDE * (last - first)
+    return np.stack([first + margin, last - margin], axis=1).ravel()
+
+
+def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
+    """Of all cells those with the worst corners, and the three that each of these shares it with."""
+    u, v = exact.free
+    rest = [range(1) if i in exact.free else range(len(table)) for i, table in enumerate(tables)]
+    edges = tables[u][1:-1:2], tables[v][1:-1:2]
+    numbers = exact.codec.numbers(u), exact.codec.numbers(v)
+
+    def slab(place: tuple[tuple[int, ...], tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray]:
+        starts, others = place
+        ends = [start + size for start, size in zip(starts, SLAB, strict=True)]
+        around = [side[start : end + 1] for side, start, end in zip(numbers, starts, ends, strict=True)]
+        across = [side[start:end] for side, start, end in zip(edges, starts, ends, strict=True)]
+        found = exact.corners(across, around, np.array([t[i] for t, i in zip(tables, others, strict=True)]))
+        chords, index = column_peaks(found.ravel(), KEPT)
+        cells = np.repeat(np.array(others)[:, None], len(index), axis=1)
+        cells[u], cells[v] = starts[0] + index // found.shape[1], starts[1] + index % found.shape[1]
+        return chords, cells
+
+    begins = (range(0, len(side), size) for side, size in zip(edges, SLAB, strict=True))
+    worst, cells = np.empty(0), np.empty((exact.size, 0), np.int64)
+    for chords, found in on_all_cores(slab, itertools.product(itertools.product(*begins), itertools.product(*rest))):
+        worst, cells = np.concatenate([worst, chords]), np.concatenate([cells, found], axis=1)
+        kept = np.argsort(-worst, kind="stable")[:CLIMBERS]
+        worst, cells = worst[kept], cells[:, kept]
+    steps = np.zeros((exact.size, 4), np.int64)
+    steps[u], steps[v] = (0, 0, 1, 1), (0, 1, 0, 1)
+    return (cells[:, :, None] + steps[:, None, :]).reshape(exact.size, -1)
+
+
+def column_peaks(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The largest of some thousands of columns that values are laid out in, at most `count`, and their indices."""
+    columns = np.pad(values, (0, -len(values) % COLUMNS), constant_values=-1.0).reshape(-1, COLUMNS)
+    index = np.minimum(columns.argmax(axis=0) * COLUMNS + np.arange(COLUMNS), len(values) - 1)
+    kept = index[np.argsort(-values[index], kind="stable")[:count]]
+    return values[kept], kept
+
+
+def _climb_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
+    """The worst of CLIMBERS cells, after each was changed for a worse one near or far CLIMBS times."""
+    random = np.random.default_rng(0)
+    sizes = np.array([len(table) // (2 if i in exact.free else 1) for i, table in enumerate(tables)])[:, None]
+    cells = random.integers(0, sizes, (exact.size, CLIMBERS))
+    worst = np.full(CLIMBERS, -1.0)
+    for _ in range(CLIMBS):
+        reach = (sizes / 2.0) ** random.uniform(0.0, 1.0, (1, 4 * CLIMBERS))
+        tried = np.tile(cells, 4) + np.rint(reach * random.normal(size=(exact.size, 4 * CLIMBERS))).astype(np.int64)
+        tried = np.clip(np.where(sizes > 64, tried, np.tile(cells, 4)), 0, sizes - 1)
+        errors = exact.chords(_corners_of(exact, tables, tried)).reshape(4, 4, CLIMBERS).max(axis=0)
+        best = errors.argmax(axis=0), np.arange(CLIMBERS)
+        is_worse = errors[best] > worst
+        worst = np.where(is_worse, errors[best], worst)
+        cells = np.where(is_worse, tried.reshape(exact.size, 4, CLIMBERS)[:, *best], cells)
+    return cells
+
+
+def _corners_of(exact: ExactCodec, tables: list[np.ndarray], cells: np.ndarray) -> np.ndarray:
+    """The four corners of cells, shape (components, count), as normals of shape (3, 4 count), corner by corner."""
+    u, v = exact.free
+    around = []
+    for corner in range(4):
+        side = {u: corner & 1, v: corner >> 1}
+        code = [t[2 * c + side[i]] if i in side else t[c] for i, (t, c) in enumerate(zip(tables, cells, strict=True))]
+        around.append(np.stack(code))
+    return exact.normals(np.concatenate(around, axis=1))
+
+
+def _across_faces(exact: ExactCodec) -> np.ndarray:
+    """The directions that are equally far from three codes next to each other: across the faces of the codes' hull."""
+    numbers = [exact.codec.numbers(i) for i in range(exact.size)]
+    code = np.stack([c.ravel() for c in np.meshgrid(*numbers, indexing="ij")])
+    return across_faces(_distinct(exact.normals(code).round(12)))
+
+
+def across_faces(directions: np.ndarray) -> np.ndarray:
+    """Of different directions, shape (3, count), those across the faces of their hull.
+
+    Bands of z are hulls of their own, for every core has one to find. What they give are faces of the whole hull. That
+    they give all of them is known from Euler's formula: a hull of n corners has 2 n - 4 triangles.
+    """
+    edges = np.linspace(-1.0, 1.0, BANDS + 1)
+    bands = zip(edges, (*edges[1:-1], np.inf), strict=False)
+    found = np.concatenate(list(on_all_cores(partial(_across_band, directions), bands)), axis=1)
+    is_whole = found.shape[1] == 2 * directions.shape[1] - 4
+    return found if is_whole else _hull(directions)[:3]
+
+
+def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarray:
+    """The directions in a band of z across those faces whose corners are near."""
+    reach = REACH * math.sqrt(4 * math.pi / directions.shape[1])
+    latitudes, (low, high) = np.arcsin(directions[2]), np.arcsin(np.minimum(band, 1.0))
+    is_near = (latitudes >= low - reach) & (latitudes <= high + reach)
+    try:
+        faces = _hull(directions[:, is_near])
+    except (RuntimeError, ValueError):  # too few corners for a hull, or all of them in one plane
+        return np.empty((3, 0))
+    # No corner that is nearer was left out: the face is one of the whole hull.
+    is_near = faces[3] <= -math.cos(reach)
+    return faces[:3, is_near & (faces[2] >= band[0]) & (faces[2] < band[1])]
+
+
+def _hull(directions: np.ndarray) -> np.ndarray:
+    """The triangles of a hull of directions, shape (4, count): their normals, and less the cosines of the angles from
+    these to the corners."""
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(directions.T).equations.T
+
+
+def _distinct(directions: np.ndarray) -> np.ndarray:
+    """The different ones of directions of shape (3, count), in order."""
+    # np.unique of columns takes ten times as long.
+    ordered = directions[:, np.lexsort(directions)]
+    is_new = (np.diff(ordered, axis=1) != 0.0).any(axis=0)
+    return ordered[:, np.concatenate([[True], is_new])]

@@ -1,0 +1,113 @@
+"""Climbing to a worst case: a place moves to the worst of those around it, in steps that shrink where none is worse.
+
+A place is a normal, or a tangent frame: a column of numbers. A `Ground` says what errors places make, and what lies
+around them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import reduce
+from operator import add
+from typing import Any
+
+import numpy as np
+
+from ...ground.machine.cores import on_all_cores
+
+WAYS = 2**4  # places that are tried around one
+STEPS = 80  # of a round
+KEPT = 2**8  # of a round, for the next
+GROW, SHRINK = 1.5, 0.55
+LEAST = 1e-10  # of a step, in the error; then a climb is over
+# Rounds from the best alone, until one moves it no more than that, relatively.
+LAST_ROUNDS, SETTLED = 12, 1e-8
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Places, shape (numbers of a place, count), and the squares of the distances they are moved by, shape (count,)."""
+
+    chords: np.ndarray
+    places: np.ndarray
+
+    def best(self, count: int) -> Starts:
+        """The worst of them, at most `count`."""
+        return self[np.argsort(-self.chords, kind="stable")[:count]]
+
+    def filled(self, count: int) -> Starts:
+        """`count` of them, each as often as it takes: climbs differ by where in the block they start."""
+        return self[np.arange(count) % len(self.chords)]
+
+    def __getitem__(self, which: slice | np.ndarray) -> Starts:
+        return Starts(self.chords[which], self.places[:, which])
+
+    def __add__(self, other: Starts) -> Starts:
+        return Starts(np.concatenate([self.chords, other.chords]), np.concatenate([self.places, other.places], axis=1))
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What is climbed over.
+
+    Attributes:
+        chords: places to the squares of the distances they are moved by.
+        around: (places, sizes, step) -> WAYS places around each, shape (numbers of a place, WAYS, count).
+        errors: those squares as errors, in the unit of sizes.
+        degrees: one of those squares as an angle.
+        lanes: places that are climbed from at once.
+    """
+
+    chords: Callable[[np.ndarray], np.ndarray]
+    around: Callable[[np.ndarray, np.ndarray, int], np.ndarray]
+    errors: Callable[[np.ndarray], np.ndarray]
+    degrees: Callable[[float], float]
+    lanes: int
+
+
+def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float, ...]) -> tuple[Starts, float]:
+    """The worst place, and by how many degrees the last round of climbing still raised it.
+
+    Args:
+        starts: where to begin; the worst `count` of them are climbed from, a multiple of `ground.lanes`.
+        first_sizes: the size of the first step of each round, in the error.
+    """
+    starts = starts.best(count).filled(count)
+    for size in first_sizes:
+        # A second block with the same starts would climb as the first one does.
+        starts = _climb(ground, starts, size).best(KEPT).filled(max(KEPT, ground.lanes))
+    angle, moved, last = ground.degrees(starts.chords[0]), math.inf, starts.best(1)
+    for _ in range(LAST_ROUNDS):
+        last = _climb(ground, last.filled(ground.lanes), np.geomspace(1e-9, 1.0, ground.lanes)).best(1)
+        moved, angle = ground.degrees(last.chords[0]) - angle, ground.degrees(last.chords[0])
+        if moved <= SETTLED * angle:
+            break
+    return last, moved
+
+
+def _climb(ground: Ground, starts: Starts, first: Any) -> Starts:
+    """Starts, each moved to the worst around it. `first` is the size of the first step in the error, for all or for
+    each."""
+    sizes = first * ground.errors(starts.chords)
+    parts = (slice(begin, begin + ground.lanes) for begin in range(0, len(sizes), ground.lanes))
+    return reduce(add, on_all_cores(lambda part: _climb_from(ground, starts[part], sizes[part]), parts))
+
+
+def _climb_from(ground: Ground, starts: Starts, sizes: np.ndarray) -> Starts:
+    """As many starts as are climbed from at once, moved by steps of these sizes to begin with."""
+    chords, places = starts.chords, starts.places
+    errors, lane = ground.errors(chords), np.arange(len(chords))
+    for step in range(STEPS):
+        around = ground.around(places, sizes, step)
+        found = ground.chords(around.reshape(len(places), -1)).reshape(WAYS, -1)
+        way = found.argmax(axis=0)
+        worst = found[way, lane]
+        is_worse = worst > chords
+        chords = np.where(is_worse, worst, chords)
+        places = np.where(is_worse, around[:, way, lane], places)
+        sizes = sizes * np.where(is_worse, GROW, SHRINK)
+        if (sizes < LEAST * errors).all():
+            break
+    return Starts(chords, places)

@@ -1,0 +1,89 @@
+"""Columns of the quality table that stand for a codec and a domain, beside what was measured: its supremum, its odd
+codes, and its limit. A domain is "sphere", "hemisphere", or None of a set that is not uniform."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ...ground.output.errors import UsageError
+from ...shaders.code.twin import has_twin
+from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
+from ..metrics.totals import Statistics
+from .odd_codes import odd_codes
+from .search import worst_case
+
+T = TypeVar("T")
+Row = dict[str, Any]
+
+
+def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:
+    """The supremum on a set of so much area, by search; of a finite set, whose area is 0, its maximum, as measured.
+
+    Raises UsageError as `_exactly` does.
+    """
+    if not domain:
+        return {"angle_sup_deg": s.angle_max_deg, "sup_found_by": "every normal", "sup_moved_deg": 0.0}
+    if not has_twin(codec.encoding):
+        return {"sup_found_by": "nothing: it has no Python twin"}
+    if not codec.encoding.is_exact:
+        return {
+            "sup_found_by": "nothing: half arithmetic and chains of codecs have no exact map, which the search needs"
+        }
+    if AREAS[domain] < area:
+        return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
+    worst = _exactly(worst_case, codec, domain)
+    x, y, z = worst.normal
+    row = {"angle_sup_deg": worst.angle_deg, "sup_x": x, "sup_y": y, "sup_z": z}
+    return row | {"sup_found_by": worst.found_by, "sup_moved_deg": worst.moved_deg}
+
+
+def odd(codec: Codec, domain: str | None) -> Row:
+    """The odd codes on the domain, the encoding's own for sets that are not uniform; nothing where there are too many.
+
+    Raises UsageError as `_exactly` does.
+    """
+    found = _exactly(odd_codes, codec, domain or codec.encoding.domain) if _has_exact_map(codec.encoding) else None
+    if not found:
+        return {}
+    return {"codes_unused": found.unused, "codes_duplicate": found.duplicate, "codes_unstable": found.unstable}
+
+
+def _has_exact_map(encoding: Encoding) -> bool:
+    return has_twin(encoding) and encoding.is_exact
+
+
+def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T:
+    """What a search in float64 finds. Raises UsageError where a user's own twin is for float32 alone."""
+    try:
+        return search(codec, domain != "sphere")
+    except TypeError as error:
+        where = codec.encoding.twin
+        said = str(error).splitlines()[0]
+        raise UsageError(f"{where}: in float64: {said}; leave out --worst-case and --codes") from error
+
+
+def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:
+    """The limits and the share of each that is reached, the maximum by the supremum where it is known.
+
+    Where float32 normals cannot tell errors of that size there is no share, and nothing is held.
+    """
+    if not domain:
+        return {}
+    least = code_limit(codec.codes, AREAS[domain])
+    row: Row = {"limit_mean_deg": least.mean_deg, "limit_rms_deg": least.rms_deg, "limit_max_deg": least.max_deg}
+    if not is_measurable(least):
+        return row
+    return row | {
+        "reached_mean_percent": _share(least.mean_deg, s.angle_mean_deg),
+        "reached_rms_percent": _share(least.rms_deg, s.angle_rms_deg),
+        "reached_max_percent": _share(least.max_deg, s.angle_max_deg if sup_deg is None else sup_deg),
+        "below_limit": broken(codec.codes, AREAS[domain], s),
+    }
+
+
+def _share(least: float, figure: float) -> float:
+    return 100 * least / figure if figure else math.inf

@@ -1,0 +1,120 @@
+"""The largest rotation that a tangent frame codec can make, in float64, and the tangent frame that it turns so far.
+
+Tangent frames are unit quaternions with a hand. The worst of many that are spread evenly are climbed from, in ever
+smaller steps; a last climb starts from the best alone, with steps of every size. What is found is a rotation that some
+tangent frame really suffers, so it is never above the supremum; `moved_deg` says by how much the last round of climbing
+still raised it.
+
+A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, partial, reduce
+from operator import add
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....encodings.codecs.frame_codec import FrameCodec
+from ....encodings.rotation import Frame, frame_of, frame_of_quaternion
+from ....encodings.vec import Vec4, cross, dot, normalize
+from ...ground.machine.cores import on_all_cores
+from .cells import column_peaks
+from .climb import KEPT, WAYS, Ground, Starts, highest
+from .exact_codec import BLOCK, degrees
+
+LANES, SPREAD = BLOCK // WAYS, 2**20
+FIRST_SIZES = (0.5, 0.05)  # of the first step of each round, in the error
+# What a rotation by 180 degrees moves the axes; what comes back as no tangent frame counts as that.
+FARTHEST = 8.0
+# Steps of an additive sequence in three dimensions, x^-1, x^-2 and x^-3 with x^4 = x + 1 (M. Roberts 2018); and in two.
+THREE, TWO = (0.8191725133961645, 0.6710436067037893, 0.5497004779019703), (0.7548776662466927, 0.5698402909980532)
+
+
+@dataclass(frozen=True)
+class WorstFrame:
+    """A codec's largest rotation.
+
+    Attributes:
+        angle_deg: the supremum as it was found.
+        quaternion: x, y, z, w of the tangent frame that is turned so far.
+        hand: its handedness, 1 or -1.
+        moved_deg: how much the last round of climbing still raised it.
+    """
+
+    angle_deg: float
+    quaternion: tuple[float, float, float, float]
+    hand: float
+    moved_deg: float
+
+
+@cache
+def worst_frame(codec: FrameCodec) -> WorstFrame:
+    """The largest rotation over all tangent frames of either hand."""
+    program = jax.jit(partial(_moves, codec))
+
+    def moves(frames: np.ndarray) -> np.ndarray:
+        with jax.enable_x64(True):
+            return np.asarray(program(frames[:4], frames[4]))
+
+    best, moved = highest(Ground(moves, _around, _radians, _degrees, LANES), _worst_of(moves), LANES, FIRST_SIZES)
+    x, y, z, w, hand = (float(c) for c in best.places[:, 0])
+    return WorstFrame(_degrees(best.chords[0]), (x, y, z, w), hand, moved)
+
+
+def _moves(codec: FrameCodec, quaternions, hands):
+    """How far the axes of tangent frames are moved in all, squared; FARTHEST where what comes back is no frame."""
+    given = frame_of_quaternion(Vec4(*quaternions), hands)
+    found = _at_right_angles(codec.round_trip(frame_of(*given)))
+    pairs = zip((*given[:2], cross(*given[:2])), (*found[:2], cross(*found[:2])), strict=True)
+    moved = sum(dot(a - b, a - b) for a, b in pairs)
+    return jnp.where(jnp.isfinite(moved), jnp.minimum(moved, FARTHEST), FARTHEST)
+
+
+def _at_right_angles(frame: Frame) -> Frame:
+    """A frame's axes at length 1, the tangent across the normal."""
+    n = normalize(frame.normal)
+    return Frame(n, normalize(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
+
+
+def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
+    """The worst of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992), of either hand: their
+    quaternions and hands, shape (5, LANES)."""
+
+    def block(start: int) -> Starts:
+        index = np.arange(start, start + BLOCK) + 0.5
+        u, a, b = (np.modf(index * step)[0] * turn for step, turn in zip(THREE, (1, 2 * np.pi, 2 * np.pi), strict=True))
+        low, high = np.sqrt(1 - u), np.sqrt(u)
+        hands = np.where(np.arange(BLOCK) % 2, 1.0, -1.0)
+        frames = np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b), hands])
+        found, at = column_peaks(moves(frames), KEPT)
+        return Starts(found, frames[:, at])
+
+    return reduce(add, on_all_cores(block, range(0, SPREAD, BLOCK))).best(LANES)
+
+
+def _around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
+    """WAYS tangent frames around each, turned about axes all around, by four angles; shape (5, WAYS, count)."""
+    way, lane = np.arange(WAYS)[:, None], np.arange(len(sizes))[None, :]
+    index = way + WAYS * step + 0.5 * lane
+    height, turn = (2.0 * np.modf(index * part)[0] - 1.0 for part in TWO)
+    across, half = np.sqrt(1.0 - height * height), 0.5 * sizes[None, :] * 0.4 ** (way % 4)
+    a, b, c = half * across * np.cos(np.pi * turn), half * across * np.sin(np.pi * turn), half * height
+    x, y, z, w, hand = frames[:, None]
+    # q (a, b, c, 1): turned about its own axes.
+    vector = [x + w * a + y * c - z * b, y + w * b + z * a - x * c, z + w * c + x * b - y * a]
+    turned = np.stack([*vector, w - x * a - y * b - z * c])
+    return np.concatenate([turned / np.linalg.norm(turned, axis=0), np.broadcast_to(hand, (1, *index.shape))])
+
+
+def _radians(moves):
+    return 2.0 * np.arcsin(np.sqrt(np.clip(moves / FARTHEST, 0.0, 1.0)))
+
+
+def _degrees(moves: float) -> float:
+    # The chord of the same angle has 4 sin^2(theta / 2).
+    return degrees(moves / 2)

@@ -1,0 +1,147 @@
+"""Codes that are wasted or strange, of all there are: never made, pointing where another points, or coming back as
+another.
+
+A code is used if some normal of the domain makes it. Asked are the normals at its cell's middle, corners and edges, and
+directions spread over the domain: where a code has three numbers the sphere only grazes some cells, and where it is
+looked up its cell may lie anywhere. What none of these makes is called unused; a code made by a sliver of directions
+may be among them. That and what is a duplicate is settled in float64, which stands for the exact map; what comes back
+as another code in float32, as a shader would have it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ...ground.machine.cores import on_all_cores
+from .cells import sides
+from .exact_codec import BLOCK, ExactCodec
+from .search import spread
+
+MOST_CODES = 2**24
+SAMPLES_A_CODE, MOST_SAMPLES = 64, 2**26
+# Directions this near are one: far below what tells codes apart, far above what float64 adds. They are sorted by boxes
+# of this side, whose borders lie elsewhere in a second go, for two equal ones may lie across a border.
+SAME, OFFSETS = 2.0**-26, (0.2718, 0.7183)
+MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
+
+
+@dataclass(frozen=True)
+class OddCodes:
+    """How many of a codec's codes are odd.
+
+    Attributes:
+        unused: no normal of the domain makes them.
+        duplicate: codes less distinct directions: how many could be spared.
+        unstable: used ones that decode to a normal whose code is another.
+    """
+
+    unused: int
+    duplicate: int
+    unstable: int
+
+
+@cache
+def odd_codes(codec: Codec, is_half: bool = False) -> OddCodes | None:
+    """The odd codes on the sphere, or on z >= 0; None where there are more than 2^24 codes."""
+    if codec.codes > MOST_CODES:
+        return None
+    exact, numbers = ExactCodec(codec, is_half), _Numbers(codec)
+    is_used = np.zeros(codec.codes, bool)
+    tables = sides(exact)
+    for index in on_all_cores(partial(_made_within, exact, numbers, tables), _starts(codec.codes)):
+        is_used[index] = True
+    samples = min(MOST_SAMPLES, SAMPLES_A_CODE * codec.codes)
+    for index in on_all_cores(lambda make: numbers.index(exact.codes(make())), spread(samples, is_half)):
+        is_used[index] = True
+    stays = np.concatenate(list(on_all_cores(partial(_comes_back, exact, numbers), _starts(codec.codes))))
+    distinct = _distinct(exact, numbers)
+    unused = codec.codes - int(is_used.sum())
+    return OddCodes(unused, codec.codes - distinct, int((is_used & ~stays).sum()))
+
+
+def _starts(count: int) -> Iterator[np.ndarray]:
+    return (np.arange(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK))
+
+
+class _Numbers:
+    """A codec's codes as indices: the first component's number varies slowest."""
+
+    def __init__(self, codec: Codec):
+        self.tables = [codec.numbers(i) for i in range(codec.encoding.components + codec.encoding.sign_bits)]
+        self.shape = tuple(len(table) for table in self.tables)
+        self._middles = [(table[:-1] + table[1:]) / 2 for table in self.tables]
+        self._is_even = [np.allclose(np.diff(table), table[1] - table[0], rtol=1e-6) for table in self.tables]
+
+    def places(self, index: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Each component's place among its numbers."""
+        return np.unravel_index(index, self.shape)
+
+    def codes(self, index: np.ndarray) -> np.ndarray:
+        """The codes, shape (components, count)."""
+        return np.stack([table[place] for table, place in zip(self.tables, self.places(index), strict=True)])
+
+    def index(self, codes: np.ndarray) -> np.ndarray:
+        """The indices of stored codes, shape (components, count)."""
+        return np.ravel_multi_index([self._place(i, c) for i, c in enumerate(codes)], self.shape, mode="clip")
+
+    def _place(self, component: int, c: np.ndarray) -> np.ndarray:
+        table = self.tables[component]
+        if self._is_even[component]:
+            return np.rint((c - table[0]) * (1.0 / (table[1] - table[0]))).astype(np.int64)
+        return np.searchsorted(self._middles[component], c)
+
+
+def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
+    """Which of some codes are made by normals at the middle, the edges and the corners of their cells."""
+    found = np.zeros(len(index), bool)
+    for where in _stencil(exact):
+        left = np.flatnonzero(~found)
+        if not len(left):
+            break
+        normals = exact.normals(_points(exact, numbers, tables, index[left], where))
+        makes = numbers.index(exact.codes(normals)) == index[left]
+        found[left] = makes & (normals[2] >= 0.0) if exact.is_half else makes
+    return index[found]
+
+
+def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
+    """For each free component -1, 0 or 1: the beginning, the middle or the end of its share. The middles first; edges
+    of planes only."""
+    every: list[tuple[int, ...]] = list(itertools.product((0, -1, 1), repeat=len(exact.free)))
+    return every if len(exact.free) < 3 else [where for where in every if len({abs(side) for side in where}) == 1]
+
+
+def _points(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray, where) -> np.ndarray:
+    code = numbers.codes(index)
+    places = numbers.places(index)
+    for component, side in zip(exact.free, where, strict=True):
+        if side:
+            code[component] = tables[component][2 * places[component] + (side > 0)]
+    return code
+
+
+def _comes_back(exact: ExactCodec, numbers: _Numbers, index: np.ndarray) -> np.ndarray:
+    """Which of some codes decode to normals that have the same code, in float32."""
+    normals = exact.normals(numbers.codes(index).astype(np.float32))
+    return numbers.index(exact.codes(normals).astype(np.float64)) == index
+
+
+def _distinct(exact: ExactCodec, numbers: _Numbers) -> int:
+    """How many directions the codes stand for."""
+    keys = np.empty((len(OFFSETS), exact.codec.codes), np.uint64)
+
+    def boxes(index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        place = exact.normals(numbers.codes(index)) / SAME
+        found = [np.floor(place + offset).astype(np.int64).view(np.uint64) for offset in OFFSETS]
+        return index, np.stack([(box * MIX[:, None]).sum(axis=0, dtype=np.uint64) for box in found])
+
+    for index, found in on_all_cores(boxes, _starts(exact.codec.codes)):
+        keys[:, index] = found
+    keys.sort(axis=1)
+    return int((np.diff(keys, axis=1) != 0).sum(axis=1).min()) + 1

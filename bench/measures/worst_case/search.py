@@ -1,0 +1,150 @@
+"""The largest angular error a codec can make, in float64, and the normal that makes it.
+
+Within the cell of a code the angle to what it decodes to grows towards the border, so the worst normals lie at corners
+of cells, approached from inside. Where a code is a point of a plane (two numbers besides signs and indices) the corners
+of all cells are tried if there are 2^24 of them at most, else cells are climbed over from many starts. Codes that are
+no planes but points on the sphere have their corners where three of them are equally near: across the faces of their
+convex hull. Besides, everywhere: directions spread over the domain, the great circles where codes are folded, and rings
+around the axes. From the worst of all these a climb in ever smaller steps goes on through whatever the cells are cut
+by: seams, the domain's rim, and the sphere itself where a code has three numbers.
+
+What is found is an error that a normal makes, so it is never above the supremum; `moved_deg` says by how much the last
+round of climbing, which starts from the best alone with steps of every size, still raised it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache, partial, reduce
+from operator import add
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ...ground.machine.cores import on_all_cores
+from . import cells
+from .climb import WAYS, Ground, Starts, highest
+from .exact_codec import BLOCK, ExactCodec, degrees
+
+# Directions looked at, and the worst of them kept: where the corners of cells are not known, or only some; where they
+# are known; and for an encoder that searches, which takes longer for each direction.
+WIDE, NARROW, QUICK = (2**23, 2**12), (2**20, 2**11), (2**19, 2**8)
+FIRST_SIZES = (0.25, 0.02)  # of the first step of each round, in the error
+CLIMBING = "climbing"
+# A start this near the result, relatively, is what found it.
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Worst:
+    """A codec's largest error.
+
+    Attributes:
+        angle_deg: the supremum as it was found.
+        normal: the unit normal that makes it.
+        found_by: one of `cells`' ways, or "climbing".
+        moved_deg: how much the last round of climbing still raised it.
+    """
+
+    angle_deg: float
+    normal: tuple[float, float, float]
+    found_by: str
+    moved_deg: float
+
+
+@cache
+def worst_case(codec: Codec, is_half: bool = False) -> Worst:
+    """The largest error over the sphere, or over z >= 0, with eye rays straight ahead."""
+    exact = ExactCodec(codec, is_half)
+    way = cells.way_to_corners(exact)
+    is_known = way in (cells.ALL_CORNERS, cells.NEAREST)
+    samples, count = QUICK if codec.encoding.searches else NARROW if is_known else WIDE
+    # Compiling and the hull of the codes do not hold Python's lock, so a second thread finds the corners meanwhile.
+    with ThreadPoolExecutor(1) as pool:
+        corners = pool.submit(_worst_corners, exact, way, count) if way else None
+        blocks = itertools.chain(((block,) for block in spread(samples, is_half)), _special(is_half))
+        starts = _worst_of(exact, blocks, count)
+    ours = corners.result() if corners else None
+    starts = starts + ours if ours else starts
+    ground = Ground(exact.chords, exact.around, _lengths, degrees, exact.block // WAYS)
+    last, moved = highest(ground, starts, count, FIRST_SIZES)
+    angle = degrees(last.chords[0])
+    is_ours = ours and degrees(ours.chords[0]) >= angle * (1 - SAME)
+    return Worst(angle, exact.unit(last.places[:, 0]), way if is_ours else CLIMBING, moved)
+
+
+def _lengths(chords: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(chords, 0.0))
+
+
+def _worst_corners(exact: ExactCodec, way: str, count: int) -> Starts:
+    """The worst of the normals at corners of cells, at most `count`."""
+    normals = cells.corners(exact, way)
+    return Starts(exact.chords(normals), normals).best(count)
+
+
+def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarray]]], count: int) -> Starts:
+    """The worst of normals, at most `count`. They come in parts of shape (3, any), which fill a block together."""
+
+    def peaks(block: Sequence[Callable[[], np.ndarray]]) -> Starts:
+        parts = [part() for part in block]
+        ends = np.cumsum([part.shape[1] for part in parts])
+        chords = np.split(exact.chords(np.concatenate(parts, axis=1)), ends[:-1])
+        return reduce(add, map(_peaks, chords, parts))
+
+    best = Starts(np.empty(0), np.empty((3, 0)))
+    for found in on_all_cores(peaks, blocks):
+        best = (best + found).best(count)
+    return best
+
+
+def _peaks(chords: np.ndarray, normals: np.ndarray) -> Starts:
+    """Some of the worst of normals, from all over them."""
+    largest, index = cells.column_peaks(chords, cells.KEPT)
+    return Starts(largest, normals[:, index])
+
+
+def spread(count: int, is_half: bool) -> Iterator:
+    """Directions of equal area over the domain, by golden ratios."""
+
+    def block(start: int) -> np.ndarray:
+        index = np.arange(start, start + BLOCK) + 0.5
+        z, turn = (np.modf(index * step)[0] for step in (0.7548776662466927, 0.5698402909980532))
+        return _on_sphere(z if is_half else 2.0 * z - 1.0, 2.0 * np.pi * turn)
+
+    return (partial(block, start) for start in range(0, count, BLOCK))
+
+
+def _on_sphere(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    r = np.sqrt(1.0 - z * z)
+    return np.stack([np.cos(angle) * r, np.sin(angle) * r, z])
+
+
+def _special(is_half: bool) -> Iterator:
+    """Where codes are folded, cut or singular: great circles between axes and diagonals, both sides of them; the rim of
+    a hemisphere, closely; and rings around the axes. Nearer than 1e-4 to a pole even float64 cancels in
+    some encodings, which are then not the exact map."""
+    circle = _on_sphere(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
+    diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
+    offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]
+    circles = [partial(_about, across, near) for across in [*np.eye(3), *np.array(diagonals)] for near in offsets]
+    yield from (circles[start : start + 4] for start in range(0, len(circles), 4))
+    height = np.cos(np.repeat(np.geomspace(1e-4, 1.0, 256), 64))
+    ring = _on_sphere(height, np.arange(len(height)) * (np.pi / 32))
+    yield from ([partial(_about, axis, ring), partial(_about, -axis, ring)] for axis in np.eye(3))
+    for start in range(16 if is_half else 0):
+        angle = (np.arange(BLOCK) + start / 16) * (2 * np.pi / BLOCK)
+        yield [partial(_on_sphere, np.zeros(BLOCK), angle)]
+
+
+def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
+    """Unit normals about +z turned to another axis."""
+    axis = axis / np.linalg.norm(axis)
+    least = np.eye(3)[np.argmin(np.abs(axis))]
+    x = np.cross(least, axis)
+    x /= np.linalg.norm(x)
+    turned = np.stack([x, np.cross(axis, x), axis], axis=1) @ around_z
+    return turned / np.linalg.norm(turned, axis=0)

@@ -1,0 +1,144 @@
+"""The limit of N codes: its figures, that nothing measured is below it, and that a wrong measure is."""
+
+import math
+import re
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from exact_codes import nearest_of, storage
+
+from normalbench.bench.measures.metrics import meter as metrics
+from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.subjects.normals.normal_sets import from_arrays, hemisphere, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import dot
+
+COUNT = 2**18
+
+
+def row_of(codec: Codec, normals) -> dict:
+    return quality.measure(quality.Case(codec, normals, "jax"))
+
+
+@pytest.mark.parametrize(
+    "bits, mean, rms, largest", [(16, 0.29926, 0.31773, 0.49222), (24, 0.018704, 0.019858, 0.030764)]
+)
+def test_the_limits_figures(bits, mean, rms, largest):
+    """Fejes Toth's covering and the hexagon's moments, as independently computed."""
+    least = code_limit(2**bits)
+    assert [least.mean_deg, least.rms_deg, least.max_deg] == pytest.approx([mean, rms, largest], rel=5e-5)
+
+
+def test_the_covering_bound_is_exact_for_triangular_polyhedra_and_does_not_cancel():
+    """Vertices of the tetrahedron, octahedron and icosahedron: circumradii of their faces. And 2^62 codes."""
+    circumradii = {4: math.acos(1 / 3), 6: math.acos(1 / math.sqrt(3)), 12: math.acos(math.sqrt((5 + 2 * 5**0.5) / 15))}
+    for count, radius in circumradii.items():
+        assert code_limit(count).max_deg == pytest.approx(math.degrees(radius), rel=1e-12)
+    assert code_limit(2**62).max_deg / code_limit(2**20).max_deg == pytest.approx(2.0**-21, rel=1e-5)
+
+
+def test_half_the_sphere_is_held_to_half_the_area():
+    whole, half = code_limit(2**16, SPHERE), code_limit(2**16, HEMISPHERE)
+    assert half.rms_deg == pytest.approx(whole.rms_deg / math.sqrt(2))
+    assert half.max_deg == pytest.approx(whole.max_deg / math.sqrt(2), rel=1e-4)
+
+
+BELOW = "bench/measures/metrics/test_code_limits.py::test_no_row_is_below_its_limit"
+# One of each size and kind in every run.
+SOME = ("rg8", "rgb10a2", "rg16f", "rgba8_snorm")
+OTHERS = [pytest.param(name, marks=pytest.mark.nightly(BELOW)) for name in STORAGES if name not in SOME]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*SOME, *OTHERS])
+def test_no_row_is_below_its_limit(name):
+    """The whole catalogue: every encoding that fits, on the sphere and on half of it."""
+    codecs = [Codec(encoding, STORAGES[name]) for encoding in ENCODINGS.values()]
+    cases = quality.cases([c for c in codecs if c.fits], [sphere(COUNT), hemisphere(COUNT)], ["jax"])
+    for row in quality.rows(cases, lambda _: None):
+        assert not row["below_limit"], row
+        held = row["limit_rms_deg"] > 1e-5
+        assert (row["below_limit"] == "") == held == (row["reached_rms_percent"] is not None)
+        if held:
+            assert row["effective_bits"] <= math.log2(row["codes"]) + 0.01, row
+
+
+@pytest.mark.parametrize("count", [999_999, 1_000_003, 1_100_000, 1_200_000])
+def test_two_lattices_that_meet_are_no_wrong_measurement(count):
+    """Directions of a million and codes of latitude and longitude: the nearest lie nearer than chance would have it."""
+    row = row_of(Codec(ENCODINGS["latitude_longitude"], STORAGES["rg8"]), sphere(count))
+    assert row["below_limit"] == "", row
+
+
+def test_codes_that_a_format_cannot_tell_apart_do_not_count():
+    """SNORM8 has 255 numbers, a half float 30721 from -1 to 1; a sign is a bit more."""
+    pairs = {"rg8_snorm": 255**2, "rg8": 2**16, "rg16f": 30721**2, "rg16": 2**32}
+    for name, codes in pairs.items():
+        assert Codec(ENCODINGS["octahedral"], STORAGES[name]).codes == codes
+    assert Codec(ENCODINGS["xy_sign"], STORAGES["rg8"]).codes == 2**17
+
+
+def broken(monkeypatch, angle_between) -> None:
+    """Another angle in place of the measure's own, compiled anew."""
+    monkeypatch.setattr(metrics, "angle_between", angle_between)
+    monkeypatch.setattr(metrics, "_scan", jax.jit(lambda chunk: metrics._traced_scan(chunk)))
+
+
+def test_an_arc_cosine_in_float32_is_caught(monkeypatch):
+    """Its first step is 0.02 degrees: far more angles are 0 than so many codes can be near to. The mean and the RMS
+    would not do: what is not 0 is too large."""
+    broken(monkeypatch, lambda a, b: jnp.degrees(jnp.arccos(jnp.minimum(dot(a, b), 1.0))))
+    for name in ("rg8", "rgb10a2", "rg16", "rg16f"):
+        below = row_of(Codec(ENCODINGS["octahedral"], STORAGES[name]), sphere(COUNT))["below_limit"]
+        assert re.match(r"\d+ angles below .* degrees", below), name
+
+
+def test_radians_are_caught_and_said_with_exit_status_1(monkeypatch, run):
+    right = metrics.angle_between
+    broken(monkeypatch, lambda a, b: jnp.radians(right(a, b)))
+    words = ["--encoding", "octahedral", "--storage", "rg8", "--normals", "sphere", "--backend", "jax"]
+    status, out, err = run("quality", *words, "--count", "10000", "--format", "json")
+    assert status == 1 and '"below_limit": "RMS 0.006' in out
+    assert err.count("\n") == 1 and "of 0.31773 at least; 65536 codes cannot do that" in err
+
+
+def test_a_set_that_meets_a_codes_lattice_is_not_taken_for_a_broken_measure():
+    """Fewer directions than codes: 153 of spherical 10:10 are within 0.0039 degrees, where chance has 80."""
+    for name in ("rgb8_10_10_2", "rgb8_10_10_3"):
+        assert row_of(Codec(ENCODINGS["spherical"], STORAGES[name]), sphere(2**16))["below_limit"] == ""
+
+
+def polar_directions(count: int, seed: int) -> np.ndarray:
+    """Uniform angles, which crowd the poles: the commonest wrong way to a uniform sphere."""
+    polar, azimuth = np.random.default_rng(seed).uniform(0, [[np.pi], [2 * np.pi]], (2, count))
+    return np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=1)
+
+
+def settled(directions: np.ndarray, count: int) -> np.ndarray:
+    """Points that are the means of the directions nearest to them (S. Lloyd's iteration)."""
+    from scipy.spatial import cKDTree
+
+    points = directions[:count]
+    for _ in range(30):
+        nearest = cKDTree(points).query(directions)[1]
+        sums = np.stack([np.bincount(nearest, axis, count) for axis in directions.T], axis=1)
+        points = sums / np.linalg.norm(sums, axis=1, keepdims=True)
+    return points
+
+
+@pytest.mark.slow
+def test_directions_that_are_not_uniform_are_caught():
+    """A code made for a set that crowds the poles beats there what is possible on a uniform one, and there does not."""
+    side = 24
+    codec = Codec(nearest_of(settled(polar_directions(2**16, 0), side**2), side), storage("unorm", 5, 5))
+    n = polar_directions(COUNT, 1).astype(np.float32)
+    said_to_be_uniform = from_arrays("sphere", "", n, -n, np.ones(COUNT, bool))
+    object.__setattr__(said_to_be_uniform, "area", SPHERE)
+    assert codec.codes == side**2
+    assert row_of(codec, said_to_be_uniform)["below_limit"].startswith("mean")
+    assert row_of(codec, sphere(COUNT))["below_limit"] == ""

@@ -1,0 +1,356 @@
+"""The statistics of a row, against NumPy in float64 and against the laws they obey."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from directions import random_directions
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from skimage.metrics import peak_signal_noise_ratio
+
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.ground.machine.cores import cores, on_all_cores
+from normalbench.bench.ground.options import counts
+from normalbench.bench.measures.metrics import meter as metrics
+from normalbench.bench.measures.metrics.meter import Meter, angle_between
+from normalbench.bench.measures.metrics.moments import squared_errors
+from normalbench.bench.measures.metrics.totals import psnr_db
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.throughput.numpy_baseline import whole_row
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+AHEAD = np.float32([0, 0, -1])
+
+
+def turned(n: np.ndarray, degrees: np.ndarray, seed: int = 3) -> np.ndarray:
+    """Each direction turned by an angle about a random axis across it; float64."""
+    across = np.cross(n, random_directions(len(n), seed)).astype(np.float64)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    angle = np.radians(degrees)[:, None]
+    return n * np.cos(angle) + np.cross(across, n) * np.sin(angle)
+
+
+def measured(meter: Meter, normals):
+    return meter.measure(normals.loads(), normals.count)
+
+
+def measured_angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray(jax.jit(angle_between)(vec.Vec3(*jnp.asarray(a.T)), vec.Vec3(*jnp.asarray(b.T))))
+
+
+def test_small_angles_keep_six_digits_in_float32():
+    """From 1e-5 to 180 degrees the angle equals the float64 one of the same float32 vectors within 1e-6 of it."""
+    n = random_directions(2**16)
+    degrees = np.geomspace(1e-5, 179.9, len(n))
+    other = turned(n, degrees).astype(np.float32)
+    got, expected = measured_angles(n, other), angles_deg(n, other)
+    worst = np.argmax(np.abs(got - expected) / expected)
+    assert got[worst] == pytest.approx(expected[worst], rel=2e-6), f"at {degrees[worst]} degrees"
+
+
+def test_the_angle_does_not_depend_on_the_decodes_length():
+    n = random_directions(4096)
+    other = turned(n, np.full(len(n), 7.0)).astype(np.float32)
+    assert np.allclose(measured_angles(n, other), measured_angles(n, other * np.float32(0.9)), rtol=1e-5)
+
+
+def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
+    n = random_directions(8)
+    assert np.all(measured_angles(n, np.zeros_like(n)) == 180)
+    broken = measured(Meter(jax.jit(lambda block: block.n * jnp.nan)), from_arrays("", "", n, n, np.ones(8, bool)))
+    assert broken.angle_max_deg == pytest.approx(180) and broken.mse == pytest.approx(4 / 3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(1, 3 * CHUNK // 2), st.floats(0.01, 60))
+def test_a_row_equals_numpys(count, degrees):
+    """Sums and largest to float32's precision, the percentile to 0.1 %; for any count, whole chunks or not."""
+    count = min(count, 40_000) if count % 2 else count
+    n = random_directions(count, seed=count)
+    spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
+    other = turned(n, spread, seed=count + 1).astype(np.float32)
+    got = measured(DECODED, from_arrays("", "", n, other, np.ones(count, bool)))
+    mse, article_mse, mean, rms, p99, largest = whole_row(n, other)
+    assert got.count == got.pixels == count
+    assert got.mse == pytest.approx(mse, rel=1e-6)
+    assert got.article_mse == pytest.approx(article_mse, rel=1e-5, abs=1e-12)
+    assert got.angle_mean_deg == pytest.approx(mean, rel=1e-6)
+    assert got.angle_rms_deg == pytest.approx(rms, rel=1e-6)
+    assert got.angle_max_deg == pytest.approx(largest, rel=1e-6)
+    if count > 10_000:
+        assert got.angle_p99_deg == pytest.approx(p99, rel=1e-3)
+
+
+DECODED = Meter(jax.jit(lambda block: block.view))
+
+
+@pytest.mark.parametrize("at", [7, CHUNK + 7])
+def test_the_largest_angle_is_that_of_all_chunks(at):
+    """Whichever of two chunks has it."""
+    n = random_directions(CHUNK + 99)
+    degrees = np.where(np.arange(len(n)) == at, 20.0, 1.0)
+    got = measured(DECODED, from_arrays("", "", n, turned(n, degrees).astype(np.float32), np.ones(len(n), bool)))
+    assert got.angle_max_deg == pytest.approx(20.0, rel=1e-5)
+    np.testing.assert_array_equal(got.worst.normal, n[at])
+
+
+def test_the_background_counts_for_the_articles_measure_alone():
+    n = random_directions(1000)
+    other = turned(n, np.full(1000, 2.0)).astype(np.float32)
+    covered = np.arange(1000) < 500
+    half = measured(DECODED, from_arrays("", "", n, other, covered))
+    only = measured(DECODED, from_arrays("", "", n[:500], other[:500], covered[:500]))
+    assert half.count == 500 and half.pixels == 1000
+    assert half.mse == pytest.approx(only.mse) and half.angle_mean_deg == pytest.approx(only.angle_mean_deg)
+    assert half.article_mse == pytest.approx(only.article_mse / 2)
+
+
+def test_the_worst_normal_is_the_one_that_was_turned_most():
+    """Of several chunks, among background that is farther off, and of decodes that are not numbers."""
+    n, degrees = random_directions(CHUNK + 5000), np.full(CHUNK + 5000, 1.0)
+    degrees[[77, CHUNK + 3]] = 2.0, 2.5
+    covered = np.arange(len(n)) != 5
+    other = turned(n, degrees).astype(np.float32)
+    other[5] = -n[5]
+    found = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert found.worst.angle_deg == pytest.approx(2.5, abs=1e-4) == pytest.approx(found.angle_max_deg, abs=1e-4)
+    assert np.array_equal(found.worst.normal, n[CHUNK + 3]) and np.array_equal(found.worst.decoded, other[CHUNK + 3])
+    other[9] = np.nan
+    found = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert found.worst.angle_deg == 180 and np.array_equal(found.worst.normal, n[9])
+    assert measured(DECODED, from_arrays("", "", n[:9], n[:9], covered[:9])).worst.angle_deg == 0
+
+
+@pytest.mark.usefixtures("gl")
+def test_both_back_ends_name_the_worst_normal():
+    """A row's own columns, GLSL's too: the angle between the two is the largest that was met."""
+    for backend in ("jax", "glsl"):
+        row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(5000), backend))
+        normal, decode = (
+            np.array([float(c) for c in row[f"worst_{what}"][1:-1].split(",")]) for what in ("normal", "decode")
+        )
+        across = np.linalg.norm(np.cross(normal, decode))
+        assert np.degrees(np.arctan2(across, normal @ decode)) == pytest.approx(row["angle_max_deg"], rel=1e-5), backend
+
+
+def test_psnr_is_scikit_images():
+    rng = np.random.default_rng(0)
+    a, b = rng.uniform(-1, 1, (2, 64, 64, 3))
+    assert psnr_db(float(np.mean((a - b) ** 2))) == pytest.approx(peak_signal_noise_ratio(a, b, data_range=1))
+
+
+def test_identical_normals_have_infinite_psnr():
+    row = quality.measure(quality.Case(Codec(ENCODINGS["xyz"], STORAGES["rgba32f"]), sphere(1000), "jax"))
+    assert row["psnr_db"] == np.inf and row["exact"] and row["angle_max_deg"] == 0 and row["angle_p99_deg"] == 0
+
+
+@pytest.mark.parametrize("name", ["octahedral", "spheremap", "warped_cube"])
+def test_the_fast_path_gives_the_same_sums(name):
+    """XLA asked for vectors of 512 bits made an arc tangent of the warped cube 0: the sums of the fast path alone were
+    wrong."""
+    codec = Codec(ENCODINGS[name], STORAGES["rgba8"])
+    n = random_directions(2**16)
+    view = np.broadcast_to(AHEAD, n.shape)
+    total, largest = squared_errors(codec)(vec.from_array(n), vec.from_array(-view))
+    row = quality.measure(quality.Case(codec, from_arrays("", "", n, view, np.ones(len(n), bool)), "jax"))
+    assert total / (3 * len(n)) == pytest.approx(row["mse"], rel=1e-6)
+    # The chord of the angle: all of these decode to unit vectors.
+    assert np.degrees(2 * np.arcsin(np.sqrt(largest) / 2)) == pytest.approx(row["angle_max_deg"], rel=1e-3)
+
+
+@pytest.mark.parametrize("make, z_mean, z2_mean", [(sphere, 0, 1 / 3), (hemisphere, 1 / 2, 1 / 3)])
+def test_uniform_sets_are_uniform(make, z_mean, z2_mean):
+    """Moments of a uniform sphere (Archimedes: z is uniform), unit lengths, and every octant alike."""
+    chunk = make(CHUNK).chunk(0)
+    n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
+    assert np.allclose(np.linalg.norm(n, axis=1), 1, atol=3e-7)
+    assert n[:, 2].mean() == pytest.approx(z_mean, abs=1e-4)
+    assert (n**2).mean(axis=0) == pytest.approx([1 / 3, 1 / 3, z2_mean], abs=1e-4)
+    octant = (n > 0) @ [1, 2, 4]
+    shares = np.bincount(octant, minlength=8) / len(n)
+    expected = np.full(8, 1 / 8) if make is sphere else np.repeat([0, 1 / 4], 4)
+    assert shares == pytest.approx(expected, abs=1e-3)
+
+
+def test_a_uniform_sets_rounding_errors_are_independent():
+    """The lengths of its float32 vectors scatter as those of any rounded unit vectors do: z is not privileged."""
+    chunk = sphere(CHUNK).chunk(0)
+    n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
+    any_unit = random_directions(CHUNK).astype(np.float64)
+    scatter, expected = (np.std(np.linalg.norm(v, axis=1) - 1) for v in (n, any_unit))
+    assert scatter == pytest.approx(expected, rel=0.02)
+    # On a lattice of z near -1, spheremap would look 14 dB better in 16 bits than it is.
+    row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg16"]), sphere(), "jax"))
+    assert row["psnr_db"] == pytest.approx(73.1, abs=1) and row["angle_max_deg"] > 10
+
+
+def test_a_seed_moves_the_set_and_little_else():
+    a, b, again = (sphere(2**18, seed) for seed in (0, 1, 0))
+    x = [np.asarray(s.chunk(0).n.x) for s in (a, b, again)]
+    assert np.array_equal(x[0], x[2]) and not np.array_equal(x[0], x[1])
+    codec = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
+    psnr = [quality.measure(quality.Case(codec, s, "jax"))["psnr_db"] for s in (a, b)]
+    assert psnr[0] == pytest.approx(psnr[1], abs=0.01)
+
+
+def test_counting_stops_where_it_is_told_to():
+    row = quality.measure(quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), sphere(CHUNK + 7), "jax"))
+    assert row["count"] == CHUNK + 7
+
+
+def test_the_largest_count_can_be_addressed():
+    """The last chunk of the largest set is as good as the first."""
+    last = sphere(counts.MAX_COUNT).chunk(counts.MAX_COUNT - CHUNK)
+    assert np.asarray(last.covered).all()
+    assert np.all(np.isfinite(np.asarray(last.n.z)))
+
+
+def test_nothing_is_simplified_across_a_storage_that_rounds_nothing():
+    """Encoding and decoding as one program are what they are as two: what is measured is float32's own error."""
+    (codec,) = codecs_named("spherical:scale=0.3", "rgba32f", "nearest")
+    chunk = hemisphere(CHUNK).chunk(0)
+    one = jax.jit(codec.round_trip)(chunk.n, chunk.view)
+    stored = jax.jit(codec.stored)(chunk.n, chunk.view)
+    two = jax.jit(codec.encoding.decode)(stored, chunk.view)
+    worst = max(float(np.abs(np.asarray(a) - np.asarray(b)).max()) for a, b in zip(one, two, strict=True))
+    assert worst <= 2.0**-23, worst
+
+
+def test_work_in_flight_is_bounded():
+    taken = []
+    results = on_all_cores(lambda i: i, (taken.append(i) or i for i in range(1000)))
+    assert next(results) == 0
+    assert len(taken) <= 2 * cores()
+    assert list(results) == list(range(1, 1000))
+
+
+def rows_of(normals, names=("octahedral", "spherical", "xyz")) -> list[dict]:
+    codecs = [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in names]
+    return list(quality.rows(quality.cases(codecs, [normals], ["jax"]), lambda _: None))
+
+
+def test_codecs_measured_together_are_as_measured_alone():
+    """Each chunk is made once for all of them; nothing else changes, in whatever order and company."""
+    normals = sphere(3 * CHUNK + 5)
+    alone = [
+        quality.measure(case)
+        for case in quality.cases(
+            [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in ("octahedral", "spherical", "xyz")],
+            [normals],
+            ["jax"],
+        )
+    ]
+    assert rows_of(normals) == alone
+    assert list(reversed(rows_of(normals, ("xyz", "spherical", "octahedral")))) == alone
+
+
+def test_a_chunk_is_made_once_for_all_codecs():
+    made, normals = [], sphere(2 * CHUNK)
+    counted = replace(normals, chunk=lambda start: (made.append(start), normals.chunk(start))[1])
+    rows_of(counted)
+    assert sorted(made) == [0, CHUNK]
+
+
+@pytest.mark.slow
+def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
+    """One core or four, and blocks of any size: the same bits. Other lanes: the last digits of the sums alone."""
+    normals = sphere(5 * CHUNK + 99)
+    usual = rows_of(normals)
+    for threads in (1, 4):
+        monkeypatch.setattr("normalbench.bench.ground.machine.cores.cores", lambda threads=threads: threads)
+        assert rows_of(normals) == usual
+    for rows, lanes in ((8, 1024), (32, 1024), (64, 256), (32, 512)):
+        monkeypatch.setattr(metrics, "ROWS", rows)
+        monkeypatch.setattr(metrics, "SUM_LANES", lanes)
+        monkeypatch.setattr(metrics, "_scan", jax.jit(lambda chunk: metrics._traced_scan(chunk)))
+        for row, other in zip(usual, rows_of(normals), strict=True):
+            for name in ("mse", "psnr_db", "psnr_article_db", "angle_mean_deg", "angle_rms_deg"):
+                assert other[name] == pytest.approx(row[name], rel=0 if lanes == 1024 else 1e-13, abs=0), (name, rows)
+            same = ("angle_max_deg", "angle_p99_deg", "angle_counts", "worst_normal", "invalid")
+            assert [other[name] for name in same] == [row[name] for name in same], rows
+
+
+ON_DEVICES = """
+import jax
+from normalbench.bench.measures.metrics.meter import Meter
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, sphere
+
+used = set()
+
+class Seen(Meter):
+    def decoded(self, block):
+        used.update(block.n.x.devices())
+        return super().decoded(block)
+
+print(Seen(jax.jit(lambda block: block.n * 0.999 + 0.001)).measure(sphere(4 * CHUNK + 9).loads(), 4 * CHUNK + 9))
+print(len(used), len(jax.local_devices()))
+"""
+
+
+@pytest.mark.slow
+def test_chunks_are_dealt_to_all_devices_and_rows_are_the_same():
+    """One device of JAX or three: each measures some of the chunks, and no digit of the statistics differs."""
+    found = {}
+    for count in (1, 3):
+        flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={count}"}
+        done = subprocess.run(
+            [sys.executable, "-c", ON_DEVICES], env=os.environ | flags, capture_output=True, text=True, check=True
+        )
+        *statistics, devices = done.stdout.splitlines()
+        assert devices == f"{count} {count}", done.stderr
+        found[count] = statistics
+    assert found[1] == found[3]
+
+
+def test_any_count_is_constant_memory():
+    """Of a million chunks of a set none is kept: those that are done are gone."""
+    import gc
+    import weakref
+
+    class Load:
+        def __init__(self, chunk):
+            self.chunk = chunk
+
+        def __call__(self):
+            return self.chunk
+
+    chunk, seen, most = sphere(CHUNK).chunk(0), [], 0
+    # What other tests have left need not be looked through.
+    gc.collect()
+    gc.freeze()
+
+    def loads():
+        nonlocal most
+        for _ in range(40):
+            load = Load(chunk)
+            seen.append(weakref.ref(load))
+            gc.collect()
+            most = max(most, sum(ref() is not None for ref in seen))
+            yield load
+            del load
+
+    Meter(jax.jit(lambda block: block.n)).measure(loads(), CHUNK)
+    gc.unfreeze()
+    assert most <= 8
+
+
+def test_uniform_sets_are_float64_rounded_once():
+    """NumPy's float64 sines of the same sequence, rounded: one in a million differs."""
+    n = sphere(CHUNK, 3).chunk(0).n
+    offsets = np.random.default_rng(3).integers(0, 2**32, 2, dtype=np.uint32)
+    index = np.arange(CHUNK, dtype=np.uint64)
+    u, v = (((index * s + o) % 2**32 + 0.5) * 2.0**-32 for s, o in zip(STEPS, offsets.astype(np.uint64), strict=True))
+    r = 2 * np.sqrt(u * (1 - u))
+    for ours, exact in zip(n, (np.cos(2 * np.pi * v) * r, np.sin(2 * np.pi * v) * r, 1 - 2 * u), strict=True):
+        assert np.count_nonzero(np.asarray(ours) != exact.astype(np.float32)) <= 3

@@ -1,0 +1,116 @@
+"""Rays that judge ambient occlusion, against closed forms."""
+
+from __future__ import annotations
+
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from drawing import scene_of
+from occluded import CLOSED, effect, scene_of_meshes
+
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.measures.metrics.occlusion_error import compared, method_error
+from normalbench.bench.measures.metrics.visibility import RayCaster, cosine_directions, triangles_of
+from normalbench.gbuffer.effects.effect import ChosenEffect, Effect, EffectError
+from normalbench.gbuffer.frame.resource import Resource
+
+UP = np.array([[0.0, 1.0, 0.0]])
+RAYS = 200_000
+
+
+def anything(distance: np.ndarray) -> np.ndarray:
+    return (distance < 1e30).astype(float)
+
+
+def seen(meshes, lost=anything, rays=RAYS):
+    """From just over the middle of the floor."""
+    return RayCaster(triangles_of(scene_of_meshes(*meshes))).visible(1e-4 * UP, UP, rays, lost)
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_rays_see_what_the_closed_form_says(name):
+    """Within three standard errors, which are below 0.002. 128 sides of a circle have 0.0004 of its area less."""
+    meshes, expected = CLOSED[name]
+    found = seen(meshes)
+    off, error = abs(found.visibility[0] - expected), found.error[0]
+    assert error < 0.002
+    assert off <= 3 * error + 5e-4 * (1 - expected), (
+        f"{name}: {found.visibility[0]:.5f}, not {expected:.5f}; {error:.1g}"
+    )
+
+
+def test_the_standard_error_is_what_other_seeds_scatter_by():
+    """Over 200 seeds, within 20 %: four standard deviations of such an estimate."""
+    caster = RayCaster(triangles_of(scene_of_meshes(*CLOSED["deep pit"][0])))
+    each = [caster.visible(1e-4 * UP, UP, 256, anything, seed) for seed in range(200)]
+    scatter = np.std([one.visibility[0] for one in each])
+    said = np.mean([one.error[0] for one in each])
+    assert scatter == pytest.approx(said, rel=0.2)
+
+
+def test_a_fall_off_weighs_by_distance():
+    """At the bottom of a pit all that is missed is far: with w = 1 up to 0.3 m nothing is lost, and with w = 0.25 a
+    quarter is."""
+    meshes, expected = CLOSED["deep pit"]
+    near = seen(meshes, lambda t: (t < 0.3).astype(float)).visibility[0]
+    quarter = seen(meshes, lambda t: 0.25 * anything(t))
+    assert near == 1.0
+    assert abs(quarter.visibility[0] - (1 - 0.25 * (1 - expected))) <= 3 * quarter.error[0]
+
+
+def test_light_comes_from_where_it_is_open():
+    """Beside a ball on the floor it comes from the other side; in the open from 2/3 of the normal, the mean cosine."""
+    open_floor, beside = seen(CLOSED["dome"][0][:1]), seen(CLOSED["near dome"][0])
+    assert np.abs(open_floor.bent[0] - [0, 2 / 3, 0]).max() < 0.005
+    assert beside.bent[0, 0] < -0.05
+
+
+def test_directions_are_as_dense_as_the_cosine():
+    """Mean of cos and of cos squared over tilted normals: 2/3 and 1/2, to 0.005 of 60 000 directions."""
+    normals = np.array([(1.0, 0, 0), (0, 0, -1.0), (0.6, 0.0, 0.8)])
+    cosine = np.einsum("nri,ni->nr", cosine_directions(normals, 20000, np.random.default_rng(1)), normals)
+    assert cosine.min() >= 0
+    assert np.abs(cosine.mean(axis=1) - 2 / 3).max() < 0.005 and np.abs((cosine**2).mean(axis=1) - 1 / 2).max() < 0.005
+
+
+def test_glass_stops_no_ray():
+    """The room's triangles are those of its opaque surfaces: all 11 822 but the three panes' 36."""
+    room = scene_of("room")
+    total = sum(len(part.mesh.triangles) * len(part.models) for part in room.parts)
+    assert len(triangles_of(room)) == total - 3 * 12
+
+
+def test_noise_of_the_rays_is_not_the_methods_error():
+    """Judged by few rays: a method without error has an RMS of 0, one off by 0.1 of 0.1, to four standard errors."""
+    rng = np.random.default_rng(0)
+    noise = np.full(4000, 0.02)
+    exact = 0.5 + rng.normal(0, 0.02, 4000)
+    none, some = (compared(np.full(4000, v), exact, noise) for v in (0.5, 0.6))
+    assert none.rms**2 <= 4 * 0.02**2 * np.sqrt(2 / 4000)
+    assert abs(some.rms - 0.1) <= 4 * some.standard_error and abs(some.mean - 0.1) < 0.002
+
+
+def test_more_slices_and_steps_come_closer_to_the_rays(gl):
+    """On the room: 1 x 2, 3 x 3 and 16 x 16, each by more than four standard errors of both."""
+    found = [
+        method_error(gl, effect(f"gtao:{given}"), scene_of("room"), (128, 96), pixels=2000, rays=256)
+        for given in ("slices=1:steps=2", "slices=3:steps=3", "slices=16:steps=16")
+    ]
+    for coarse, fine in pairwise(found):
+        least = 4 * np.hypot(coarse.standard_error, fine.standard_error)
+        assert coarse.rms - fine.rms > least, f"{coarse.rms:.4f}, then {fine.rms:.4f}; {least:.2g} apart is chance"
+
+
+def test_without_embree_one_line_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "embreex", None)
+    monkeypatch.setitem(sys.modules, "embreex.mesh_construction", None)
+    with pytest.raises(MissingError, match=r"^rays need embreex \(.+\); pip install embreex$"):
+        RayCaster(np.zeros((1, 3, 3)))
+
+
+def test_another_effect_has_no_such_error(gl):
+    other = ChosenEffect(Effect("fog", "fog", "a test", Resource("fog", "r32f"), lambda **_: ()), ())
+    with pytest.raises(EffectError, match=r"^effect fog is not a method of ambient occlusion$"):
+        method_error(gl, other, scene_of("room"), (16, 12))

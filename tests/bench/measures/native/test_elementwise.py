@@ -1,0 +1,158 @@
+"""JAX functions in C: what each operation gives, bit for bit, and what cannot be written so."""
+
+import ctypes
+import shutil
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.bench.ground.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
+from normalbench.bench.ground.native.library import address, library, source
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
+
+needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+FLOAT = np.dtype(np.float32)
+LOOP = """
+void each(size_t count, const FROM *a, const FROM *b, TO *to) {
+    for (size_t k = 0; k < count; k++) function(a[k], b[k], to + k);
+}
+"""
+TINY = float(np.finfo(np.float32).tiny)
+FLOATS = np.array(
+    [
+        *(0.0, -0.0, 0.5, -0.5, 1.5, 2.5, -2.5, 1.0, -1.0, 0.3, 1e-3, TINY, 65504.0, 65520.0, 7e-8, 1e9, -3e9, 3e38),
+        *(np.nan, np.inf, -np.inf),
+    ],
+    np.float32,
+)
+WORDS = np.array([0, 1, 2, 3, 31, 255, 2**16 + 1, 2**31 - 1, 2**31, 2**32 - 1, 0x9E3779B9], np.uint32)
+
+
+def by_c(function, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    kind = jax.eval_shape(function, a, b).dtype
+    written = c_function("function", function, a.dtype, b.dtype) + LOOP
+    text = source("fill.c", written, [], FROM=c_type(a.dtype), TO=c_type(kind))
+    made = library(text.partition("\nvoid fill")[0], "each")
+    found = np.empty(len(a), kind)
+    made.each(ctypes.c_size_t(len(a)), *map(address, (a, b, found)))
+    return found
+
+
+def all_pairs(values: np.ndarray) -> list[np.ndarray]:
+    return [np.ascontiguousarray(side.ravel()) for side in np.meshgrid(values, values)]
+
+
+FUNCTIONS = {
+    "sum, difference, product": lambda a, b: (a + b) * (a - b),
+    "quotient": lambda a, b: a / b,
+    "round, to even": lambda a, _: jnp.round(a),
+    "floor": lambda a, _: jnp.floor(a + 0.5),
+    "cut off": lambda a, _: jnp.trunc(a),
+    "magnitude and root": lambda a, _: jnp.sqrt(abs(a)),
+    "negative": lambda a, _: -a,
+    "larger": maximum,
+    "smaller": minimum,
+    "comparisons": lambda a, b: ((a < b) | (a >= b)) & ~(a == b),
+    "not equal, not above": lambda a, b: (a != b) | (a <= b) | (a > b),
+    "sign": lambda a, b: sign_not_zero(a) * b,
+    "to an integer, within its range": lambda a, _: a.astype(jnp.int32),
+    "to an unsigned integer, within its range": lambda a, _: a.astype(jnp.uint32),
+    "to a half float and back": lambda a, _: a.astype(jnp.float16).astype(jnp.float32),
+    "bits": lambda a, _: (a.view(jnp.uint32) >> 13).astype(jnp.int32) - 7,
+    "signed bits": lambda a, _: (a.view(jnp.int32) >> 3) << 1,
+    "octave": lambda a, _: floor_log2(abs(a)),
+    "power of two": lambda a, _: power_of_two(jnp.round(a * 0.0 + 3.0)),
+    "finite": lambda a, _: jnp.isfinite(a),
+}
+
+
+@needs_c
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_floats_are_those_of_jax_to_the_bit(name):
+    """Of zeros, ties, what is too large for an integer or a half float, infinities and NaN, all pairs of them."""
+    function = FUNCTIONS[name]
+    a, b = all_pairs(FLOATS)
+    with jax.numpy_dtype_promotion("standard"):
+        expected, found = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
+    same = (expected == found) | ((expected != expected) & (found != found))
+    if expected.dtype.kind == "f":
+        same &= (np.signbit(expected) == np.signbit(found)) | np.isnan(expected)
+        # JAX takes numbers below the normal ones for 0.
+        same |= (expected == 0) & (abs(found) < TINY)
+    assert same.all(), f"{name} of {a[~same][0]}, {b[~same][0]}: {found[~same][0]}, JAX {expected[~same][0]}"
+
+
+@needs_c
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda a, b: a * jnp.uint32(0x9E3779B9) + b,
+        lambda a, b: (a.view(jnp.int32) * jnp.int32(2**30 + 1)) - b.view(jnp.int32),
+        lambda a, _: jnp.clip(a.view(jnp.int32), -5, 40),
+        lambda a, b: (a & b) | (~a >> 7),
+        lambda a, b: (a.view(jnp.int32) >> 5) + jax.lax.shift_right_logical(b.view(jnp.int32), jnp.int32(9)),
+        lambda a, _: a.astype(jnp.float32) * jnp.float32(0.5),
+        lambda a, _: (a.view(jnp.int32)).astype(jnp.float32),
+    ],
+    ids=["products wrap", "signed products wrap", "limits", "bits", "shifts", "unsigned to float", "signed to float"],
+)
+def test_integers_are_those_of_jax(function):
+    a, b = all_pairs(WORDS)
+    expected, found = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
+    differ = np.flatnonzero(expected != found)
+    assert not differ.size, f"of {a[differ[0]]}, {b[differ[0]]}: {found[differ[0]]}, JAX {expected[differ[0]]}"
+
+
+@pytest.mark.parametrize(
+    "function, said",
+    [
+        (lambda a: jnp.sin(a), "sin"),
+        (lambda a: a - a.sum(), "reduce_sum"),
+        (lambda a: jnp.maximum(a, 0.0), "max"),
+        (lambda a: a.astype(jnp.float16) + jnp.float16(1.0), "add of half floats"),
+        (lambda a: jnp.asarray([1.0, 2.0], jnp.float32)[a.astype(jnp.int32)], "an array of constants"),
+        (lambda a: a.astype(jnp.complex64), "numbers of type complex64"),
+        (lambda a: jax.lax.round(a), "rounding away from zero"),
+        (lambda a: jax.lax.select_n(a.astype(jnp.int32), a, a, a), "a choice of more than two"),
+        (lambda a: jax.lax.bitcast_convert_type(a, jnp.uint16).sum(axis=1), "a view of another size"),
+        (lambda a: a.astype(jnp.int32) // 3, "a quotient of integers|sign"),
+        (lambda a: jax.lax.div(a.view(jnp.uint32), a.view(jnp.uint32)), "a quotient of integers"),
+        (lambda a: a.view(jnp.int32) >> a.astype(jnp.int32), "a shift by a number that is not known"),
+        (lambda a: a.view(jnp.uint32) << jnp.uint32(32), "a shift by a number that is not known"),
+        (lambda _: jnp.float32(1.0), "a result of another shape"),
+        (lambda a: a[:, None], "a result of another shape"),
+    ],
+)
+def test_what_has_no_line_of_c_is_named(function, said):
+    """An operation that mixes elements, that C rounds otherwise, or that nobody has written."""
+    with pytest.raises(NotElementwiseError, match=said):
+        c_function("function", function, FLOAT)
+
+
+def test_every_operation_is_one_that_something_uses():
+    """Each line that can be written is written by a codec of the catalogue, by the errors or by a set of normals."""
+    from normalbench.bench.measures.native import meter
+    from normalbench.bench.subjects.normals import normal_sets
+
+    seen: set[str] = set()
+
+    def note(jaxpr):
+        for equation in jaxpr.eqns:
+            seen.add(equation.primitive.name)
+            for inner in equation.params.values():
+                if hasattr(inner, "jaxpr"):
+                    note(inner.jaxpr)
+
+    ones = jnp.ones(4, jnp.float32)
+    three = meter.Vec3(ones, ones, ones)
+    for encoding in ENCODINGS.values():
+        note(jax.make_jaxpr(lambda n, e=encoding: e.decode(e.encode(n, n), n))(three).jaxpr)
+    note(jax.make_jaxpr(lambda n: meter.errors(n, n, True))(three).jaxpr)
+    note(jax.make_jaxpr(lambda a: meter.bins_of(a, True))(ones).jaxpr)
+    words = jnp.ones(4, jnp.uint32)
+    with jax.enable_x64(True):
+        note(jax.make_jaxpr(lambda w: normal_sets._direction(w, w, w, w, whole=True))(words).jaxpr)
+    assert {*INFIX, *OTHERS} - seen <= {"le", "shift_right_arithmetic"}, {*INFIX, *OTHERS} - seen
