@@ -21,7 +21,7 @@ from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.results import machine, measuring
+from normalbench.bench.keep import machine, measuring
 from normalbench.bench.suite import code_command, examine, report, run
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.growth import work as growth

@@ -142,7 +142,7 @@ def doctor(
     if mesa_source is not None or yes:
         raise UsageError("--mesa-source and --yes go with --build-mesa DIR")
     if file is None and plot is None and not storage and not domain:
-        from ..results.machine import examine
+        from ..keep.machine import examine
 
         write(examine(), format_of(format, output), output)
         return 0
@@ -250,7 +250,7 @@ def compare(
 
     For people at most 20 lines; JSON and CSV have every figure that differs.
     """
-    from ..results.compare_command import compare_command
+    from ..keep.compare_command import compare_command
 
     return compare_command(before, after, fail_on, format_of(format, output), output)
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import say
-from ..results.plain import plain
-from ..results.runs import amended, read_run
-from ..results.table_files import write_tables
+from ..keep.plain import plain
+from ..keep.runs import amended, read_run
+from ..keep.table_files import write_tables
 from ..tables.device_facts.table import TABLE as FACTS
 from ..tables.devices.agreement import many
 from ..tables.devices.device_file import DeviceFile, Read, read_device_file

@@ -14,7 +14,7 @@ from ...reports.tables import to_json
 from ..ground.options.option import fields_of
 from ..ground.output.errors import UsageError
 from ..ground.output.writing import whole_file
-from ..results.comparison import difference, same
+from ..keep.comparison import difference, same
 from ..tables.registry import table_of_run
 from ..tables.table import Role, Row, Table
 from .listings import differences as listing_differences
@@ -55,7 +55,7 @@ def read_baseline(path: Path) -> dict[str, Entry]:
             raise ValueError("it holds something else")
     except (OSError, ValueError) as error:
         raise UsageError(f"{path} is not a baseline: {error}") from error
-    from ..results.schema import check_entry
+    from ..keep.schema import check_entry
 
     for number, one in enumerate(entries, 1):
         check_entry(one, f"{path}, entry {number}")

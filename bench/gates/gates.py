@@ -11,7 +11,7 @@ from typing import Any
 from ...encodings.codecs.files import file_toml
 from ..ground.options.option import fields_of
 from ..ground.output.errors import UsageError
-from ..results.runs import read_run
+from ..keep.runs import read_run
 from ..shaders.languages.words import files_in
 from ..tables.table import Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline

@@ -15,7 +15,7 @@ from ...encodings.storages.storage import Storage
 from ..ground.options.option import checked_options, fields_of
 from ..ground.options.words import Words
 from ..ground.output.errors import UsageError
-from ..results.measuring import Nothing, asked, measured
+from ..keep.measuring import Nothing, asked, measured
 from ..subjects.normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN
 from ..subjects.normals.normal_sets import NORMAL_SETS, from_arrays
 from ..tables.registry import TABLES

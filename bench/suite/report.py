@@ -35,12 +35,12 @@ from ..ground.output import cache
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file
+from ..keep import side_by_side
+from ..keep.runs import Done, Row, read_run
 from ..measures.live import checks
 from ..measures.live.kept import read_live
 from ..measures.live.programs import helpers, storage_functions
 from ..measures.live.scenes import read_scenes, unpacking
-from ..results import side_by_side
-from ..results.runs import Done, Row, read_run
 from ..shaders.languages.words import CHAIN
 from ..tables.cost.codec_costs import Costs, LeftOutError, Where
 from ..tables.cost.measure import OPERATIONS, listing

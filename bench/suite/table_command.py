@@ -16,9 +16,9 @@ from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_writable, say
-from ..results.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
-from ..results.plain import plain
-from ..results.runs import Done, facts_of
+from ..keep.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
+from ..keep.plain import plain
+from ..keep.runs import Done, facts_of
 from ..tables.table import Measured, Row, Table
 from ..workers.places import place
 from .showing import say_lines, say_skipped, show

@@ -15,7 +15,7 @@ from ..ground.machine.devices import found_device
 from ..ground.machine.vulkan import adapters
 from ..ground.native import library
 from ..ground.output.sources import sources
-from ..results.machine import compilers, processor
+from ..keep.machine import compilers, processor
 from ..tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 
 # What figures depend on: workers have the versions of the process that asks.

@@ -13,8 +13,8 @@ from typing import Any
 
 from ..ground.options.words import given_in
 from ..ground.output.errors import UsageError, noting_what_is_left_out
-from ..results.measuring import Asked, companions, file_digest, words_of
-from ..results.plain import key_text
+from ..keep.measuring import Asked, companions, file_digest, words_of
+from ..keep.plain import key_text
 from ..shaders.languages.words import files_in, with_files
 from ..tables.table import Row, Step
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from ..ground.output.errors import leave_out, tell
 from ..ground.output.writing import whole_file
-from ..results.measuring import HERE, Asked
+from ..keep.measuring import HERE, Asked
 from ..tables.table import Role, Row, Step, Table, Tick
 from . import tasks
 from .chunks import MOST_LOST, Chunk, Group, Line, Waiting

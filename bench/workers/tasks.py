@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from ..ground.output.errors import MissingError, UsageError, told
-from ..results.measuring import Asked, asked, with_parts
+from ..keep.measuring import Asked, asked, with_parts
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Row, Step
 from .about import About, about

@@ -28,7 +28,7 @@ import numpy as np  # noqa: E402 # the folders above hold what follows
 from written import ply, png_bytes, write_exr, write_image  # noqa: E402
 
 from normalbench.bench.gates.baseline import read_baseline  # noqa: E402
-from normalbench.bench.results.runs import read_run  # noqa: E402
+from normalbench.bench.keep.runs import read_run  # noqa: E402
 from normalbench.bench.subjects.normals.captures import Reading, capture  # noqa: E402
 from normalbench.gbuffer.gl.shader import Source  # noqa: E402
 from normalbench.gbuffer.layouts.layout import read_layout  # noqa: E402

@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from normalbench.bench.results.runs import read_run
+from normalbench.bench.keep.runs import read_run
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_report import a_run, quality_row, reported
 
-from normalbench.bench.results.runs import read_run
+from normalbench.bench.keep.runs import read_run
 from normalbench.bench.suite.report import gathered
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import front_specs

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 from test_report import Read, a_run, quality_row
 
-from normalbench.bench.results.runs import read_run
+from normalbench.bench.keep.runs import read_run
 from normalbench.bench.suite import report as report_command
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.page import embedded

@@ -6,8 +6,8 @@ import pytest
 from browsing import AXE
 from test_report import FORBIDDEN, HOSTILE, Read, a_run, quality_row
 
-from normalbench.bench.results import side_by_side
-from normalbench.bench.results.runs import read_run
+from normalbench.bench.keep import side_by_side
+from normalbench.bench.keep.runs import read_run
 
 
 def two_backends(encoding: str, jax: float, glsl: float) -> list[dict]:

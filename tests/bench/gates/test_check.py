@@ -13,7 +13,7 @@ from normalbench.bench.gates.gates import checked, read_gates
 from normalbench.bench.gates.limits import Limit
 from normalbench.bench.gates.measured import named_rows
 from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.results.runs import opened
+from normalbench.bench.keep.runs import opened
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
 

@@ -13,8 +13,8 @@ from types import SimpleNamespace
 import pytest
 
 from normalbench.bench.ground.machine.children import environment
-from normalbench.bench.results.measuring import HERE, Asked
-from normalbench.bench.results.runs import read_run
+from normalbench.bench.keep.measuring import HERE, Asked
+from normalbench.bench.keep.runs import read_run
 from normalbench.bench.suite import report, second, second_child
 from normalbench.bench.suite import run as run_of
 from normalbench.bench.tables.registry import TABLES

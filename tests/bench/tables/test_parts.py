@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
+from normalbench.bench.keep.measuring import Nothing, asked, measured_steps
+from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
-from normalbench.bench.results.measuring import Nothing, asked, measured_steps
-from normalbench.bench.results.runs import facts_of, opened, read_run
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality

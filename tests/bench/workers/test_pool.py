@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from normalbench.bench.ground.options.words import Words, given_in
-from normalbench.bench.results.measuring import Asked
+from normalbench.bench.keep.measuring import Asked
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
 from normalbench.bench.workers.admission import Admission

@@ -12,7 +12,7 @@ from vendors import INTEL, every_or_some
 from normalbench.bench.ground.options import gpu_families as families
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.results.machine import require_intel
+from normalbench.bench.keep.machine import require_intel
 from normalbench.bench.shaders.isa import intel_disassembly, null_device
 from normalbench.bench.shaders.isa.isa import Compiled, Kernel
 from normalbench.bench.suite import report

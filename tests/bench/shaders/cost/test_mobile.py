@@ -9,7 +9,7 @@ from null_devices import NO_DEVICE, tried
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES, MOBILE, TURNIP
 from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.results.machine import require_mobile
+from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.shaders.isa import driver_files, isa
 from normalbench.bench.shaders.isa.mobile import build, driver, ir3_disassembly, qpu_disassembly
 from normalbench.bench.tables.cost import measure as cost

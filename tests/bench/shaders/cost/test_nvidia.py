@@ -11,7 +11,7 @@ from vendors import NVIDIA, every_or_some
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.results.machine import require_nvidia
+from normalbench.bench.keep.machine import require_nvidia
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.shaders.isa.compiler import DriverError
 from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, tools

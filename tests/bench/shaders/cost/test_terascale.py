@@ -10,8 +10,8 @@ from vendors import TERASCALE, every_or_some
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.keep.machine import require_terascale
 from normalbench.bench.measures.metrics import published
-from normalbench.bench.results.machine import require_terascale
 from normalbench.bench.shaders.isa import isa, null_device
 from normalbench.bench.shaders.isa.terascale import disassembly, driver
 

@@ -20,8 +20,8 @@ from normalbench.bench.cli import app as cli
 from normalbench.bench.ground.output import journal
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
-from normalbench.bench.results.measuring import files_of
-from normalbench.bench.results.runs import ROWS, Run, opened, read_run, same_work, unfinished
+from normalbench.bench.keep.measuring import files_of
+from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
 from normalbench.bench.subjects.normals import normal_sets
@@ -267,7 +267,7 @@ def lines_of(folder: Path) -> list[str]:
     return path.read_text().split("\n")[:-1] if path.exists() else []
 
 
-@pytest.mark.nightly("bench/results/test_runs.py::test_a_line_that_was_cut_off_is_measured_again_and_no_other")
+@pytest.mark.nightly("bench/keep/test_runs.py::test_a_line_that_was_cut_off_is_measured_again_and_no_other")
 @pytest.mark.usefixtures("gl")
 def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
     """SIGKILL at random moments, four of them: what was finished stays byte for byte, and the table is the same."""

@@ -11,9 +11,9 @@ import pytest
 from test_readme import a_copy_of_the_rooms
 
 from normalbench.bench.ground.machine.settings import settings
-from normalbench.bench.results import compare_command
-from normalbench.bench.results.comparison import compared, in_short, mann_whitney, total
-from normalbench.bench.results.runs import Done, read_run
+from normalbench.bench.keep import compare_command
+from normalbench.bench.keep.comparison import compared, in_short, mann_whitney, total
+from normalbench.bench.keep.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
 

@@ -1,1 +1,0 @@
-"""Results folders, and what changed between two of them."""
