@@ -22,12 +22,12 @@ from written import as_document, packed, planes_of, png_bytes, some_normals, wri
 
 from normalbench.bench.cli import app as cli
 from normalbench.bench.keep import machine, measuring
+from normalbench.bench.run.workers import places
 from normalbench.bench.suite import code_command, examine, report, run
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.growth import work as growth
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.throughput import measure as throughput
-from normalbench.bench.workers import places
 from normalbench.gbuffer.scenes.mesh import sphere
 
 MOST_LINES = 150

@@ -26,9 +26,9 @@ from ..ground.options.code import CodeOptions
 from ..ground.output.errors import MissingError, UsageError, tell, told
 from ..ground.output.progress import ending
 from ..ground.output.writing import abandon_output, check_is_folder, write
+from ..run.workers.words import check_place
 from ..suite.run_options import RunOptions
 from ..tables.registry import TABLES
-from ..workers.words import check_place
 from .commands import OnOption, add_tables, command_with
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
@@ -178,7 +178,7 @@ def worker(
     scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
 ) -> int:
     """A worker that measures for the commands that name this scheduler in --on, until it is interrupted."""
-    from ..workers.worker import worker_command
+    from ..run.workers.worker import worker_command
 
     return worker_command(scheduler)
 

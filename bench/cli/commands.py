@@ -12,8 +12,8 @@ import typer
 from ..ground.options.counts import whole_number
 from ..ground.options.option import Field, Reading, fields_of
 from ..ground.output.writing import check_is_folder, check_page
+from ..run.workers.words import HELP, check_place
 from ..tables.table import Table
-from ..workers.words import HELP, check_place
 from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
 from .names import NAMES, completion_of
 

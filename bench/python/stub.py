@@ -8,9 +8,9 @@ from __future__ import annotations
 import textwrap
 
 from ..ground.options.option import Field, fields_of
+from ..run.workers.words import HELP
 from ..tables.registry import TABLES
 from ..tables.table import Table
-from ..workers.words import HELP
 
 HEAD = '''"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/python/stub.py."""
 

@@ -16,12 +16,12 @@ from ..ground.options.option import checked_options, fields_of
 from ..ground.options.words import Words
 from ..ground.output.errors import UsageError
 from ..keep.measuring import Nothing, asked, measured
+from ..run.workers.places import place
+from ..run.workers.words import HELP, check_place
 from ..subjects.normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN
 from ..subjects.normals.normal_sets import NORMAL_SETS, from_arrays
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
-from ..workers.places import place
-from ..workers.words import HELP, check_place
 
 
 class Rows(pd.DataFrame):

@@ -20,10 +20,10 @@ from ..ground.output.writing import say
 from ..keep.measuring import Asked, Place, asked, measured, with_parts
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
+from ..run.second import Second, is_worth_it, second_process
+from ..run.workers.places import keep_times, place
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
-from ..workers.places import keep_times, place
-from .second import Second, is_worth_it, second_process
 from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
 

@@ -19,8 +19,8 @@ from ..ground.output.writing import check_writable, say
 from ..keep.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..keep.plain import plain
 from ..keep.runs import Done, facts_of
+from ..run.workers.places import place
 from ..tables.table import Measured, Row, Table
-from ..workers.places import place
 from .showing import say_lines, say_skipped, show
 
 

@@ -11,7 +11,7 @@ from unittest.mock import patch
 
 from .table import Measured, Row, Table
 
-# Step times and costs by `python -m normalbench.bench.workers.simulate --record`.
+# Step times and costs by `python -m normalbench.bench.run.workers.simulate --record`.
 RECORD = Path(__file__).parents[1] / "bench" / "workers" / "record.json"
 
 
@@ -48,7 +48,7 @@ def answers() -> list[Row]:
 
 def simulated() -> list[Row]:
     """Runs on many workers, by the step times of a record."""
-    from normalbench.bench.workers.simulate import table
+    from normalbench.bench.run.workers.simulate import table
 
     return table(json.loads(RECORD.read_text()))
 

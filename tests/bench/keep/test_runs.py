@@ -22,6 +22,7 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
 from normalbench.bench.keep.measuring import files_of
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
+from normalbench.bench.run.workers.orders import Packing
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
 from normalbench.bench.subjects.normals import normal_sets
@@ -30,7 +31,6 @@ from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
-from normalbench.bench.workers.orders import Packing
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES

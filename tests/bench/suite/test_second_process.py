@@ -15,7 +15,8 @@ import pytest
 from normalbench.bench.ground.machine.children import environment
 from normalbench.bench.keep.measuring import HERE, Asked
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.suite import report, second, second_child
+from normalbench.bench.run import second
+from normalbench.bench.suite import report, second_child
 from normalbench.bench.suite import run as run_of
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured

@@ -10,13 +10,13 @@ import pytest
 from normalbench.bench.keep.measuring import Nothing, asked, measured_steps
 from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
+from normalbench.bench.run.workers import tasks
+from normalbench.bench.run.workers.orders import parcels_of
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.workers import tasks
-from normalbench.bench.workers.orders import parcels_of
 
 TABLE = TABLES["quality"]
 # Three parts, the last of which is short.

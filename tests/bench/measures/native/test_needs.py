@@ -1,9 +1,9 @@
 """Which steps need the same C compiler wherever they are measured."""
 
 from normalbench.bench.ground.native.library import LARGE
+from normalbench.bench.run.workers.about import CAN
 from normalbench.bench.tables.quality.work import WORK
 from normalbench.bench.tables.table import C_COMPILER, GL, VULKAN, Step
-from normalbench.bench.workers.about import CAN
 
 
 def needs(**key) -> frozenset[str]:

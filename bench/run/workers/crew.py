@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from ..ground.output.errors import MissingError, UsageError, leave_out
+from ...ground.output.errors import MissingError, UsageError, leave_out
 from .about import About
 from .admission import Admission
 from .link import LOST, Flight, Link

@@ -1,6 +1,6 @@
 """A worker: joins a scheduler of dask, and measures what it is sent, one task at a time in the main thread.
 
-    python -m normalbench.bench.workers.worker tcp://HOST:PORT
+    python -m normalbench.bench.run.workers.worker tcp://HOST:PORT
 
 Where the scheduler goes away, the worker waits for it to come back. What it compiled stays.
 """
@@ -26,8 +26,8 @@ from types import FrameType
 from typing import Any, NoReturn
 from urllib.parse import urlsplit
 
-from ..ground.machine.memory import keep_what_is_freed, look_for_garbage_seldom
-from ..ground.output.errors import UsageError, tell
+from ...ground.machine.memory import keep_what_is_freed, look_for_garbage_seldom
+from ...ground.output.errors import UsageError, tell
 from .words import checked_address, require_dask
 
 # What a scheduler knows normalbench's workers by.

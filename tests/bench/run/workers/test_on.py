@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench.workers import words
-from normalbench.bench.workers.local import LocalProcesses, Process
+from normalbench.bench.run.workers import words
+from normalbench.bench.run.workers.local import LocalProcesses, Process
 
 SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--normals", "axes")
 # EGL finds no driver under it.
@@ -81,11 +81,11 @@ def test_the_start_imports_neither_dask_nor_jax():
 @pytest.mark.usefixtures("gl")
 def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
     """One worker of two has no GL: rows by both back ends are those of one process, and it is said who is left out."""
-    monkeypatch.setattr("normalbench.bench.workers.pool.WAIT_S", 60.0)
+    monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 60.0)
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     processes = LocalProcesses(1)
     own = os.environ | NO_GL
-    monkeypatch.setattr("normalbench.bench.workers.local.environment", lambda: own)
+    monkeypatch.setattr("normalbench.bench.run.workers.local.environment", lambda: own)
     blind = Process("worker", processes.address)
     try:
         status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", processes.address)
@@ -102,10 +102,10 @@ def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
 @pytest.mark.slow
 def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
     """Only workers without GL: rows by GLSL are there all the same, and a line says who measured them."""
-    monkeypatch.setattr("normalbench.bench.workers.pool.WAIT_S", 0.5)
+    monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 0.5)
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     own = os.environ | NO_GL
-    monkeypatch.setattr("normalbench.bench.workers.local.environment", lambda: own)
+    monkeypatch.setattr("normalbench.bench.run.workers.local.environment", lambda: own)
     status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", "local:1")
     assert status == 0 and "quality: 2 steps are measured by this process: no worker has this GL device" in err
     assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
@@ -124,7 +124,7 @@ def is_there(pid: int) -> bool:
         return False
 
 
-KILLED = "bench/workers/test_on.py::test_an_interruption_leaves_rows_and_no_process"
+KILLED = "bench/run/workers/test_on.py::test_an_interruption_leaves_rows_and_no_process"
 INTERRUPTED = [pytest.param(number, marks=pytest.mark.nightly(KILLED)) for number in (signal.SIGINT, signal.SIGTERM)]
 # Rows of 65536 normals by JAX and GLSL, a few to each task of a worker.
 MANY = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "65536")
@@ -193,7 +193,7 @@ def a_process_of(pid: int, module: str) -> int:
 @pytest.mark.slow
 def test_a_killed_worker_and_a_killed_scheduler_cost_no_row(tmp_path, rows_alone):
     process = begun(tmp_path, "--on", "local:2")
-    for steps, victim in ((3, "bench.workers.worker"), (8, "bench.workers.scheduler")):
+    for steps, victim in ((3, "bench.run.workers.worker"), (8, "bench.run.workers.scheduler")):
         wait_for(tmp_path, steps)
         assert process.poll() is None, "it ended before anything was killed"
         os.kill(a_process_of(process.pid, victim), signal.SIGKILL)

@@ -11,12 +11,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ..ground.machine.devices import found_device
-from ..ground.machine.vulkan import adapters
-from ..ground.native import library
-from ..ground.output.sources import sources
-from ..keep.machine import compilers, processor
-from ..tables.table import C_COMPILER, COMPILERS, GL, VULKAN
+from ...ground.machine.devices import found_device
+from ...ground.machine.vulkan import adapters
+from ...ground.native import library
+from ...ground.output.sources import sources
+from ...keep.machine import compilers, processor
+from ...tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 
 # What figures depend on: workers have the versions of the process that asks.
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex", "flip-evaluator")

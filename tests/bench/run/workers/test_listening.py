@@ -14,8 +14,8 @@ import pytest
 from dask import config
 from manual import PAGES, ROOT
 
-from normalbench.bench.workers.scheduler import HOST
-from normalbench.bench.workers.worker import interface_towards
+from normalbench.bench.run.workers.scheduler import HOST
+from normalbench.bench.run.workers.worker import interface_towards
 
 NORMALBENCH = [sys.executable, "-m", "normalbench.bench"]
 # Long enough for ten looks at its sockets while the workers are there.
@@ -91,7 +91,7 @@ def test_local_workers_listen_on_this_machine_alone(started, tmp_path):
 
 @pytest.mark.slow
 def test_a_worker_listens_where_it_reaches_its_scheduler(started):
-    scheduler = started([sys.executable, "-m", "normalbench.bench.workers.scheduler"], stdin=-1, stdout=-1)
+    scheduler = started([sys.executable, "-m", "normalbench.bench.run.workers.scheduler"], stdin=-1, stdout=-1)
     worker = started([*NORMALBENCH, "worker", scheduler.stdout.readline().strip()])
     looked_at(worker, fewest=2)
 

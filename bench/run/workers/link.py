@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..ground.output.errors import UsageError
+from ...ground.output.errors import UsageError
 from .worker import RESOURCE, check_certificates, quiet
 
 CONNECT_S, ANSWER_S, LOOK_S = 5.0, 120.0, 1.0

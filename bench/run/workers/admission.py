@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ..ground.output.errors import leave_out
+from ...ground.output.errors import leave_out
 from .about import About
 
 # Letters of what is said of a device.

@@ -12,10 +12,10 @@ from written import as_document
 
 import normalbench as nb
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.run.workers import orders
+from normalbench.bench.run.workers.local import LocalProcesses
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
-from normalbench.bench.workers import orders
-from normalbench.bench.workers.local import LocalProcesses
 from normalbench.gbuffer.scenes.mesh import sphere
 
 OCTAHEDRAL = """
@@ -156,7 +156,7 @@ def test_python_takes_workers_as_well(scheduler):
 @pytest.mark.slow
 def test_a_process_may_start_workers_twice():
     """In a process of its own: the first to import dask.distributed has found its settings gone."""
-    code = "from normalbench.bench.workers.places import place\n"
+    code = "from normalbench.bench.run.workers.places import place\n"
     code += "for _ in range(2):\n    with place('local:1'):\n        print('started')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert done.stdout.split() == ["started", "started"], done.stderr

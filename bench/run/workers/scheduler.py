@@ -1,6 +1,6 @@
 """A scheduler of dask for this machine alone.
 
-python -m normalbench.bench.workers.scheduler [PORT]
+python -m normalbench.bench.run.workers.scheduler [PORT]
 """
 
 from __future__ import annotations

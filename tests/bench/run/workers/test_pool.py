@@ -9,13 +9,13 @@ import pytest
 
 from normalbench.bench.ground.options.words import Words, given_in
 from normalbench.bench.keep.measuring import Asked
+from normalbench.bench.run.workers.admission import Admission
+from normalbench.bench.run.workers.chunks import MOST_LOST, MOST_TOGETHER, chunk_size
+from normalbench.bench.run.workers.link import LOST
+from normalbench.bench.run.workers.pool import Pool
+from normalbench.bench.run.workers.tasks import Answer, StepAnswer
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
-from normalbench.bench.workers.admission import Admission
-from normalbench.bench.workers.chunks import MOST_LOST, MOST_TOGETHER, chunk_size
-from normalbench.bench.workers.link import LOST
-from normalbench.bench.workers.pool import Pool
-from normalbench.bench.workers.tasks import Answer, StepAnswer
 
 CAN = {GL: "llvmpipe", VULKAN: "lavapipe", "compilers": "all"}
 OWN = {"versions": {"jax": "1"}, "sources": "abc", "processor": "fast", "host": "h", "name": "me", "can": CAN}
@@ -128,7 +128,7 @@ def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(capsys):
     def at(_, names):
         return "gone" if name["bad"] in names else answer(names)
 
-    from normalbench.bench.workers.orders import step_name
+    from normalbench.bench.run.workers.orders import step_name
 
     name["bad"] = step_name("quality", bad)
     crew = FakeCrew({"a": {}, "b": {}}, at)

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..ground.output.writing import whole_file
-from ..keep.measuring import HERE, Here
+from ...ground.output.writing import whole_file
+from ...keep.measuring import HERE, Here
 from .words import Local, place_named, require_dask
 
 if TYPE_CHECKING:

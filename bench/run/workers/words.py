@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from importlib.util import find_spec
 
-from ..ground.options.counts import whole_number
-from ..ground.output.errors import MissingError, UsageError
+from ...ground.options.counts import whole_number
+from ...ground.output.errors import MissingError, UsageError
 
 MOST_LOCAL = 256
 HELP = "Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT."

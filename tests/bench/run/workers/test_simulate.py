@@ -5,7 +5,7 @@ import json
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.workers.simulate import ON_A_MACHINE, Costs, Load, recorded, simulated
+from normalbench.bench.run.workers.simulate import ON_A_MACHINE, Costs, Load, recorded, simulated
 
 FREE = Costs(start=0, task=0, row=0, byte=0)
 

@@ -1,7 +1,7 @@
 """How long a run takes on many workers: a simulation with recorded times of steps.
 
-    python -m normalbench.bench.workers.simulate RECORD.json
-    python -m normalbench.bench.workers.simulate --record RUN RECORD.json
+    python -m normalbench.bench.run.workers.simulate RECORD.json
+    python -m normalbench.bench.run.workers.simulate --record RUN RECORD.json
 
 RUN is a results folder that workers measured. `--record` takes its step times, and measures on two worker processes of
 this machine what a task, a row and a byte cost.
@@ -20,10 +20,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from ...reports.tables import written
-from ..ground.output.errors import UsageError
-from ..ground.output.journal import journal
-from ..measures.metrics.growth import exponent
+from ....reports.tables import written
+from ...ground.output.errors import UsageError
+from ...ground.output.journal import journal
+from ...measures.metrics.growth import exponent
 from .chunks import chunk_size
 from .places import TIMES
 

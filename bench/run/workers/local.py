@@ -6,8 +6,8 @@ import subprocess
 import tempfile
 from typing import IO
 
-from ..ground.machine.children import environment, python
-from ..ground.output.errors import UsageError, tell
+from ...ground.machine.children import environment, python
+from ...ground.output.errors import UsageError, tell
 from .worker import ENCRYPTED
 
 START_S, END_S = 60.0, 5.0

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from attack.kills import figures, images, names
 
-from normalbench.bench.workers.places import TIMES
+from normalbench.bench.run.workers.places import TIMES
 
 # A part of the default run that takes a minute or two on two cores: JAX, GL and pictures.
 PART = "quality,mix,frames,vectors"
@@ -20,7 +20,7 @@ PAUSES, FEWEST = (6, 12), 8
 # The command, but that no step is given up: these workers are lost by chance, and the same step may be hit often.
 COMMAND = """
 import sys
-from normalbench.bench.workers import pool
+from normalbench.bench.run.workers import pool
 pool.MOST_LOST = 1000
 from normalbench.bench.cli.start import program
 program()
@@ -37,7 +37,7 @@ def running(pid: int, module: str) -> list[int]:
     # -ww: else `ps` cuts its lines where the environment says how wide a terminal is, and the module's name is lost.
     command = ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(pid)]
     found = subprocess.run(command, capture_output=True, text=True).stdout
-    return sorted(int(line.split()[0]) for line in found.splitlines() if f"bench.workers.{module}" in line)
+    return sorted(int(line.split()[0]) for line in found.splitlines() if f"bench.run.workers.{module}" in line)
 
 
 def steps_done(folder: Path) -> int:
@@ -59,7 +59,7 @@ def kill_one(process: subprocess.Popen[str], module: str, rng: random.Random) ->
     return bool(there)
 
 
-@pytest.mark.nightly("bench/workers/test_on.py::test_a_killed_worker_and_a_killed_scheduler_cost_no_row")
+@pytest.mark.nightly("bench/run/workers/test_on.py::test_a_killed_worker_and_a_killed_scheduler_cost_no_row")
 @pytest.mark.usefixtures("gl")
 def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path):
     """At random moments, from the first rows on: the same figures to the digit, the same pictures, the same files."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..tables.table import Step
+from ...tables.table import Step
 from .orders import Parcel
 
 # Of few steps with many workers one at a time; of many, as many as the quality table measures at once.

@@ -9,10 +9,10 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 
-from ..ground.output.errors import leave_out, tell
-from ..ground.output.writing import whole_file
-from ..keep.measuring import HERE, Asked
-from ..tables.table import Role, Row, Step, Table, Tick
+from ...ground.output.errors import leave_out, tell
+from ...ground.output.writing import whole_file
+from ...keep.measuring import HERE, Asked
+from ...tables.table import Role, Row, Step, Table, Tick
 from . import tasks
 from .chunks import MOST_LOST, Chunk, Group, Line, Waiting
 from .crew import Crew

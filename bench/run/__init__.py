@@ -1,0 +1,1 @@
+"""Where steps are measured: in this process, a second one, or workers."""
