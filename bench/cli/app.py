@@ -281,7 +281,7 @@ def report(
 
     The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
     """
-    from ..suite.report import report_command
+    from ..show.report import report_command
 
     report_command(runs, markdown, pictures is PicturePlace.beside, output)
 

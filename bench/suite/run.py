@@ -22,9 +22,9 @@ from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import keep_times, place
+from ..show.showing import say_lines, say_skipped, show_summary
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
-from .showing import say_lines, say_skipped, show_summary
 from .table_command import in_folder
 
 RESULTS = Path("results")
@@ -258,7 +258,7 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
 
 def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
     """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
-    from .report import write_report
+    from ..show.report import write_report
 
     write_tables(run.folder, read_run(run.folder).tables)
     for ask in shown.asks:

@@ -30,9 +30,9 @@ from ..ground.output.errors import MissingError, UsageError, told
 from ..keep.measuring import Asked, measured
 from ..keep.plain import key_text, plain
 from ..keep.runs import read_run
+from ..show.report import draw_ahead
 from ..tables.registry import TABLES
 from ..tables.table import Row, Step
-from .report import draw_ahead
 from .run import asked_of
 from .run_options import RunOptions
 

@@ -20,8 +20,8 @@ from ..keep.measuring import Asked, Beside, Nothing, Place, asked, beside, measu
 from ..keep.plain import plain
 from ..keep.runs import Done, facts_of
 from ..run.workers.places import place
+from ..show.showing import say_lines, say_skipped, show
 from ..tables.table import Measured, Row, Table
-from .showing import say_lines, say_skipped, show
 
 
 def table_command(
@@ -130,7 +130,7 @@ def _bring(table: Table, outputs: Any, folder: Path) -> None:
 
 
 def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> None:
-    from .report import write_report
+    from ..show.report import write_report
 
     rows = plain(list(done.rows))
     facts = facts_of(sys.argv[1:]) | {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": True}

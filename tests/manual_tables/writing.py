@@ -35,7 +35,7 @@ def answer(_: Table, kept: Measured) -> str:
 
 def published(table: Table, kept: Measured) -> str:
     """As the command writes it."""
-    from normalbench.bench.suite import showing
+    from normalbench.bench.show import showing
     from normalbench.bench.tables.registry import TABLES
     from normalbench.bench.tables.table import Measured as Done
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from test_report import a_run, quality_row, reported
 
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.suite.report import gathered
+from normalbench.bench.show.report import gathered
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import front_specs
 from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels

@@ -11,7 +11,7 @@ from PIL import Image
 from test_report import Read, a_run, quality_row
 
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.suite import report as report_command
+from normalbench.bench.show import report as report_command
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.page import embedded
 from normalbench.reports.page.pixels import LEAST_LOG2, STEPS_PER_OCTAVE, angle_bytes

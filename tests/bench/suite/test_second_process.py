@@ -16,8 +16,9 @@ from normalbench.bench.ground.machine.children import environment
 from normalbench.bench.keep.measuring import HERE, Asked
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.run import second
-from normalbench.bench.suite import report, second_child
+from normalbench.bench.show import report
 from normalbench.bench.suite import run as run_of
+from normalbench.bench.suite import second_child
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured
 

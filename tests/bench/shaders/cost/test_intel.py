@@ -15,7 +15,7 @@ from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.keep.machine import require_intel
 from normalbench.bench.shaders.isa import intel_disassembly, null_device
 from normalbench.bench.shaders.isa.isa import Compiled, Kernel
-from normalbench.bench.suite import report
+from normalbench.bench.show import report
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.bench.tables.registry import TABLES

@@ -17,7 +17,7 @@ from normalbench.bench.shaders.isa.compiler import DriverError
 from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, tools
 from normalbench.bench.shaders.isa.nvidia.child import statistics
 from normalbench.bench.shaders.isa.nvidia.cubin import Kernel
-from normalbench.bench.suite import report
+from normalbench.bench.show import report
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import Vec2, Vec3

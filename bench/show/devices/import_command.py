@@ -7,18 +7,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..ground.output.errors import UsageError, tell
-from ..ground.output.writing import say
-from ..keep.plain import plain
-from ..keep.runs import amended, read_run
-from ..keep.table_files import write_tables
-from ..tables.device_facts.table import TABLE as FACTS
-from ..tables.devices.agreement import many
-from ..tables.devices.device_file import DeviceFile, Read, read_device_file
-from ..tables.devices.names import told_apart
-from ..tables.devices.reading import Device, checked_number, codec_rows, devices, fact_rows
-from ..tables.devices.table import TABLE as DEVICES
-from ..tables.table import Row
+from ...ground.output.errors import UsageError, tell
+from ...ground.output.writing import say
+from ...keep.plain import plain
+from ...keep.runs import amended, read_run
+from ...keep.table_files import write_tables
+from ...tables.device_facts.table import TABLE as FACTS
+from ...tables.devices.agreement import many
+from ...tables.devices.device_file import DeviceFile, Read, read_device_file
+from ...tables.devices.names import told_apart
+from ...tables.devices.reading import Device, checked_number, codec_rows, devices, fact_rows
+from ...tables.devices.table import TABLE as DEVICES
+from ...tables.table import Row
 
 OURS = (DEVICES.name, FACTS.name)
 # A GPU as a browser names it, and that browser.

@@ -13,10 +13,10 @@ import devices as made
 import pytest
 
 from normalbench.bench.cli import app as cli
-from normalbench.bench.devices import import_command
 from normalbench.bench.ground.output.journal import Journal
 from normalbench.bench.keep import runs
 from normalbench.bench.keep.runs import read_run
+from normalbench.bench.show.devices import import_command
 from normalbench.bench.tables.devices.agreement import sentences
 from normalbench.bench.tables.registry import TABLES
 

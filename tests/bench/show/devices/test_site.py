@@ -10,8 +10,8 @@ from pathlib import Path
 import devices as made
 import pytest
 
-from normalbench.bench.devices.answers import Known, answers
-from normalbench.bench.devices.site_files import MARKER
+from normalbench.bench.show.devices.answers import Known, answers
+from normalbench.bench.show.devices.site_files import MARKER
 from normalbench.bench.tables.devices.device_file import read_device_file
 from normalbench.bench.tables.devices.reading import codec_rows, devices
 
@@ -38,7 +38,7 @@ class Read(HTMLParser):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """The site of the ten altered devices."""
-    from normalbench.bench.devices.site_command import site_command
+    from normalbench.bench.show.devices.site_command import site_command
 
     folder = tmp_path_factory.mktemp("site")
     made.write_ten(folder / "files" / "deeper")

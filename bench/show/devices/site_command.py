@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..ground.output.errors import UsageError, tell
-from ..ground.output.writing import say
-from ..tables.devices.agreement import many
-from ..tables.devices.device_file import Read, read_device_file
-from ..tables.devices.reading import SAVED, checked_number, devices
+from ...ground.output.errors import UsageError, tell
+from ...ground.output.writing import say
+from ...tables.devices.agreement import many
+from ...tables.devices.device_file import Read, read_device_file
+from ...tables.devices.reading import SAVED, checked_number, devices
 from .site_files import write_site
 from .site_pages import INDEX, pages
 

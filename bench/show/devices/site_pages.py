@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ...reports.page.page import Table, table
-from ...reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
-from ..tables.device_facts.table import TABLE as FACTS
-from ..tables.devices.agreement import (
+from ....reports.page.page import Table, table
+from ....reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
+from ...tables.device_facts.table import TABLE as FACTS
+from ...tables.devices.agreement import (
     codec_name,
     codec_of,
     device_of,
@@ -21,10 +21,10 @@ from ..tables.devices.agreement import (
     sentences,
     time_of,
 )
-from ..tables.devices.reading import Device, codec_rows, fact_rows
-from ..tables.devices.table import TABLE as DEVICES
-from ..tables.table import Row, Sheet
-from ..tables.table import Table as BenchTable
+from ...tables.devices.reading import Device, codec_rows, fact_rows
+from ...tables.devices.table import TABLE as DEVICES
+from ...tables.table import Row, Sheet
+from ...tables.table import Table as BenchTable
 from .answers import Known, answers
 
 INDEX, FOLDER = "index.html", "devices"
