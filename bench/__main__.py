@@ -1,5 +1,5 @@
 """`python -m normalbench.bench` is `normalbench`."""
 
-from .cli.start import program
+from .door.cli.start import program
 
 program()

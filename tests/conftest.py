@@ -20,7 +20,7 @@ import kept_rows
 import kept_runs
 import pytest
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.machine.memory import (
     give_back_what_a_table_needed,
     give_back_what_is_freed,

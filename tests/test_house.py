@@ -96,8 +96,8 @@ def test_the_package_list_is_the_folders():
     files = [p for room in ROOMS for p in (ROOT / room).rglob("*") if p.is_file() and "__pycache__" not in p.parts]
     folders = {".".join(["normalbench", *p.parent.relative_to(ROOT).parts]) for p in files}
     # What `import normalbench` gives lies in a folder of bench.
-    assert project["tool"]["setuptools"]["package-dir"]["normalbench"] == "bench/api"
-    folders = folders - {"normalbench.bench.api"} | {"normalbench"}
+    assert project["tool"]["setuptools"]["package-dir"]["normalbench"] == "bench/door/api"
+    folders = folders - {"normalbench.bench.door.api"} | {"normalbench"}
     assert listed == folders
     patterns = project["tool"]["setuptools"]["package-data"]["*"]
     assert {"*" + p.suffix for p in files if p.suffix != ".py"} == set(patterns)

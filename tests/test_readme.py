@@ -20,11 +20,11 @@ import typer
 from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door import code_command, examine, run
+from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import machine, measuring
 from normalbench.bench.run.workers import places
 from normalbench.bench.show import report
-from normalbench.bench.suite import code_command, examine, run
 from normalbench.bench.tables.columns import explained
 from normalbench.bench.tables.growth import work as growth
 from normalbench.bench.tables.registry import TABLES

@@ -27,7 +27,7 @@ sys.path[:1] = [str(HERE.parent), str(HERE.parent / "inputs")]
 import numpy as np  # noqa: E402 # the folders above hold what follows
 from written import ply, png_bytes, write_exr, write_image  # noqa: E402
 
-from normalbench.bench.gates.baseline import read_baseline  # noqa: E402
+from normalbench.bench.door.gates.baseline import read_baseline  # noqa: E402
 from normalbench.bench.keep.runs import read_run  # noqa: E402
 from normalbench.bench.subjects.normals.captures import Reading, capture  # noqa: E402
 from normalbench.gbuffer.gl.shader import Source  # noqa: E402

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest.mock import patch
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door.cli import app as cli
 
 MEASURED, REFUSED = "measured", "refused"
 # An attack in a folder of its own: from a seed to how it ended. Whatever it raises is what must not happen.

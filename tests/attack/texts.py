@@ -15,8 +15,8 @@ import numpy as np
 from damaged import mutated, revalued
 from written import some_normals
 
-from normalbench.bench.gates.baseline import Baseline, read_baseline
-from normalbench.bench.gates.gates import checked, read_gates
+from normalbench.bench.door.gates.baseline import Baseline, read_baseline
+from normalbench.bench.door.gates.gates import checked, read_gates
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES

@@ -28,7 +28,7 @@ def rows_of(command: str) -> list[Row]:
 
 def printed(command: str) -> str:
     """What a command of normalbench prints."""
-    from normalbench.bench.cli import app
+    from normalbench.bench.door.cli import app
 
     out, err, words = StringIO(), StringIO(), ["normalbench", *command.split()]
     with redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", words):

@@ -16,7 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door import run as run_command
+from normalbench.bench.door.cli import app as cli
+from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.output import journal
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
@@ -26,8 +28,6 @@ from normalbench.bench.run.workers.orders import Packing
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
 from normalbench.bench.subjects.normals import normal_sets
-from normalbench.bench.suite import run as run_command
-from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step

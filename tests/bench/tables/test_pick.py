@@ -36,7 +36,7 @@ vec3 flat_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, 
 @pytest.fixture(scope="module")
 def rows(gl, radv, tmp_path_factory):  # noqa: ARG001 # they skip where this machine lacks them
     """What the command measures of a dozen codes: with --aim image all that qualify have an image."""
-    from normalbench.bench.cli import app
+    from normalbench.bench.door.cli import app
 
     output = tmp_path_factory.mktemp("pick") / "rows.json"
     with pytest.MonkeyPatch.context() as patch:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep.measuring import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.measure import STAGES
@@ -188,7 +188,7 @@ def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
     """As JAX's does in the garbage collector: no traceback, and the next step ends."""
     program = (
         "import gc, os, signal, sys\n"
-        "from normalbench.bench.cli import app as cli\n"
+        "from normalbench.bench.door.cli import app as cli\n"
         "def callback(*_):\n"
         # A step is kept: others are under way.
         "    if not sent and any(file.stat().st_size for file in os.scandir(folder)):\n"

@@ -12,7 +12,7 @@ SAYS = (
     "Windows is not supported yet; install normalbench in WSL2 (`wsl --install` sets that up). "
     "The laboratory of a report.html runs in any browser on any system"
 )
-START = "from normalbench.bench.cli.start import program; program()"
+START = "from normalbench.bench.door.cli.start import program; program()"
 
 
 @pytest.mark.parametrize("words", [["--version"], ["--help"], ["quality", "--encoding", "xy"], ["pick"], []])
@@ -79,5 +79,5 @@ def test_a_home_that_somebody_else_made_is_not_used(tmp_path):
 
 
 def test_the_plugin_is_loaded_on_windows():
-    done = on_windows("from normalbench.bench.pytest_plugin import plugin; print(plugin.MARKER[:11])")
+    done = on_windows("from normalbench.bench.door.pytest_plugin import plugin; print(plugin.MARKER[:11])")
     assert (done.stdout, done.stderr) == ("normalbench\n", "")

@@ -22,7 +22,7 @@ COMMAND = """
 import sys
 from normalbench.bench.run.workers import pool
 pool.MOST_LOST = 1000
-from normalbench.bench.cli.start import program
+from normalbench.bench.door.cli.start import program
 program()
 """
 

@@ -11,6 +11,8 @@ import pytest
 from languages import require_runner
 
 import normalbench as nb
+from normalbench.bench.door import code_command
+from normalbench.bench.door.code_command import SHIPPED
 from normalbench.bench.shaders.code.channels import Channels
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
@@ -19,8 +21,6 @@ from normalbench.bench.shaders.code.tables import dds, header
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.codecs.user_encodings import encodings_named
-from normalbench.bench.suite import code_command
-from normalbench.bench.suite.code_command import SHIPPED
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES

@@ -247,7 +247,7 @@ def test_the_far_plane_is_no_lanes_work(whole_table):
 def test_instructions_wait_for_no_import_of_jax_or_pandas():
     """From the cache the table is there in two seconds, of which JAX would take one more."""
     program = (
-        "import sys; from normalbench.bench.cli.app import main;"
+        "import sys; from normalbench.bench.door.cli.app import main;"
         "asked = '--isa --encoding spheremap --family navi21 --storage rgba8';"
         "sys.argv = ['normalbench', 'cost', *asked.split()]; main();"
         "print({'jax', 'pandas', 'matplotlib'} & set(sys.modules) or 'light')"

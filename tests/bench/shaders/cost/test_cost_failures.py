@@ -14,15 +14,15 @@ from pathlib import Path
 import pytest
 from costing import glsl
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door.cli import app as cli
+from normalbench.bench.door.run import asked_of
+from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.ground.options import gpu_families as families
 from normalbench.bench.ground.options.option import fields_of
 from normalbench.bench.ground.output import cache
 from normalbench.bench.shaders.isa import compiler, driver_files, isa, spirv
 from normalbench.bench.shaders.isa import process as isa_process
-from normalbench.bench.suite.run import asked_of
-from normalbench.bench.suite.run_options import RunOptions
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.gl.device import NoDeviceError

@@ -12,7 +12,7 @@ from pathlib import Path
 import devices as made
 import pytest
 
-from normalbench.bench.cli import app as cli
+from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.output.journal import Journal
 from normalbench.bench.keep import runs
 from normalbench.bench.keep.runs import read_run
@@ -177,7 +177,7 @@ def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
 
 
 def test_a_named_device_makes_its_tables_part_of_all(run, tmp_path):
-    from normalbench.bench.suite.run import chosen_tables
+    from normalbench.bench.door.run import chosen_tables
 
     names = {table.name for table in chosen_tables("all", {"devices": "a.json"})}
     assert {"devices", "device_facts"} <= names

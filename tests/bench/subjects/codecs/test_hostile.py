@@ -161,7 +161,7 @@ def test_nothing_of_the_current_folder_is_imported(tmp_path):
     for name in sorted(sys.stdlib_module_names - {"__main__"}):
         (tmp_path / f"{name}.py").write_text(f"open('{tmp_path}/ran-{name}', 'w'); raise SystemExit('ran {name}')")
     path = written(tmp_path, "mine")
-    script = "import sys; from normalbench.bench.cli.app import program; sys.exit(program())"
+    script = "import sys; from normalbench.bench.door.cli.app import program; sys.exit(program())"
     words = ["quality", "--encoding", path, "--normals", "axes", "--backend", "glsl", "--format", "json"]
     done = subprocess.run([sys.executable, "-P", "-c", script, *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0 and json.loads(done.stdout)[0]["psnr_db"], done.stderr

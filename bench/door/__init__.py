@@ -1,0 +1,1 @@
+"""What users come in by: the command line, gates, tests and Python."""

@@ -1,0 +1,416 @@
+"""The command line: `normalbench COMMAND`.
+
+Heavy packages are imported inside the commands, so that `--help` and `list` answer at once; so is whatever imports the
+catalogue, so that an encoding that cannot be imported is said in one line.
+"""
+
+from __future__ import annotations
+
+import atexit
+import io
+import os
+import re
+import signal
+import sys
+from enum import StrEnum
+from pathlib import Path
+from types import FrameType
+from typing import IO, Annotated, Any, NoReturn
+
+import typer
+from typer.exceptions import Abort, TyperException
+
+from ....encodings.codecs.files import CatalogueError
+from ....reports.charts.plots import PlotError
+from ...ground.options.code import CodeOptions
+from ...ground.output.errors import MissingError, UsageError, tell, told
+from ...ground.output.progress import ending
+from ...ground.output.writing import abandon_output, check_is_folder, write
+from ...run.workers.words import check_place
+from ...tables.registry import TABLES
+from ..run_options import RunOptions
+from .commands import OnOption, add_tables, command_with
+from .device_commands import add_devices
+from .formats import Format, FormatOption, format_of
+from .typed import added_up, check_begins_with_command
+
+app = typer.Typer(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+
+# What `list` leaves out where the terminal is narrow.
+SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "engine")
+INTERRUPTED, TERMINATED = 130, 143
+NO_CACHE = "--no-cache"
+# How soon an interruption is tried again that came at a bad time, in seconds.
+AGAIN_S = 0.02
+# A part of the paths of moderngl's own files.
+MODERNGL = f"{os.sep}moderngl{os.sep}"
+
+
+def _version(is_asked: bool) -> None:
+    """Say the version, and end."""
+    if is_asked:
+        from importlib.metadata import version
+
+        print(version("normalbench"))
+        raise typer.Exit
+
+
+@app.callback()
+def every_command(
+    _is_asked: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")
+    ] = False,
+    no_cache: Annotated[
+        bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
+    ] = False,
+) -> None:
+    """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
+    if no_cache:
+        from ...ground.output import cache
+
+        cache.switch_off()
+
+
+PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
+
+
+@app.command("list")
+def list_command(
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="encodings, storages, depths, frames, vectors, normals, layouts, pipelines, effects, scenes, lights, "
+            "or all."
+        ),
+    ] = "all",
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> None:
+    """What there is: encodings, storages, codes of other kinds, sets, layouts, pipelines, effects, scenes, lights."""
+    from ...ground.options.listing import listing
+
+    write(listing(what), format_of(format, output), output, SPARED, by="kind")
+
+
+@app.command()
+def doctor(
+    file: Annotated[
+        Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", help="Draw the encoding's error over the sphere into this file, bad directions marked."),
+    ] = None,
+    storage: Annotated[
+        str | None,
+        typer.Option(
+            "--storage", help="The storage of the picture and of the comparison with the catalogue. Default: rgba8."
+        ),
+    ] = None,
+    domain: Annotated[
+        str | None,
+        typer.Option("--domain", help="The normals it is meant for: sphere, hemisphere or view. Default: found out."),
+    ] = None,
+    build_mesa: Annotated[
+        Path | None,
+        typer.Option(
+            "--build-mesa", help="Build Mesa's drivers for phones and small boards in this folder, for cost --isa."
+        ),
+    ] = None,
+    mesa_source: Annotated[
+        str | None,
+        typer.Option("--mesa-source", help="--build-mesa: a tarball of Mesa, as a file or URL. Default: Debian's."),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="--build-mesa: do not ask.")] = False,
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> int:
+    """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
+
+    Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
+    directions before any storage.
+    """
+    if build_mesa is not None:
+        if file is not None or plot is not None or storage or domain:
+            raise UsageError("--build-mesa builds and does nothing else; leave out the file and its options")
+        from ...shaders.isa.mobile.build import build_command
+
+        return build_command(build_mesa, mesa_source, yes)
+    if mesa_source is not None or yes:
+        raise UsageError("--mesa-source and --yes go with --build-mesa DIR")
+    if file is None and plot is None and not storage and not domain:
+        from ...keep.machine import examine
+
+        write(examine(), format_of(format, output), output)
+        return 0
+    from ..examine import examine_encoding
+
+    return examine_encoding(file, plot, format_of(format, output), output, storage, domain)
+
+
+add_tables(app, TABLES.values())
+
+
+def _run(options: Any, output: Path | None, on: str | None) -> int:
+    from ..run import run_command
+
+    check_is_folder(output, "run writes into")
+    check_place(on)
+    return run_command(options, output, on)
+
+
+RunOutput = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Results folder: new, or of a run to go on with. Default: results/<time>."),
+]
+app.command(
+    "run",
+    help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
+    "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
+)(command_with(RunOptions, _run, output=RunOutput, on=OnOption))
+
+
+@app.command()
+def worker(
+    scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
+) -> int:
+    """A worker that measures for the commands that name this scheduler in --on, until it is interrupted."""
+    from ...run.workers.worker import worker_command
+
+    return worker_command(scheduler)
+
+
+def _code(options: Any, format: Format | None, output: Path | None) -> int:
+    from ..code_command import code_command
+
+    return code_command(options, format_of(format, output if options.check else None), output)
+
+
+CodeOutput = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", help="Write the code into this folder; with --check the rows to this file."),
+]
+app.command(
+    "code",
+    help="Code of any codec to paste into an engine: encode, pack, unpack and decode, run and compared before it is "
+    "written.",
+    epilog="Example: normalbench code octahedral --storage rgb10a2 --to hlsl",
+)(command_with(CodeOptions, _code, format=FormatOption, output=CodeOutput))
+
+
+@app.command("columns")
+def columns_command(
+    table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> None:
+    """What a table's columns mean: definitions, units, which way is better."""
+    from ...tables.columns import columns
+
+    write(columns(table), format_of(format, output), output, by="table")
+
+
+@app.command()
+def check(
+    gates: Annotated[Path, typer.Argument(help=r"A TOML file of \[\[gate]] tables.")],
+    run: Annotated[
+        Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
+    ] = None,
+    write_baseline: Annotated[
+        bool,
+        typer.Option("--write-baseline", help="Write the baselines that gates name instead of comparing with them."),
+    ] = False,
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> int:
+    """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
+    from ..gates.check_command import check_command
+
+    return check_command(gates, run, write_baseline, format_of(format, output), output)
+
+
+class FailOn(StrEnum):
+    never = "never"
+    worse = "worse"
+    change = "change"
+
+
+@app.command()
+def compare(
+    before: Annotated[Path, typer.Argument(help="A results folder.")],
+    after: Annotated[Path, typer.Argument(help="Another one.")],
+    fail_on: Annotated[FailOn, typer.Option("--fail-on", help="What makes the exit status 1.")] = FailOn.never,
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> int:
+    """What changed between two runs, the worst first: figures exactly, times only where it is more than chance.
+
+    For people at most 20 lines; JSON and CSV have every figure that differs.
+    """
+    from ...keep.compare_command import compare_command
+
+    return compare_command(before, after, fail_on, format_of(format, output), output)
+
+
+class PicturePlace(StrEnum):
+    inside = "inside"
+    beside = "beside"
+
+
+@app.command()
+def report(
+    runs: Annotated[list[Path], typer.Argument(help="A results folder; or several, to compare.", metavar="RUN...")],
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
+    ] = False,
+    pictures: Annotated[
+        PicturePlace,
+        typer.Option("--pictures", help="In the page, as many as keep it small; or all of them, in files beside it."),
+    ] = PicturePlace.inside,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="The page. Default: report.html in the folder; runs.html for several."),
+    ] = None,
+) -> None:
+    """A run on one page: who wins, tables, pictures, charts, and how each figure was measured. Opens offline.
+
+    Several runs on one page: what differs, on which machines, and every figure side by side.
+
+    The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
+    """
+    from ...show.report import report_command
+
+    report_command(runs, markdown, pictures is PicturePlace.beside, output)
+
+
+add_devices(app)
+
+
+def _say(message: str) -> None:
+    tell(message)
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    """Raise what ends the program, once no module is being imported and no call of moderngl is under way: libraries in
+    C++ would not survive it there."""
+    if _is_delicate(frame):
+        signal.signal(signal.SIGALRM, lambda _, later: _end(number, later))
+        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+        return
+    # What was put off before would end the program a second time, while it tidies up.
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, lambda *_: None)
+    by = SystemExit(TERMINATED) if number == signal.SIGTERM else KeyboardInterrupt()
+    ending.append(by)
+    sys.unraisablehook = _say_unless_ending
+    raise by
+
+
+def _is_delicate(frame: FrameType | None) -> bool:
+    """Whether an exception that is raised here could pass through C++ that does not expect one: imports, and moderngl,
+    whose compiled half calls Python back."""
+    while frame:
+        file = frame.f_code.co_filename
+        if file.startswith("<frozen importlib") or MODERNGL in file:
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _say_unless_ending(what: sys.UnraisableHookArgs) -> None:
+    """What a callback swallowed: nothing to be said of what the next step raises again."""
+    if not any(what.exc_value is by for by in ending):
+        sys.__unraisablehook__(what)
+
+
+def main() -> int:
+    """Run the command line. Exit status: 0 well, 1 a check failed, 2 bad input or usage, 3 something is missing."""
+    # A terminated run clears up after itself as an interrupted one does.
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
+    ending.clear()
+    told.clear()
+    try:
+        if sys.stdout is None:
+            _without_output(sys.argv)
+        # Alone, the command shows its help; that is no error.
+        command: Any = typer.main.get_command(app)
+        status = command(_words(sys.argv[1:], command) or ["--help"], standalone_mode=False) or 0
+        if status == INTERRUPTED:
+            _say("interrupted")
+        return status
+    except (UsageError, MissingError) as error:
+        _say(str(error))
+        return error.exit_code
+    except (CatalogueError, PlotError) as error:
+        _say(str(error))
+        return UsageError.exit_code
+    except TyperException as error:
+        _say(error.format_message() + _hint(error.format_message()))
+        return UsageError.exit_code
+    except (KeyboardInterrupt, Abort):
+        _say("interrupted")
+        return INTERRUPTED
+    except OSError as error:
+        abandon_output()
+        _say(f"cannot write: {error.strerror or error}")
+        return UsageError.exit_code
+
+
+def _hint(said: str) -> str:
+    """What would be right, after what the parser says."""
+    commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
+    if "extra argument" in said:
+        return "; separate names by commas"
+    return f" Commands: {commands}." if "command" in said else ""
+
+
+def _words(words: list[str], group: Any) -> list[str]:
+    """What was typed, with each option once. Raises UsageError."""
+    own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
+    # It may stand anywhere.
+    no_cache, words = [NO_CACHE] * (NO_CACHE in words), [word for word in words if word != NO_CACHE]
+    check_begins_with_command(words, group.commands, own)
+    is_known = bool(words) and words[0] in group.commands
+    return no_cache + ([words[0], *added_up(words[1:], group.commands[words[0]].params)] if is_known else words)
+
+
+def _without_output(words: list[str]) -> None:
+    """Standard output is closed: what is written there goes nowhere. Raises UsageError where no file is named."""
+    if not any(word.startswith("--output") or re.match("-[a-z]*o", word) for word in words):
+        raise UsageError("standard output is closed; name a file with -o")
+    sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 # until the process ends
+
+
+def program() -> NoReturn:
+    """`main` as a process of its own, which ends once its output is written: the interpreter would tidy up a million
+    objects first, and beneath what is computed in other threads, which cannot be stopped."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # As Python has stderr: where the terminal has no ° it reads \xb0, and the table is there.
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        status = main()
+    except SystemExit as end:
+        status = end.code
+    # What is left is to tidy up, which takes less time than it takes to say that it was interrupted.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
+        signal.signal(number, signal.SIG_IGN)
+    if not ending:
+        atexit._run_exitfuncs()
+    unwritten = [stream for stream in (sys.stdout, sys.stderr) if stream and not _is_flushed(stream)]
+    if isinstance(status, int) and (ending or not unwritten):
+        os._exit(status)
+    # Python says what cannot be written, and that the command failed.
+    sys.exit(status)
+
+
+def _is_flushed(stream: IO[str]) -> bool:
+    """Whether a stream took all that was written to it."""
+    try:
+        stream.flush()
+    except (OSError, ValueError):
+        return False
+    return True

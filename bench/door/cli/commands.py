@@ -1,0 +1,107 @@
+"""The commands of the tables, made from the registry."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ...ground.options.counts import whole_number
+from ...ground.options.option import Field, Reading, fields_of
+from ...ground.output.writing import check_is_folder, check_page
+from ...run.workers.words import HELP, check_place
+from ...tables.table import Table
+from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
+from .names import NAMES, completion_of
+
+# Panels of a command's help.
+MEASURED, FILES = "What is measured", "How files of normals are read"
+ReportOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--report",
+        help="Write a page of this table, with its charts and pictures, to this file.",
+        rich_help_panel=WRITTEN,
+    ),
+]
+
+
+OnOption = Annotated[str | None, typer.Option("--on", help=HELP, metavar="WORKERS")]
+
+
+def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
+    """A command for each table."""
+    for table in tables:
+        app.command(table.name, help=table.help, epilog=f"Example: {table.example}")(command_of(table))
+
+
+def command_of(table: Table) -> Callable[..., int]:
+    """A table's command, with its options, what it writes, and what every table takes."""
+
+    def command(format: Format | None, output: Path | None, report: Path | None, on: str | None, **typed: Any) -> int:
+        from ..table_command import table_command
+
+        check_page(report)
+        check_place(on)
+        check_is_folder(typed.get("images"), "--images writes into")
+        options, outputs = (_made(group, typed) for group in (table.options, table.outputs))
+        return table_command(table, options, outputs, format_of(format, output), output, report, on)
+
+    ends = {"format": (FormatOption, None), "output": (OutputOption, None), "report": (ReportOption, None)}
+    ends |= {"on": (OnOption, None)}
+    reads = fields_of(Reading) if issubclass(table.options, Reading) else {}
+    typed = [parameter_of(f, FILES if f.name in reads else MEASURED) for f in fields_of(table.options).values()]
+    typed += [parameter_of(field, WRITTEN) for field in fields_of(table.outputs).values()]
+    typed += [
+        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in ends.items()
+    ]
+    return with_parameters(command, typed)
+
+
+def command_with(group: type, command: Callable[..., int], **ends: Any) -> Callable[..., int]:
+    """A command of one dataclass of options, and of further ones by their annotations, none of which need be given."""
+
+    def call(**typed: Any) -> int:
+        return command(_made(group, typed), **{name: typed[name] for name in ends})
+
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    typed = [parameter_of(field) for field in fields_of(group).values()]
+    typed += [inspect.Parameter(name, keyword, default=None, annotation=kind) for name, kind in ends.items()]
+    return with_parameters(call, typed)
+
+
+def _made(group: type, typed: dict[str, Any]) -> Any:
+    """Typed values as a dataclass of options."""
+    return group(**{name: typed[name] for name in fields_of(group)})
+
+
+def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
+    """An option as typer sees it, in a panel of its help; without dashes it is an argument."""
+    option, kind = field.option, inspect.Parameter.KEYWORD_ONLY
+    if not option.flag.startswith("-"):
+        shown = Annotated[field.type, typer.Argument(help=option.help, metavar=option.flag)]
+        return inspect.Parameter(field.name, kind, annotation=shown)
+    more: dict[str, Any] = {"rich_help_panel": panel}
+    if field.kind is int:
+        more |= {"parser": _whole_number, "metavar": "<int>"}
+    if field.name in NAMES:
+        more |= {"autocompletion": completion_of(field.name)}
+    shown = Annotated[field.type, typer.Option(option.flag, help=option.help, **more)]
+    return inspect.Parameter(field.name, kind, default=field.default, annotation=shown)
+
+
+def _whole_number(text: str) -> int:
+    try:
+        return whole_number(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def with_parameters(command: Callable[..., int], parameters: list[inspect.Parameter]) -> Callable[..., int]:
+    """A function with another signature, as typer reads it."""
+    command.__signature__ = inspect.Signature(parameters)  # pyright: ignore[reportFunctionMemberAccess]
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return command

@@ -1,0 +1,105 @@
+"""What people type, before it is parsed: options that are repeated, and words in a wrong place."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Any, get_args
+
+from ...ground.output.errors import UsageError
+
+
+def check_begins_with_command(words: Sequence[str], commands: Collection[str], own: Collection[str]) -> None:
+    """Raises UsageError where a command's options stand before the command.
+
+    Args:
+        own: the options of the program itself.
+    """
+    if not words or not words[0].startswith("-") or words[0].partition("=")[0] in own:
+        return
+    command = next((word for word in words if word in commands), None)
+    if command is None:
+        raise UsageError(f"{words[0]}: begin with a command: {', '.join(commands)}")
+    others = [word for word in words if word != command]
+    raise UsageError(f"the command comes first: normalbench {' '.join([command, *others])}")
+
+
+def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
+    """Words with each option once: texts, which are lists of names, are joined by commas.
+
+    Args:
+        words: what follows the name of the command.
+        options: the command's, as typer has them.
+
+    Raises:
+        UsageError: another option is given twice, with different values, or a word belongs to no option.
+    """
+    by_flag = {flag: option for option in options for flag in (*option.opts, *option.secondary_opts)}
+    has_arguments = any(option.param_type_name == "argument" for option in options)
+    made: list[str] = []
+    # Of each option its flag as typed first, and where its value stands among `made`.
+    seen: dict[str, tuple[str, int]] = {}
+    rest = iter(words)
+    for word in rest:
+        flag, option = _option_of(word, by_flag)
+        if option is None and word.startswith("--"):
+            # What follows an option that is not known is for the parser to refuse.
+            return [*made, word, *rest]
+        if option is None and not (has_arguments or word.startswith("-")):
+            raise _stray(word, made, by_flag)
+        if option is None:
+            made.append(word)
+        elif option.is_flag:
+            _add_flag(made, word, seen, option)
+        else:
+            value = _value_of(word, flag, rest)
+            if value is None:
+                made.append(word)
+            else:
+                _add(made, (flag, value), seen, option)
+    return made
+
+
+def _stray(word: str, made: Sequence[str], by_flag: dict[str, Any]) -> UsageError:
+    """What is wrong with a word that follows no option."""
+    flag = made[-2] if len(made) > 1 else ""
+    if flag in by_flag and _is_text(by_flag[flag]):
+        return UsageError(f"separate names by commas: {flag} {made[-1]},{word}")
+    return UsageError(f"{word} stands after no option; say for example {next(iter(by_flag))} {word}")
+
+
+def _option_of(word: str, by_flag: dict[str, Any]) -> tuple[str, Any]:
+    flag = word.partition("=")[0] if word.startswith("--") else word[:2]
+    return flag, by_flag.get(flag) if word.startswith("-") and word != "-" else None
+
+
+def _value_of(word: str, flag: str, rest: Any) -> str | None:
+    """What stands behind the flag, or after it; None where nothing does, which the parser says."""
+    if word == flag:
+        return next(rest, None)
+    return word[len(flag) :].removeprefix("=")
+
+
+def _add_flag(made: list[str], word: str, seen: dict[str, tuple[str, int]], option: Any) -> None:
+    first, _ = seen.setdefault(option.name, (word, len(made)))
+    if first != word:
+        raise UsageError(f"{first} and {word} contradict each other; give one of them")
+    if word not in made:
+        made.append(word)
+
+
+def _add(made: list[str], typed: tuple[str, str], seen: dict[str, tuple[str, int]], option: Any) -> None:
+    flag, value = typed
+    if option.name not in seen:
+        seen[option.name] = flag, len(made) + 1
+        made += [flag, value]
+        return
+    first, at = seen[option.name]
+    if _is_text(option):
+        made[at] = f"{made[at]},{value}"
+    elif made[at] != value:
+        raise UsageError(f"{first} is given twice, {made[at]} and {value}; give it once")
+
+
+def _is_text(option: Any) -> bool:
+    kind = option.type_descriptor.annotation
+    return kind is str or str in get_args(kind)

@@ -1,0 +1,185 @@
+"""Baselines: rows as they once were, in a file that is compared with, and written on request only."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ....encodings.codecs.files import file_json
+from ....reports.tables import to_json
+from ...ground.options.option import fields_of
+from ...ground.output.errors import UsageError
+from ...ground.output.writing import whole_file
+from ...keep.comparison import difference, same
+from ...tables.registry import table_of_run
+from ...tables.table import Role, Row, Table
+from .listings import differences as listing_differences
+from .listings import lines_of
+
+Entry = dict[str, Any]
+# How a row was measured, which is not a figure of it.
+HOW = ("device", "rounded_by", "clock")
+
+
+def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
+    """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked.
+
+    Times, and what only a program reads, are left out.
+
+    Args:
+        listing: the instructions that its figures were counted in; empty where there are none.
+    """
+    known = fields_of(table.options)
+    key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
+    # Several rows of one request differ in their keys.
+    key |= {column.name: row.get(column.name) for column in table.of_role(Role.KEY)}
+    key |= {name: row.get(name) for name in table.compilers}
+    (plain,) = json.loads(to_json([{name: value for name, value in row.items() if _is_kept(table, name)}]))
+    return {"table": table.name, "key": key, "row": plain} | ({"listing": lines_of(listing)} if listing else {})
+
+
+def _is_kept(table: Table, name: str) -> bool:
+    column = table.column(name)
+    return column is None or column.role not in (Role.TIME, Role.RAW)
+
+
+def read_baseline(path: Path) -> dict[str, Entry]:
+    """The entries of a file, by their keys. Raises UsageError where it is not a baseline."""
+    try:
+        entries = file_json(path)
+        if not isinstance(entries, list):
+            raise ValueError("it holds something else")
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path} is not a baseline: {error}") from error
+    from ...keep.schema import check_entry
+
+    for number, one in enumerate(entries, 1):
+        check_entry(one, f"{path}, entry {number}")
+    return {_text(one): one for one in entries}
+
+
+def _text(one: Entry) -> str:
+    return json.dumps([one["table"], one["key"]], sort_keys=True)
+
+
+def write_baseline(path: Path, dumped: Sequence[str]) -> None:
+    """What was measured, as `dumped`, in place of what the file says of it; its other entries stay.
+
+    Raises:
+        UsageError: the file holds something else, two rows have one key, or it cannot be written.
+    """
+    kept = Baseline(path, True)
+    for one in (one for text in dumped for one in json.loads(text)):
+        kept.record(one)
+    entries = (read_baseline(path) if path.exists() else {}) | kept.recorded
+    with whole_file(path) as partial:
+        lines = (json.dumps(entries[text]) for text in sorted(entries))
+        partial.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
+
+
+class NoRowError(AssertionError):
+    """A baseline has no such row.
+
+    Attributes:
+        said: what the row is called.
+    """
+
+    def __init__(self, message: str, said: str = ""):
+        super().__init__(message)
+        self.said = said
+
+
+@dataclass
+class Baseline:
+    """A file of entries; what is recorded is written by `write_baseline`, once.
+
+    Attributes:
+        writes: whether rows are recorded.
+        writer: the option that has them recorded.
+    """
+
+    path: Path
+    writes: bool
+    writer: str = "--normalbench-write-baseline"
+    recorded: dict[str, Entry] = field(default_factory=dict)
+    _read: dict[str, Entry] | None = None
+
+    def record(self, one: Entry) -> None:
+        """Keep a row for writing. Raises UsageError where another is asked for by the same."""
+        before = self.recorded.setdefault(_text(one), one)
+        if list(changes(before["row"], one["row"], {})):
+            raise UsageError(f"two rows of a baseline are called {_name(one)}; rename one")
+
+    def differences(self, one: Entry, tolerances: Mapping[str, float]) -> list[str]:
+        """What a row and its entry say differently, a line for each column.
+
+        Raises:
+            NoRowError: the file has no such row.
+            UsageError: it is not a baseline.
+        """
+        if self._read is None:
+            self._read = read_baseline(self.path) if self.path.exists() else {}
+        before = self._read.get(_text(one))
+        if before is None:
+            said = f"{_name(one)}{self._other_compilers(one)}"
+            raise NoRowError(f"{self.path} has no row {said}; {self.writer} writes it", said)
+        found = list(changes(before["row"], one["row"], tolerances))
+        if found and before.get("listing") and one.get("listing"):
+            changed = list(listing_differences(before["listing"], one["listing"]))
+            found.append("\n  ".join(["its instructions, with + and - where they changed:", *changed]))
+        devices = [row.get("device") for row in (before["row"], one["row"])]
+        if found and devices[0] != devices[1]:
+            found.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
+        return found
+
+    def _other_compilers(self, one: Entry) -> str:
+        """By which other compilers the file has a row; empty for none."""
+        table = table_of_run(one["table"])
+        names = table.compilers if table else ()
+        alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(one, names)]
+        if not names or not alike:
+            return ""
+        differ = [name for name in names if any(key.get(name) != one["key"].get(name) for key in alike)]
+        mine, *others = (", ".join(str(key.get(name)) for name in differ) for key in (one["key"], *alike))
+        return f" by {mine}; it has one by {' and by '.join(dict.fromkeys(others))}"
+
+    def dumped(self) -> str:
+        """What was recorded, as text; none for nothing."""
+        return json.dumps(list(self.recorded.values())) if self.recorded else ""
+
+
+def _less(one: Entry, names: Sequence[str]) -> str:
+    """An entry's key without some of its parts, as text."""
+    return _text({**one, "key": {name: value for name, value in one["key"].items() if name not in names}})
+
+
+def _name(one: Entry) -> str:
+    table = table_of_run(one["table"])
+    return table.name_of(one["row"]) if table else str(one["table"])
+
+
+def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
+    """A line for each column that differs by more than is tolerated, which is nothing where nothing is said."""
+    for column in dict.fromkeys([*before, *after]):
+        one, other = before.get(column), after.get(column)
+        if column not in HOW and not same(one, other) and not _near(one, other, tolerances.get(column, 0.0)):
+            allowed = f", tolerated {tolerances[column]:g}" if column in tolerances else ""
+            yield f"{column} is {other}, the baseline says {one} ({difference(one, other)}{allowed})"
+
+
+def _near(one: Any, other: Any, tolerance: float) -> bool:
+    return isinstance(one, int | float) and isinstance(other, int | float) and abs(one - other) <= tolerance
+
+
+def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:
+    """Raises UsageError for a column that there is not, or what is not a tolerance."""
+    for column, value in tolerances.items():
+        if column not in columns:
+            raise UsageError(f"no column {column!r}; there are {', '.join(columns)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
+            raise UsageError(f"{column}: a tolerance is a number from 0, not {value!r}")
+    return dict(tolerances)

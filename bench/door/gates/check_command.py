@@ -1,0 +1,56 @@
+"""What `check` does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...ground.output.errors import UsageError, tell, tell_together
+from ...ground.output.progress import progress
+from ...ground.output.writing import check_writable, without, write
+from .gates import BASELINE, WRITER, Baselines, Gate, checked, read_gates
+
+
+def check_command(gates: Path, run: Path | None, writes: bool, format: str, output: Path | None) -> int:
+    """Measure what the gates ask for, or take it from a run, and write what holds. Exit status: 1 if a gate fails.
+
+    Args:
+        writes: whether rows are written into the gates' baselines instead of being compared with them.
+    """
+    found, baselines = read_gates(gates), Baselines(writes)
+    if writes:
+        _check_baselines(gates, found, run)
+    if output:
+        check_writable(output)
+    with progress(len(found)) as tick:
+        rows = list(checked(found, run, tick, baselines))
+    for path in baselines.write():
+        tell(f"written: {path}")
+    for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):
+        tell(f"rows without figures: {reason}")
+    for row in rows:
+        if row["changed"]:
+            tell_together(row["row"], row["changed"].splitlines())
+    for limit in dict.fromkeys(row["limit"] for row in rows if row["lacks"]):
+        lost = [row["lacks"] for row in rows if row["lacks"] and row["limit"] == limit]
+        more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+        tell(f"{limit.removeprefix('as in ')} has no row {lost[0]}{more}; {WRITER} writes what is missing")
+    if format == "table":
+        empty = [name for name in ("worst_normal", "column", "figure") if all(row[name] is None for row in rows)]
+        rows = without(rows, ("skipped", "changed", "lacks", *empty))
+    write(rows, format, output, ("table",))
+    failed = sum(row["holds"] == "FAIL" for row in rows)
+    if failed:
+        tell(f"{failed} of {len(rows)} limits do not hold")
+    return int(failed > 0)
+
+
+def _check_baselines(path: Path, gates: Sequence[Gate], run: Path | None) -> None:
+    """Raises UsageError where there is no baseline to write, or it cannot be written."""
+    if run:
+        raise UsageError("--write-baseline writes what is measured now; leave out --run")
+    named = dict.fromkeys(gate.baseline for gate in gates if gate.baseline)
+    if not named:
+        raise UsageError(f'{path}: no gate names a baseline; add {BASELINE} = "costs.json" to one')
+    for baseline in named:
+        check_writable(baseline, makes_folder=True)

@@ -1,0 +1,242 @@
+"""Gates: what figures a team's choices must keep, from a TOML file, measured and held against."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ....encodings.codecs.files import file_toml
+from ...ground.options.option import fields_of
+from ...ground.output.errors import UsageError
+from ...keep.runs import read_run
+from ...shaders.languages.words import files_in
+from ...tables.table import Role, Row, Table
+from .baseline import Baseline, NoRowError, entry, write_baseline
+from .limits import Limit, limits_on, split_limits
+from .measured import Found, located, measured, table_named, with_their_options
+
+MAX_GATES = 1000
+BASELINE = "matches_baseline"
+WRITER = "normalbench check --write-baseline"
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Rows of a table, and what they must keep.
+
+    Attributes:
+        table: whose rows.
+        options: what is measured, by the table's options; of a run's rows, which, by the values of their columns.
+        limits: one for each column.
+        place: file and number, for messages.
+        folder: the file's, where the files that options name are looked for.
+        baseline: the file that every row is compared with, beside the limits or without any; None for none.
+    """
+
+    table: Table
+    options: Mapping[str, Any]
+    limits: tuple[Limit, ...]
+    place: str
+    folder: Path
+    baseline: Path | None = None
+
+    def located(self) -> dict[str, Any]:
+        """The options, files by their paths from here.
+
+        Raises:
+            UsageError: a file that is in the folder of the shell only.
+        """
+        for name, value in self.files().items():
+            for word in map(str.strip, value.split(",")):
+                there = files_in(word, self.folder)
+                # A name without an ending may be one of the catalogue's.
+                lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
+                if lost:
+                    said = f"{lost[0]} is in this shell's folder, and paths are relative to the file of gates"
+                    raise UsageError(f"{name}: {said}; write {os.path.relpath(lost[0], self.folder)}")
+        return located(self.table, self.options, self.folder)
+
+    def files(self) -> dict[str, str]:
+        """The options whose words may be files, as the file of gates has them."""
+        known = fields_of(self.table.options)
+        may_be = [name for name in self.options if name in known and known[name].option.files]
+        return {name: value for name in may_be if isinstance(value := self.options[name], str)}
+
+
+def read_gates(path: Path) -> list[Gate]:
+    """The gates of a TOML file: `[[gate]]` tables with options and, for columns, "at least 47.5" or "at most 0.95".
+
+    Raises:
+        UsageError: it cannot be read, or says something else; one line with the place.
+    """
+    try:
+        data = file_toml(path)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from error
+    found = data.get("gate")
+    if other := sorted(set(data) - {"gate"}):
+        raise UsageError(f"{path}: {other[0]!r} is not known; a file of gates has only [[gate]] tables")
+    if not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
+        raise UsageError(f"{path}: there is no [[gate]] table in it")
+    if not 1 <= len(found) <= MAX_GATES:
+        raise UsageError(f"{path}: {len(found)} gates; from 1 to {MAX_GATES}")
+    return [_gate(f"{path}, gate {number}", values, path.parent) for number, values in enumerate(found, 1)]
+
+
+def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
+    named = values.pop(BASELINE, None)
+    try:
+        if named is not None and not (isinstance(named, str) and named):
+            raise UsageError(f"{BASELINE} is {named!r}; it must be a file's name")
+        for name, value in values.items():
+            if not isinstance(value, str | int | float):
+                raise UsageError(f"{name} is {value!r}; it must be a text or a number")
+        table = table_named(values.pop("table", "quality"))
+        options, limits = split_limits(values, table, may_lack=named is not None)
+        for limit in limits:
+            limit.check(table)
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from error
+    return Gate(table, options, limits, place, folder, folder / named if named else None)
+
+
+Measure = Callable[[Gate], list[Found]]
+
+
+def measured_for(gate: Gate) -> list[Found]:
+    """The rows of a gate, measured now.
+
+    Raises:
+        UsageError: a table, an option or a name that there is not; one line with the gate's place.
+        MissingError: this machine lacks what they need.
+    """
+    try:
+        found = measured(gate.table, with_their_options(gate.table, gate.located(), gate.limits))
+    except UsageError as error:
+        raise UsageError(f"{gate.place}: {error}") from error
+    # A baseline has paths as the file of gates has them, from wherever it is compared.
+    return [replace(one, asked={**one.asked, **gate.files()}) for one in found]
+
+
+def _rows_of_run(run: Path) -> Measure:
+    done = read_run(run)
+    if done.damage:
+        raise UsageError(f"{done.damage}; measure it anew")
+    tables = done.tables
+
+    def rows(gate: Gate) -> list[Found]:
+        name = gate.table.name
+        if name not in tables:
+            raise UsageError(f"{gate.place}: {run} has no table {name!r}; it has {', '.join(tables)}")
+        for option in gate.options:
+            if not gate.table.column(option):
+                keys = ", ".join(column.name for column in gate.table.of_role(Role.KEY))
+                raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
+            if not any(_is(row.get(option), gate.options[option]) for row in tables[name]):
+                there = ", ".join(dict.fromkeys(str(row.get(option)) for row in tables[name]))
+                raise UsageError(
+                    f"{gate.place}: no row of {name} in {run} has {option} {gate.options[option]!r}; there are {there}"
+                )
+        found = [row for row in tables[name] if all(_is(row.get(n), v) for n, v in gate.options.items())]
+        if not found:
+            asked = ", ".join(f"{option} {value!r}" for option, value in gate.options.items())
+            raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
+        rows = gate.table.work.finish(found)
+        for limit in gate.limits:
+            _check_was_measured(gate, limit, rows, run)
+        return [Found(row, lambda: None) for row in rows]
+
+    return rows
+
+
+def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) -> None:
+    """Raises UsageError where a run lacks a figure because it was measured without the option that it needs."""
+    option = limit.option_of(gate.table)
+    if option and all(row.get(limit.column) is None and not row.get("skipped") for row in rows):
+        flag = fields_of(gate.table.options)[option].option.flag
+        raise UsageError(f"{gate.place}: {run} has no {limit.column}; measure the run with {flag}")
+
+
+def _is(value: Any, asked: Any) -> bool:
+    """Whether a row's value is what was asked for: one of the names, where those are comma-separated."""
+    return value in [word.strip() for word in asked.split(",")] if isinstance(asked, str) else value == asked
+
+
+def checked(
+    gates: list[Gate], run: Path | None, tick: Callable[[str], None], baselines: Baselines | None = None
+) -> Iterator[Row]:
+    """A row for each limit on each row of each gate, and for its baseline: the figure, the limit, whether it holds, the
+    worst normal, and what the baseline says differently.
+
+    Args:
+        run: a results folder to take the figures from; None to measure them.
+        baselines: those that rows are compared with, or written into.
+
+    Raises:
+        UsageError: a table, option or column that there is not.
+        MissingError: a table needs a GL device and there is none.
+    """
+    measure = _rows_of_run(run) if run else measured_for
+    baselines = baselines or Baselines(False)
+    for gate in gates:
+        found = measure(gate)
+        yield from (_held(gate, one, limit) for one in found for limit in limits_on(one.row, gate.limits))
+        if gate.baseline:
+            yield from (_compared(gate, one, baselines.of(gate.baseline)) for one in found)
+        tick(gate.place)
+
+
+class Baselines:
+    """The baselines that gates name, each read once.
+
+    Args:
+        writes: whether rows are written into them instead of being compared.
+    """
+
+    def __init__(self, writes: bool):
+        self.writes = writes
+        self._by_path: dict[Path, Baseline] = {}
+
+    def of(self, path: Path) -> Baseline:
+        """The baseline of a file."""
+        return self._by_path.setdefault(path, Baseline(path, self.writes, WRITER))
+
+    def write(self) -> Iterator[Path]:
+        """Write what was recorded, and tell where. Raises UsageError."""
+        for path, baseline in self._by_path.items():
+            if self.writes and (dumped := baseline.dumped()):
+                write_baseline(path, [dumped])
+                yield path
+
+
+def _row(gate: Gate, found: Found, **more: Any) -> Row:
+    row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(found.row)}
+    row |= {"column": None, "figure": None, "limit": None, "holds": "pass", "worst_normal": None}
+    return row | {"changed": None, "lacks": None, "skipped": found.row.get("skipped")} | more
+
+
+def _held(gate: Gate, found: Found, limit: Limit) -> Row:
+    try:
+        broken = limit.broken_by(gate.table, found.row)
+    except UsageError as error:
+        raise UsageError(f"{gate.place}: {gate.table.name}: {error}") from error
+    worst = str(found.worst) if broken and found.worst else None
+    figure, holds = found.row[limit.column], "FAIL" if broken else "pass"
+    return _row(gate, found, column=limit.column, figure=figure, limit=str(limit), holds=holds, worst_normal=worst)
+
+
+def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
+    """One row: whether the baseline says the same, and where not, what."""
+    one = entry(gate.table, found.asked, found.row, found.listing)
+    if baseline.writes:
+        baseline.record(one)
+        return _row(gate, found, limit=f"written into {baseline.path.name}")
+    try:
+        said = baseline.differences(one, {})
+    except NoRowError as error:
+        return _row(gate, found, limit=f"as in {baseline.path.name}", holds="FAIL", lacks=f"{error.said}")
+    holds, changed = "FAIL" if said else "pass", "\n".join(said) or None
+    return _row(gate, found, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)

@@ -1,0 +1,112 @@
+"""What a figure must keep. Imports nothing heavy."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ...ground.options.option import fields_of
+from ...ground.output.errors import UsageError
+from ...tables.table import Role, Table
+
+# Neither can be read in two ways, which would take a long text a long time.
+LIMIT = re.compile(r"(at least|at most)\s+(.*)", re.IGNORECASE | re.DOTALL)
+NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d+)?|inf", re.IGNORECASE | re.ASCII)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The least or the most that a column may be."""
+
+    column: str
+    side: str
+    value: float
+
+    def holds(self, figure: Any) -> bool:
+        """Whether a figure keeps it; what is not a number does not."""
+        if isinstance(figure, bool) or not isinstance(figure, int | float) or math.isnan(figure):
+            return False
+        return figure >= self.value if self.side == "at least" else figure <= self.value
+
+    def __str__(self) -> str:
+        return f"{self.side} {self.value:.9g}"
+
+    def check(self, table: Table) -> None:
+        """Raises UsageError where the table has no such column, or it holds no figure."""
+        column = table.column(self.column)
+        if column is None:
+            figures = ", ".join(c.name for c in table.of_role(Role.FIGURE, Role.TIME))
+            raise UsageError(f"{table.name}: no column {self.column!r}; figures are {figures}")
+        if column.role not in (Role.FIGURE, Role.TIME):
+            raise UsageError(
+                f"{table.name}: {self.column} is not a figure; `normalbench columns {table.name}` lists them"
+            )
+
+    def option_of(self, table: Table) -> str:
+        """The option without which the column is not measured; empty for none."""
+        column = table.column(self.column)
+        return column.option if column and column.option in fields_of(table.options) else ""
+
+    def broken_by(self, table: Table, row: Mapping[str, Any]) -> str | None:
+        """What is to be said of a row that does not keep it; None where it does.
+
+        Raises:
+            UsageError: the row has no such column.
+        """
+        if self.column not in row:
+            raise UsageError(f"no column {self.column!r}; there are {', '.join(row)}")
+        figure = row[self.column]
+        if self.holds(figure):
+            return None
+        shown = f"{figure:.9g}" if isinstance(figure, float) else figure
+        reason = f" ({' '.join(row['skipped'].split())})" if row.get("skipped") else ""
+        return f"{table.name_of(row)}: {self.column} is {shown}{reason}, not {self}"
+
+
+# A mean hides a few NaN.
+ALL_NUMBERS = Limit("invalid", "at most", 0.0)
+
+
+def limits_on(row: Mapping[str, Any], limits: Iterable[Limit]) -> list[Limit]:
+    """The limits on a row, and that all results are numbers where some are not and no limit is said for them."""
+    limits = list(limits)
+    is_said = any(one.column == ALL_NUMBERS.column for one in limits)
+    return [*limits, ALL_NUMBERS] if limits and not is_said and row.get(ALL_NUMBERS.column) else limits
+
+
+def limit(column: str, text: Any) -> Limit | None:
+    """The limit that "at least 47.5" or "at most 0.95" is; None for what is none.
+
+    Raises:
+        UsageError: it begins like one, but no number follows.
+    """
+    match = LIMIT.fullmatch(text.strip()) if isinstance(text, str) else None
+    if not match:
+        return None
+    if not NUMBER.fullmatch(match[2]):
+        raise UsageError(f"{column}: {match[2][:40]} is not a number")
+    return Limit(column, match[1].lower(), float(match[2]))
+
+
+def not_a_limit(column: str, value: Any) -> UsageError:
+    """What is wrong with a value that stands where a limit belongs."""
+    return UsageError(f'{column}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
+
+
+def split_limits(
+    values: Mapping[str, Any], table: Table, may_lack: bool = False
+) -> tuple[dict[str, Any], tuple[Limit, ...]]:
+    """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them and there must
+    be one."""
+    found = {name: limit(name, value) for name, value in values.items()}
+    options = {name: value for name, value in values.items() if found[name] is None}
+    limits = tuple(one for one in found.values() if one)
+    figures = [name for name in options if (column := table.column(name)) and column.role in (Role.FIGURE, Role.TIME)]
+    if not limits and figures:
+        raise not_a_limit(figures[0], values[figures[0]])
+    if not limits and not may_lack:
+        raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
+    return options, limits

@@ -1,0 +1,146 @@
+"""Rows as a gate or a test asks for them: a table, and its options by name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+from ...ground.options.option import checked_options, fields_of
+from ...ground.output.errors import UsageError, names_a_file, noting_what_is_left_out
+from ...keep.measuring import Nothing, asked, measured_steps
+from ...measures.metrics.totals import Worst
+from ...shaders.languages.words import file_of, files_in, names_an_encoder, twin_of, with_files
+from ...tables.registry import TABLES
+from ...tables.table import Role, Row, Step, Table
+from .limits import Limit
+
+
+@dataclass(frozen=True)
+class Found:
+    """A row, and how to find the normal that came back farthest off, which takes a second look.
+
+    Attributes:
+        asked: every option that it was measured with; empty of a run's rows.
+        list_it: gives the instructions that it was counted in, or None.
+    """
+
+    row: Row
+    find: Callable[[], Worst | None]
+    asked: Mapping[str, Any] = field(default_factory=dict)
+    list_it: Callable[[], str | None] = lambda: None
+
+    @property
+    def listing(self) -> str:
+        """The instructions that it was counted in; empty where there are none."""
+        return self.list_it() or ""
+
+    @cached_property
+    def worst(self) -> Worst | None:
+        """That normal; None where there is none."""
+        return self.find()
+
+
+def table_named(name: Any) -> Table:
+    """A table by its name. Raises UsageError."""
+    if not isinstance(name, str) or name not in TABLES:
+        raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
+    return TABLES[name]
+
+
+def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> list[Found]:
+    """The rows of a table with these options, and with what is usual where they say nothing.
+
+    Args:
+        usual: in place of what is usual for a gate.
+
+    Raises:
+        UsageError: an option or a value that there is not.
+        MissingError: this machine lacks what they need.
+    """
+    given = {**checked_options(table.options, usual or {}), **checked_options(table.options, values)}
+    options = table.options(**single(table, given))
+    with noting_what_is_left_out() as left_out:
+        ask = asked(table, options)
+    # What is named and not there would pass unseen; of "all" some never fit.
+    if left_out and not any(str(value) == "all" for value in given.values()):
+        raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
+    steps = measured_steps(ask, Nothing())
+    # By name: a finished row may be another object.
+    step_of = {table.name_of(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
+    rows = named_rows(table, given, table.work.finish([row for rows in steps for row in rows]))
+    return [_found(table, row, step_of[table.name_of(row)], asdict(options)) for row in rows]
+
+
+def named_rows(table: Table, given: Mapping[str, Any], rows: Sequence[Row]) -> list[Row]:
+    """The rows that options name by the values of key columns, where a table gives others beside them.
+
+    `cost` measures the packing of a storage beside an encoding, and `depth` the whole range beside a distance. Where no
+    row has every value that is named, those that have no other value in its place.
+    """
+    keys = {column.name for column in table.of_role(Role.KEY)}
+    words = {name: words for name, value in given.items() if name in keys and (words := _words(value))}
+    for name in list(words):
+        # "all", a vendor's name or a file stands for values that rows spell otherwise.
+        if not words[name] <= {_word(row.get(name)) for row in rows}:
+            del words[name]
+    whole = [row for row in rows if all(_word(row.get(name)) in words[name] for name in words)]
+    return whole or [row for row in rows if all(_word(row.get(name)) in {*words[name], ""} for name in words)]
+
+
+def _words(value: Any) -> set[str]:
+    return {_word(word.strip()) for word in value.split(",")} if isinstance(value, str) else {_word(value)}
+
+
+def _word(value: Any) -> str:
+    """A value of a row or of an option as text, numbers in one spelling; empty for none."""
+    try:
+        return f"{float(value):.17g}"
+    except (TypeError, ValueError):
+        return "" if value is None else str(value)
+
+
+def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Options with the words that are files by their paths from here: they are looked for in a folder."""
+    known = fields_of(table.options)
+    return {
+        name: ",".join(path_in(folder, word.strip()) for word in value.split(","))
+        if isinstance(value, str) and name in known and known[name].option.files
+        else value
+        for name, value in options.items()
+    }
+
+
+def path_in(folder: Path, word: str) -> str:
+    """A word with the files of a folder that it names by their paths from here."""
+    found = (path for path in files_in(word, folder) if not Path(path).is_absolute())
+    return with_files(word, {path: os.path.relpath(folder / path) for path in found})
+
+
+def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Found:
+    return Found(row, partial(table.work.worst, step), options, partial(table.work.listing, step, row))
+
+
+def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What a gate measures: what it says, and one row's worth of the rest.
+
+    A layout is measured as it is. A shader without a Python twin is measured by GLSL.
+    """
+    usual = {} if given.get("layout") is not None else dict(table.single)
+    if "backend" in usual and _is_in_glsl_only(str(given.get("encoding", ""))):
+        usual["backend"] = "glsl"
+    return {**usual, **given}
+
+
+def _is_in_glsl_only(names: str) -> bool:
+    """Whether one of the names is a file with a user's encoder without a Python twin."""
+    words = [word.strip() for word in names.split(",") if names_an_encoder(word.strip())]
+    return any(names_a_file(str(file_of(word))) and not names_a_file(str(twin_of(word))) for word in words)
+
+
+def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
+    """The options, and those without which a limited column is not measured: `flip`, `worst_case`, `codes`."""
+    return dict(values) | {option: True for limit in limits if (option := limit.option_of(table))}

@@ -1,0 +1,42 @@
+"""The plugin's own options on pytest's command line. Imports nothing heavy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from ...ground.options.option import Field, fields_of
+from ...tables.registry import TABLES
+
+if TYPE_CHECKING:
+    from .session import Session  # noqa: F401 # named in a text
+
+REQUIRE_GL, BASELINE, WRITE_BASELINE = "require_gl", "baseline", "write_baseline"
+SESSION = pytest.StashKey["Session"]()
+
+
+def mirrored() -> dict[str, list[Field]]:
+    """The options of all tables by name; several tables may have one of the same name."""
+    found: dict[str, list[Field]] = {}
+    for table in TABLES.values():
+        for name, field in fields_of(table.options).items():
+            found.setdefault(name, []).append(field)
+    return found
+
+
+def flag(name: str) -> str:
+    """An option as typed."""
+    return f"--{destination(name)}".replace("_", "-")
+
+
+def destination(name: str) -> str:
+    """An option as pytest keeps it."""
+    return f"normalbench_{name}"
+
+
+def baseline_path(config: pytest.Config) -> Path | None:
+    """The file that rows are compared with; None where none is named."""
+    named = config.getoption(destination(BASELINE))
+    return config.invocation_params.dir / named if named else None

@@ -1,0 +1,150 @@
+"""The pytest plugin: measures a codec once a session, and holds it to limits or to a baseline.
+
+    def test_normals(normalbench):
+        row = normalbench.quality(encoding="octahedral", storage="rgba8")
+        row.assert_that(psnr_db="at least 49.5", angle_max_deg="at most 0.96")
+
+Nothing heavy is imported before something is measured, so that a run of tests that does not use it pays for a few
+options alone. With xdist every worker measures what its own tests ask for, at most once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from ...ground.options.option import Field
+from ...ground.output.errors import MissingError, UsageError
+from .own_options import BASELINE, REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, flag, mirrored
+
+if TYPE_CHECKING:
+    from .session import Normalbench
+
+MARKER = (
+    'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options, which are '
+    "those of the table's command, and hold columns of the rows to limits before the test runs."
+)
+KEPT = "normalbench_baseline"
+REPORTED = pytest.StashKey[list[str]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("normalbench", "normalbench: for tests that do not say otherwise")
+    for name, fields in mirrored().items():
+        group.addoption(flag(name), dest=destination(name), default=None, **_parsed(fields))
+    group.addoption(
+        flag(REQUIRE_GL), action="store_true", help="Without a GL driver fail tests that need one. Default: skip them."
+    )
+    group.addoption(flag(BASELINE), metavar="FILE", help="What .matches_baseline() compares rows with.")
+    group.addoption(flag(WRITE_BASELINE), action="store_true", help="Write the baseline instead of comparing with it.")
+
+
+def _parsed(fields: list[Field]) -> dict[str, Any]:
+    """How argparse takes an option."""
+    kinds, said = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
+    # Where tables take different kinds, each reads the text in its own way.
+    kind = kinds.pop() if len(kinds) == 1 else str
+    if kind is bool:
+        return {"action": argparse.BooleanOptionalAction, "help": said.replace("%", "%%")}
+    return {"type": kind, "metavar": kind.__name__.upper(), "help": said.replace("%", "%%")}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", MARKER)
+    if config.getoption(destination(WRITE_BASELINE)):
+        _check_baseline(baseline_path(config))
+
+
+def _check_baseline(path: Path | None) -> None:
+    """Said before anything is measured. Raises pytest.UsageError where it could not be written afterwards."""
+    from ...ground.output.writing import check_writable
+
+    if not path:
+        raise pytest.UsageError(f"{flag(WRITE_BASELINE)} needs {flag(BASELINE)} FILE")
+    try:
+        check_writable(path, makes_folder=True)
+    except UsageError as error:
+        raise pytest.UsageError(str(error)) from error
+
+
+@pytest.fixture
+def normalbench(request: pytest.FixtureRequest) -> Normalbench:
+    """Measures codecs: .quality(...) and .render(...) give rows to hold to limits; files lie beside the test's own."""
+    return _measuring(request.config, request.path.parent)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> None:
+    """Hold what the test's markers name before the test itself."""
+    said = [said for mark in item.iter_markers("normalbench") if (said := _broken(item, mark))]
+    if said:
+        pytest.fail("\n".join(said), pytrace=False)
+
+
+def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
+    """What measures for the tests of a folder; where the program does not run they fail, and other tests do not."""
+    from ...ground.machine.system import prepare
+
+    try:
+        prepare()
+    except MissingError as error:
+        pytest.fail(str(error), pytrace=False)
+    from .session import Normalbench, session_of
+
+    return Normalbench(session_of(config), folder)
+
+
+def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
+    try:
+        _measuring(item.config, item.path.parent).hold_mark(mark.args, mark.kwargs)
+    except (AssertionError, UsageError) as error:
+        return str(error)
+    return ""
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """A file of gates, where it is named on the command line: a test for each gate."""
+    if file_path.suffix == ".toml" and _is_named(file_path, parent.config):
+        from .gate_files import GateFile
+
+        return GateFile.from_parent(parent, path=file_path)
+    return None
+
+
+def _is_named(path: Path, config: pytest.Config) -> bool:
+    # Session.isinitpath forgets a file that lies in a folder that is named as well.
+    here = config.invocation_params.dir
+    return str(path) in [os.path.abspath(here / word.partition("::")[0]) for word in config.args]  # noqa: PTH100 # no link
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """A worker of xdist is done: what it measured for the baseline is written here, once, with the others'."""
+    if text := getattr(node, "workeroutput", {}).get(KEPT):
+        node.config.stash.setdefault(REPORTED, []).append(text)
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Write the baseline whole, or hand what belongs there to the process that does."""
+    config, path = session.config, baseline_path(session.config)
+    if exitstatus not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or not path:
+        return
+    own = config.stash[SESSION].baseline if SESSION in config.stash else None
+    dumped = [*config.stash.get(REPORTED, []), own.dumped() if own else ""]
+    if hasattr(config, "workeroutput"):
+        config.workeroutput[KEPT] = "".join(dumped)  # pyright: ignore[reportAttributeAccessIssue] # of xdist's workers
+    elif any(dumped):
+        _write(path, [text for text in dumped if text])
+
+
+def _write(path: Path, dumped: list[str]) -> None:
+    from ..gates.baseline import write_baseline
+
+    try:
+        write_baseline(path, dumped)
+    except UsageError as error:
+        pytest.exit(str(error), returncode=2)

@@ -1,0 +1,242 @@
+"""What the pytest plugin measures, once a session, and what a test may do with it."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, NoReturn, ParamSpec, TypeVar
+
+import pytest
+
+from ....encodings.codecs.files import CatalogueError
+from ...ground.machine.devices import found_device
+from ...ground.options.option import checked_options, fields_of
+from ...ground.output.errors import MissingError, UsageError
+from ...tables.registry import TABLES
+from ...tables.table import Row, Table
+from ..gates.baseline import Baseline, checked_tolerances, entry
+from ..gates.gates import WRITER
+from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
+from ..gates.measured import Found, located, measured, single, table_named, with_their_options
+from .own_options import REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, mirrored
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def ends_here(method: Callable[P, T]) -> Callable[P, T]:
+    """What a test calls: the traceback of what it did wrong, or of a limit that is broken, ends in the test."""
+
+    @functools.wraps(method)
+    def call(*arguments: P.args, **named: P.kwargs) -> T:
+        __tracebackhide__ = True
+        try:
+            return method(*arguments, **named)
+        except AssertionError as error:
+            raise AssertionError(str(error)) from None
+        except (UsageError, CatalogueError) as error:
+            raise UsageError(str(error)) from None
+
+    return call
+
+
+@dataclass
+class Session:
+    """Everything that a session of tests has measured.
+
+    Attributes:
+        usual: options for tests that do not say otherwise, as typed in folder `typed_in`.
+        require_gl: whether a missing GL driver fails a test that needs one, and does not skip it.
+        baseline: the file to compare with; None where none was named.
+    """
+
+    usual: Mapping[str, Any]
+    typed_in: Path
+    require_gl: bool
+    baseline: Baseline | None
+    _found: dict[str, list[Found]] = field(default_factory=dict, repr=False)
+
+    def measured(self, table: Table, values: Mapping[str, Any], folder: Path) -> Measured:
+        """Rows of a table, measured now or before; files are looked for in a folder.
+
+        Raises:
+            UsageError, MissingError: see measured.measured.
+        """
+        known = fields_of(table.options)
+        usual = {name: known[name].parsed(value) for name, value in self.usual.items() if name in known}
+        asked = checked_options(table.options, {**usual, **values})
+        said = {name: value for name, value in asked.items() if name in values}
+        options = located(table, asked, self.typed_in) | located(table, said, folder)
+        key = json.dumps([table.name, str(Path.cwd()), options], sort_keys=True)
+        if key not in self._found:
+            self._found[key] = measured(table, options)
+        return Measured(self, table, asked, self._found[key])
+
+    def lacking(self, error: MissingError) -> NoReturn:
+        """This machine has no GL driver: skip the test, or fail it. What else it may lack can be installed by pip."""
+        if str(error) == found_device()[1] and not self.require_gl:
+            pytest.skip(str(error))
+        pytest.fail(str(error), pytrace=False)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Rows, of one codec mostly, and what they must keep. `measured["psnr_db"]` is the figure of a single row."""
+
+    session: Session = field(repr=False)
+    table: Table
+    asked: Mapping[str, Any]
+    found: list[Found] = field(repr=False)
+
+    @property
+    def rows(self) -> list[Row]:
+        """The rows, by column."""
+        return [one.row for one in self.found]
+
+    @ends_here
+    def __getitem__(self, column: str) -> Any:
+        if len(self.found) != 1:
+            raise UsageError(f"there are {len(self.found)} rows; take one of .rows")
+        self._skip_where_lacking()
+        return self.rows[0][column]
+
+    @ends_here
+    def assert_that(self, **limits: str) -> None:
+        """Every row keeps a limit on each column: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
+
+        Raises:
+            AssertionError: one does not: the figure, the limit, and the worst normal.
+            UsageError: there is no such column, or it is not a limit.
+        """
+        if not limits:
+            raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
+        self.hold(_limit(column, text) for column, text in limits.items())
+
+    def hold(self, limits: Iterable[Limit]) -> None:
+        """Every row keeps every limit; see assert_that."""
+        limits = list(limits)
+        for one in limits:
+            one.check(self.table)
+            option = one.option_of(self.table)
+            if option and not getattr(self.table.options(**self.asked), option):
+                raise UsageError(f"{one.column} is measured only with {option}=True; add it")
+        self._raise_for((one, self._broken(one.row, limits)) for one in self._measurable())
+
+    def _broken(self, row: Row, limits: Iterable[Limit]) -> list[str]:
+        return [said for one in limits_on(row, limits) if (said := one.broken_by(self.table, row))]
+
+    @ends_here
+    def matches_baseline(self, **tolerances: float) -> None:
+        """Every row is what the baseline says, to the last digit where no tolerance is stated.
+
+        With --normalbench-write-baseline it becomes what the baseline says.
+
+        Raises:
+            AssertionError: it is not, or there is no such row.
+            UsageError: no baseline is named, or the file is none.
+        """
+        baseline = self.session.baseline
+        if not baseline:
+            raise UsageError("no baseline is named; --normalbench-baseline FILE names one")
+        checked_tolerances(tolerances, list(self.rows[0]))
+        wrong: list[tuple[Found, list[str]]] = []
+        for one in self._measurable():
+            said = entry(self.table, self._request(), one.row, one.listing)
+            if baseline.writes:
+                baseline.record(said)
+            else:
+                wrong.append(
+                    (one, [f"{self.table.name_of(one.row)}: {x}" for x in baseline.differences(said, tolerances)])
+                )
+        self._raise_for(wrong)
+
+    def _request(self) -> dict[str, Any]:
+        """Every option, those that nobody named with what is usual."""
+        return asdict(self.table.options(**single(self.table, self.asked)))
+
+    def _measurable(self) -> list[Found]:
+        """The rows less those that a missing GL driver left empty."""
+        missing = found_device()[1] if any(row.get("skipped") for row in self.rows) else ""
+        return [one for one in self.found if not missing or one.row.get("skipped") != missing]
+
+    def _raise_for(self, wrong: Iterable[tuple[Found, list[str]]]) -> None:
+        lines: list[str] = []
+        for one, said in wrong:
+            lines += said
+            lines += [f"  worst normal: {one.worst}"] if said and one.worst else []
+        if lines:
+            raise AssertionError("\n".join(lines))
+        self._skip_where_lacking()
+
+    def _skip_where_lacking(self) -> None:
+        if len(self._measurable()) < len(self.found):
+            self.session.lacking(MissingError(found_device()[1]))
+
+
+def _limit(column: str, text: Any) -> Limit:
+    found = limit(column, text)
+    if not found:
+        raise not_a_limit(column, text)
+    return found
+
+
+@dataclass(frozen=True)
+class Normalbench:
+    """What the fixture `normalbench` is: a method for each table, with the options of its command.
+
+    A file is looked for in the test's folder first.
+    """
+
+    session: Session = field(repr=False)
+    folder: Path
+
+    def __getattr__(self, name: str) -> Callable[..., Measured]:
+        """A table's method: it measures with the options of the table's command."""
+        if name not in TABLES:
+            raise AttributeError(f"no table {name!r}; known: {', '.join(TABLES)}")
+        return functools.partial(self._measured, TABLES[name])
+
+    @ends_here
+    def hold(self, table: Table, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
+        """Measure, and hold every row to limits; see Measured.assert_that."""
+        limits = list(limits)
+        for one in limits:
+            one.check(table)
+        self._measured(table, **with_their_options(table, options, limits)).hold(limits)
+
+    def matches(self, table: Table, options: Mapping[str, Any], path: Path) -> None:
+        """Measure, and compare every row with a baseline; see Measured.matches_baseline."""
+        measured = self._measured(table, **options)
+        replace(measured, session=replace(measured.session, baseline=Baseline(path, False, WRITER))).matches_baseline()
+
+    @ends_here
+    def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
+        """What a marker says. Raises AssertionError for a row that does not keep it, UsageError where it is misused."""
+        if positional:
+            raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
+        table = table_named(values.get("table", "quality"))
+        options, limits = split_limits({name: value for name, value in values.items() if name != "table"}, table)
+        self.hold(table, options, limits)
+
+    @ends_here
+    def _measured(self, table: Table, /, **options: Any) -> Measured:
+        try:
+            return self.session.measured(table, options, self.folder)
+        except MissingError as error:
+            self.session.lacking(error)
+
+
+def session_of(config: pytest.Config) -> Session:
+    """The one of this process, made when it is first asked for."""
+    if SESSION not in config.stash:
+        usual, path = {name: config.getoption(destination(name)) for name in mirrored()}, baseline_path(config)
+        config.stash[SESSION] = Session(
+            usual={name: value for name, value in usual.items() if value is not None},
+            typed_in=config.invocation_params.dir,
+            require_gl=bool(config.getoption(destination(REQUIRE_GL))),
+            baseline=Baseline(path, bool(config.getoption(destination(WRITE_BASELINE)))) if path else None,
+        )
+    return config.stash[SESSION]

@@ -1,0 +1,154 @@
+"""Codecs on arrays, NumPy's or JAX's, of shape (..., 3).
+
+The functions can be jitted, and differentiated where the maths is: rounding has no slope, decoding has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import Storage
+from ....encodings.vec import Vec2, Vec3, Vec4, from_array, to_array
+from ...ground.output.errors import UsageError
+from ...subjects.codecs.names import codecs_named
+
+# Where the view position is not given, the viewer looks along -z.
+AHEAD = (0.0, 0.0, -1.0)
+CODES = {2: Vec2, 3: Vec3, 4: Vec4}
+# Integers with the bits of a float, by its size.
+BITS = {16: (jnp.float16, jnp.uint16), 32: (jnp.float32, jnp.uint32)}
+
+
+class Codes(NamedTuple):
+    """What is stored of normals.
+
+    Attributes:
+        values: the numbers that the texels stand for, float32 of shape (..., components). `decode` takes them.
+        integers: the stored integers, of the same shape; of floats, their bits.
+    """
+
+    values: Any
+    integers: Any
+
+
+def encoding(
+    name: str,
+    encode: Callable[[Vec3, Vec3], Any],
+    decode: Callable[[Any, Vec3], Vec3],
+    components: int = 2,
+    domain: str = "sphere",
+    glsl: Path | None = None,
+) -> Encoding:
+    """An encoding of your own functions, for `Codec` and for every table.
+
+    Args:
+        name: what rows call it.
+        encode: (n, view) -> Vec2 or Vec3 of numbers in [-1, 1]; `n` is a unit normal with n.x, n.y, n.z.
+        decode: (code, view) -> Vec3.
+        components: how many numbers are stored, 2 or 3.
+        domain: the normals it can hold: "sphere", "hemisphere" (z >= 0) or "view".
+        glsl: a file with its GLSL twin; without one, rows by GLSL say that it is missing.
+    """
+    if not name.isidentifier() or components not in CODES:
+        raise UsageError(f"encoding {name!r}: the name is an identifier, and components are 2 or 3")
+    if name in ENCODINGS:
+        raise UsageError(f"encoding {name!r}: the catalogue has one of this name; choose another name")
+    twin = glsl or Path(f"{name}.glsl")
+    return Encoding(name, name, encode, decode, components, domain, "the caller's own", twin, (0, 0), "not compared")
+
+
+def codec_of(codec: Codec | str) -> Codec:
+    """A codec, or the one that "encoding/storage" or "encoding/storage/rounding" names. Raises UsageError."""
+    if isinstance(codec, Codec):
+        found = codec
+    else:
+        words = codec.split("/")
+        if len(words) not in (2, 3):
+            raise UsageError(f'codec {codec!r}: name an encoding and a storage, such as "octahedral/rg8"')
+        (found,) = codecs_named(words[0], words[1], words[2] if len(words) > 2 else "nearest")
+    if found.misfit:
+        raise UsageError(f"{found.name}: {found.misfit}")
+    return found
+
+
+def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
+    """Encode unit normals and store them.
+
+    Args:
+        codec: a Codec, or its name, such as "octahedral/rg8".
+        normals: unit vectors in view space (z towards the viewer), shape (..., 3).
+        view: view-space positions of the same shape, for encodings that need them; None for a viewer along -z.
+
+    Returns:
+        the stored numbers and integers.
+
+    Raises:
+        UsageError: there is no such codec, or an array of another shape.
+    """
+    chosen, n = codec_of(codec), _planes("normals", normals)
+    stored = chosen.stored(n, _view(view, n))
+    integers = [_integer(chosen, component, c) for component, c in enumerate(stored)]
+    return Codes(jnp.stack(list(stored), axis=-1), jnp.stack(integers, axis=-1))
+
+
+def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
+    """The normals that stored numbers decode to.
+
+    Args:
+        codes: what `encode` gave, or its `values`, shape (..., components).
+        view: as for `encode`.
+
+    Returns:
+        float32 array of shape (..., 3), as the decoder gives it: not normalised again.
+
+    Raises:
+        UsageError: there is no such codec, or an array of another shape.
+    """
+    chosen = codec_of(codec)
+    values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
+    if jnp.issubdtype(values.dtype, jnp.integer):
+        raise UsageError(f"codes are of {values.dtype}; decode takes what encode gave, or its values in [-1, 1]")
+    values = values.astype(jnp.float32)
+    size = chosen.encoding.components + chosen.encoding.sign_bits
+    if values.ndim < 1 or values.shape[-1] != size:
+        raise UsageError(f"codes have shape {values.shape}; {chosen.name} needs (..., {size})")
+    code = CODES[size](*(values[..., i] for i in range(size)))
+    return to_array(chosen.encoding.decode(code, _view(view, Vec3(code.x, code.x, code.x))))
+
+
+def _planes(what: str, array: Any) -> Vec3:
+    array = jnp.asarray(array, jnp.float32)
+    if array.ndim < 1 or array.shape[-1] != 3:
+        raise UsageError(f"{what} have shape {array.shape}; (..., 3) is needed")
+    return from_array(array)
+
+
+def _view(view: Any, like: Vec3) -> Vec3:
+    if view is not None:
+        return _planes("view positions", view)
+    return Vec3(*(jnp.full_like(like.x, component) for component in AHEAD))
+
+
+def _integer(codec: Codec, component: int, number: Any) -> Any:
+    """The integer that a stored number lies in its texel as, uint32."""
+    storage: Storage = codec.storage
+    if component >= codec.encoding.components:
+        return (number > 0).astype(jnp.uint32)
+    number = number * 0.5 + 0.5 if storage.is_biased else number
+    if storage.kind == "float":
+        kind, bits = BITS[storage.bits[component]]
+        return jax.lax.bitcast_convert_type(number.astype(kind), bits).astype(jnp.uint32)
+    scale = storage.scale(component)
+    if storage.kind == "unorm":
+        return jnp.rint(number * scale).astype(jnp.uint32)
+    signed = jnp.rint(number * scale).astype(jnp.int32)
+    # Laid across channels, -1 is the integer 0; else it is two's complement.
+    return signed.astype(jnp.uint32) + scale if storage.is_packed else signed.astype(jnp.uint32)

@@ -1,0 +1,56 @@
+"""What type checkers and editors are told of `import normalbench`: bench/door/api/__init__.pyi, made from the registry.
+
+python -m normalbench.bench.door.python.stub > bench/door/api/__init__.pyi
+"""
+
+from __future__ import annotations
+
+import textwrap
+
+from ...ground.options.option import Field, fields_of
+from ...run.workers.words import HELP
+from ...tables.registry import TABLES
+from ...tables.table import Table
+
+HEAD = '''"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/door/python."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .bench.door.python.codecs import Codes as Codes
+from .bench.door.python.codecs import decode as decode
+from .bench.door.python.codecs import encode as encode
+from .bench.door.python.codecs import encoding as encoding
+from .bench.door.python.tables import Rows as Rows
+from .encodings.codecs.codec import Codec as Codec
+from .encodings.codecs.encoding import Encoding as Encoding
+from .encodings.storages.storage import Storage as Storage
+
+Named = str | Encoding | Storage
+Names = Named | Sequence[Named | float] | Mapping[str, Any]
+
+'''
+
+
+def stub() -> str:
+    """The text of the file."""
+    return HEAD + "\n".join(map(_function, TABLES.values()))
+
+
+def _function(table: Table) -> str:
+    options = fields_of(table.options)
+    said = "".join(f"\n    {name}: {one.option.help}" for name, one in options.items()) + f"\n    on: {HELP}"
+    doc = textwrap.indent(f'"""{table.help}\n\nArgs:{said}\n"""', "    ")
+    parameters = "".join(f"    {name}: {_type(one)} = ...,\n" for name, one in options.items())
+    parameters += "    on: str | None = ...,\n"
+    return f"def {table.name}(\n    *,\n{parameters}) -> Rows:\n{doc}\n"
+
+
+def _type(one: Field) -> str:
+    """Text stands for names too, in a list or as the caller's own values."""
+    kind = "Names" if one.kind is str else one.kind.__name__
+    return kind if one.default is not None else f"{kind} | None"
+
+
+if __name__ == "__main__":
+    print(stub(), end="")

@@ -1,0 +1,141 @@
+"""Tables as functions: the options of a table's command in, a pandas DataFrame out."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.storage import Storage
+from ...ground.options.option import checked_options, fields_of
+from ...ground.options.words import Words
+from ...ground.output.errors import UsageError
+from ...keep.measuring import Nothing, asked, measured
+from ...run.workers.places import place
+from ...run.workers.words import HELP, check_place
+from ...subjects.normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN
+from ...subjects.normals.normal_sets import NORMAL_SETS, from_arrays
+from ...tables.registry import TABLES
+from ...tables.table import Measured, Table
+
+
+class Rows(pd.DataFrame):
+    """A table's rows, one to a line of the data frame. A notebook shows them with the table's charts.
+
+    `attrs` has the table's name, and each column's unit and definition.
+    """
+
+    _metadata = ["measured"]  # noqa: RUF012 # pandas reads a list
+
+    @property
+    def _constructor(self) -> type[pd.DataFrame]:
+        """What is cut out of it is a plain data frame."""
+        return pd.DataFrame
+
+    def charts(self) -> list[Any]:
+        """The table's charts as matplotlib figures; none where it has none."""
+        table, done = self.measured
+        return [drawing.draw() for drawing in _drawings(table, done)]
+
+    def _repr_html_(self) -> str:
+        table, done = self.measured
+        return str(super()._repr_html_()) + "".join(map(_svg, _drawings(table, done)))
+
+
+def _drawings(table: Table, done: Measured) -> list[Any]:
+    try:
+        return list(table.work.drawings(None, [dict(row) for row in done.rows]))
+    except AttributeError:  # of charts that a whole run is needed for
+        return []
+
+
+def _svg(drawing: Any) -> str:
+    from io import StringIO
+
+    from ....reports.charts.plots import save
+
+    text = StringIO()
+    save(drawing.draw(), (text, "svg"))  # pyright: ignore[reportArgumentType] # matplotlib writes to either
+    return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+@cache
+def function_of(name: str) -> Callable[..., Rows]:
+    """The function of a table: its options are keyword arguments, and lists stand for comma-separated names."""
+    table = TABLES[name]
+
+    def call(*, on: str | None = None, **options: Any) -> Rows:
+        given = {key: _typed(key, value) for key, value in options.items()}
+        chosen = table.options(**checked_options(table.options, given))
+        check_place(on)
+        with place(on) as where:
+            return _framed(table, measured(asked(table, chosen), Nothing(), where))
+
+    known = fields_of(table.options)
+    parameters = [inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=f.default) for n, f in known.items()]
+    parameters.append(inspect.Parameter("on", inspect.Parameter.KEYWORD_ONLY, default=None))
+    call.__name__ = call.__qualname__ = name
+    call.__signature__ = inspect.Signature(parameters, return_annotation=Rows)  # pyright: ignore[reportFunctionMemberAccess]
+    said = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items()) + f"\n    on: {HELP}"
+    call.__doc__ = f"{table.help}\n\nArgs:{said}\n\nReturns:\n    a pandas DataFrame, a line for each row.\n"
+    return call
+
+
+def _framed(table: Table, done: Measured) -> Rows:
+    rows = Rows(list(done.rows))
+    columns = {name: column for name in rows.columns if (column := table.column(name))}
+    rows.attrs = {
+        "table": table.name,
+        "units": {name: column.unit for name, column in columns.items() if column.unit},
+        "definitions": {name: column.says for name, column in columns.items()},
+    }
+    object.__setattr__(rows, "measured", (table, done))
+    return rows
+
+
+def _typed(key: str, value: Any) -> Any:
+    """An argument as an option has it: several become one text, values of the caller's own among them."""
+    several = list(value) if isinstance(value, list | tuple) else [value]
+    if isinstance(value, Mapping):
+        return Words(list(value), {name: _value(key, name, one) for name, one in value.items()})
+    if key == "size" and len(several) == 2 and all(isinstance(side, int) for side in several):
+        return f"{several[0]}x{several[1]}"
+    if not any(isinstance(one, Encoding | Storage) for one in several) and not isinstance(value, list | tuple):
+        return value
+    own = {one.name: one for one in several if isinstance(one, Encoding | Storage)}
+    return Words([one.name if isinstance(one, Encoding | Storage) else str(one) for one in several], own)
+
+
+def _check_unit(name: str, array: np.ndarray) -> None:
+    """Raises UsageError for numbers that are not unit normals, zeros for background apart."""
+    if not np.issubdtype(array.dtype, np.floating):
+        raise UsageError(f"normals: {name} is of {array.dtype}; give floats in [-1, 1]")
+    if not np.isfinite(array).all():
+        raise UsageError(
+            f"normals: {name} has numbers that are NaN or infinite; set those normals to 0 to leave them out"
+        )
+    lengths = np.linalg.norm(array.reshape(-1, 3).astype(np.float64), axis=1)
+    off = np.mean(abs(lengths[lengths > 0] - 1) > UNIT_WITHIN) if (lengths > 0).any() else 1.0
+    if off > OFF_UNIT_SHARE:
+        raise UsageError(f"normals: {off:.1%} of {name} are not unit vectors; divide by their lengths, or unpack them")
+
+
+def _value(key: str, name: str, value: Any) -> Any:
+    """An array of normals under a name, as a set to measure on: shape (..., 3)."""
+    array = np.asarray(value)
+    if key != "normals" or array.ndim < 2 or array.shape[-1] != 3 or not array.size:
+        raise UsageError(f"{key}: {name} stands for an array of normals of shape (count, 3) or (height, width, 3)")
+    if name in NORMAL_SETS:
+        raise UsageError(f"normals: {name} is a set of normalbench's own; call yours otherwise")
+    _check_unit(name, array)
+    array = array.astype(np.float32)
+    flat = array.reshape(-1, 3)
+    shape: tuple[int, int] | None = (array.shape[0], array.shape[1]) if array.ndim == 3 else None
+    view = np.tile(np.array([0, 0, -1], np.float32), (len(flat), 1))
+    covered = np.any(flat != 0, axis=-1)
+    return from_arrays(name, f"the caller's {name}", flat, view, covered, shape)

@@ -1,0 +1,278 @@
+"""What `run` does: many tables into a results folder with its page. A run that was stopped goes on."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
+from ..ground.options.option import fields_of
+from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
+from ..ground.output.progress import progress_of_all
+from ..ground.output.writing import say
+from ..keep.measuring import Asked, Place, asked, measured, with_parts
+from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
+from ..keep.table_files import write_tables
+from ..run.second import Second, is_worth_it, second_process
+from ..run.workers.places import keep_times, place
+from ..show.showing import say_lines, say_skipped, show_summary
+from ..tables.registry import TABLES
+from ..tables.table import Measured, Table
+from .table_command import in_folder
+
+RESULTS = Path("results")
+PAGE = "report.html"
+SECOND = "normalbench.bench.door.second_child"
+
+
+def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
+    """The tables that comma-separated names stand for; of "all" those measured unasked, with the options that were
+    said. Raises UsageError."""
+    known = {name: table for table in TABLES.values() for name in (table.name, *table.old_names)}
+    if names.strip() == "all":
+        return [table for table in TABLES.values() if table.is_in_all(said)]
+    return list(dict.fromkeys(pick("table", names, known)))
+
+
+def given(request: Any) -> dict[str, Any]:
+    """What of a request was said."""
+    values = {field.name: getattr(request, field.name) for field in fields(request) if field.name != "tables"}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
+    """A table's options in a run: what is usual, and what was said in place of it."""
+    known = fields_of(table.options)
+    own = {name: value for name, value in said.items() if name in known and known[name].option.in_run}
+    # A layout is measured as it is where nothing is said to put into it.
+    is_as_it_is = own.get("layout") and not {"encoding", "storage", "rounding"} & set(own)
+    unusual = {"encoding"} if is_as_it_is else set()
+    chosen = ({name: value for name, value in usual.items() if name not in unusual} for usual in table.usual)
+    replaced = {key: value for name in own for key, value in table.usual_where_said.get(name, {}).items()}
+    return [table.options(**usual | replaced | own) for usual in chosen]
+
+
+def asked_of(request: Any, folder: Path) -> list[Asked]:
+    """What a request asks of each table; which of them this machine cannot measure is said on standard error.
+
+    Raises:
+        UsageError: an unknown table, or an option that cannot be.
+        MissingError: this machine can measure none of them.
+    """
+    made: list[Asked] = []
+    reasons: dict[str, list[str]] = {}
+    chosen = chosen_tables(request.tables, given(request))
+    _check_taken(chosen, given(request))
+    for table in chosen:
+        try:
+            made.append(_asked(table, given(request), folder))
+        except MissingError as error:
+            reasons.setdefault(str(error), []).append(table.name)
+        except UsageError as error:
+            raise UsageError(f"{table.name}: {error}") from error
+    if not made:
+        raise MissingError("; ".join(reasons))
+    for reason, names in reasons.items():
+        leave_out(f"{', '.join(names)}: {reason}")
+    return made
+
+
+def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
+    """Raises UsageError for an option that none of the tables takes."""
+    for name in said:
+        takers = [table for table in TABLES.values() if _takes(table, name)]
+        if not set(takers) & set(chosen):
+            option, those = name.replace("_", "-"), ", ".join(table.name for table in takers)
+            raise UsageError(f"--{option} is an option of {those}; none of them is measured")
+
+
+def _takes(table: Table, name: str) -> bool:
+    """Whether a run passes an option on to a table."""
+    known = fields_of(table.options)
+    return name in known and known[name].option.in_run
+
+
+def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
+    """What is asked of one table, each step once."""
+    if missing := table.work.missing():
+        raise MissingError(missing)
+    outputs = in_folder(table, table.outputs(), folder)
+    asks = [asked(table, options, outputs) for options in options_of(table, said)]
+    steps = {repr(step.key): step for ask in asks for step in ask.steps}
+    return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
+
+
+def run_command(request: Any, output: Path | None, on: str | None = None) -> int:
+    """Measure tables into a results folder, their summaries to standard output. What was stopped goes on.
+
+    Args:
+        on: where they are measured; None for this process.
+
+    Returns:
+        the exit status: 1 where a row fails.
+    """
+    have_few_heaps()
+    # It imports what it needs while this process does, and finds out what there is to measure.
+    with _second(request, on) as second:
+        from ..ground.machine.devices import require_jax
+
+        require_jax()
+        facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
+        facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
+        folder = output or unfinished(RESULTS, facts) or _new_folder()
+        with noting_what_is_left_out() as left_out:
+            asks = asked_of(request, folder)
+        facts |= {"left_out": left_out}
+        keep_what_is_imported()
+        with place(on) as where, opened(folder, facts) as run:
+            shown = _measured_and_shown(run, asks, given(request), where, second)
+    return int(shown.failed)
+
+
+def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
+    """The second process, where there is something for it to do."""
+    is_wanted = not on and is_worth_it(chosen_tables(request.tables, given(request)))
+    return second_process(SECOND) if is_wanted else nullcontext()
+
+
+def _measured_and_shown(
+    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
+) -> Shown:
+    total = sum(1 for ask in asks for _ in with_parts(ask.steps))
+    if run.kept:
+        tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
+    try:
+        with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)):
+            shown = _measure_all(run, asks, said, where, second)
+        shown.written |= second.written if second else set()
+        run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
+        keep_times(where, run.folder)
+        _complete(run, shown, second.drawn if second else {})
+    except (KeyboardInterrupt, SystemExit):
+        tell(f"{run.kept} of {total} steps are kept; the same command goes on")
+        raise
+    return shown
+
+
+def _there(run: Run, asks: Iterable[Asked]) -> int:
+    return sum(run.find(ask.table.name, step) is not None for ask in asks for step in with_parts(ask.steps))
+
+
+def _new_folder() -> Path:
+    named = RESULTS / time.strftime("%Y%m%d-%H%M%S")
+    others = (named.with_name(f"{named.name}-{number}") for number in itertools.count(2))
+    return next(folder for folder in itertools.chain([named], others) if not folder.exists())
+
+
+def _measure_all(
+    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
+) -> Shown:
+    """Every table measured and shown."""
+    # The answer first: this process measures nothing else while people wait for it.
+    first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
+    shown = Shown([*first, *rest])
+    beside = [ask for ask in rest if ask.table.is_measured_beside]
+    helping = second if is_worth_it(ask.table for ask in rest) else None
+    if helping:
+        helping.measure(run, {"measure": (beside, _taken(said, beside)), "write": (first, _taken(said, first))})
+    for ask in first:
+        shown.add(ask, measured(ask, run, where))
+    if helping:
+        _measure_others(run, [ask for ask in rest if ask not in beside], beside, shown, helping)
+    # All that the second process did not get to, because something killed it or there is none.
+    for ask in rest:
+        if ask.table.name not in shown.done:
+            shown.add(ask, measured(ask, run, where))
+    return shown
+
+
+def _measure_others(run: Run, asks: Iterable[Asked], beside: Sequence[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process does not measure; those that it measures `beside` are shown once it has."""
+    # What takes times is measured when nothing else runs.
+    for ask in sorted(asks, key=_takes_times):
+        if _takes_times(ask):
+            second.wait()
+        shown.add(ask, measured(ask, run))
+        _add_written(run, beside, shown, second)
+    second.wait()
+    _add_written(run, beside, shown, second)
+
+
+def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process has finished meanwhile."""
+    for ask in asks:
+        if ask.table.name in second.written - shown.written:
+            shown.written.add(ask.table.name)
+            shown.add(ask, measured(ask, run))
+
+
+def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
+    """What was said of some tables."""
+    return {name: value for name, value in said.items() if any(_takes(ask.table, name) for ask in asks)}
+
+
+def _takes_times(ask: Asked) -> bool:
+    """Whether a clock is read for any of a table's rows."""
+    return any(ask.table.work.is_timed(step) for step in ask.steps)
+
+
+class Shown:
+    """Tables as they are measured: shown in the order in which they were asked for, whichever is done first.
+
+    Attributes:
+        failed: whether a row fails.
+        done: what was measured, by table.
+        written: the tables whose files are written.
+    """
+
+    def __init__(self, asks: Sequence[Asked]):
+        self.failed, self.asks = False, asks
+        self.done: dict[str, Measured] = {}
+        self.written: set[str] = set()
+        self._left = deque(asks)
+
+    def add(self, ask: Asked, done: Measured) -> None:
+        """A table that is measured; shown once those before it are."""
+        self.done[ask.table.name] = done
+        give_back_what_a_table_needed()
+        while self._left and self._left[0].table.name in self.done:
+            table = self._left.popleft().table
+            self.failed |= _show(table, self.done[table.name].rows)
+
+
+def _show(table: Table, rows: Sequence[Row]) -> bool:
+    """A table's summary, and what is to be said of its rows; whether one fails."""
+    say_skipped(table, rows)
+    say_lines(table.work.warnings(rows))
+    failed = say_lines(table.work.failures(rows))
+    show_summary(table, rows)
+    return failed
+
+
+def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
+    """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
+    from ..show.report import write_report
+
+    write_tables(run.folder, read_run(run.folder).tables)
+    for ask in shown.asks:
+        if ask.table.name not in shown.written:
+            ask.table.work.write(shown.done[ask.table.name], lambda _: None)
+    say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
+    whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
+    page = write_report(run.folder, whole, run.folder / PAGE, drawn=drawn)
+    run.finish()
+    answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
+    say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")
+
+
+def in_short(table: Table, done: Mapping[str, Measured]) -> Iterator[str]:
+    """The first sentence of each of a table's answers."""
+    sheets = table.work.summary(done[table.name].rows) if table.name in done else ()
+    yield from (sheet.said[0] for sheet in sheets if sheet.said)

@@ -1,1 +1,0 @@
-"""Many tables in one run, and the page that shows them."""

@@ -1,0 +1,255 @@
+"""Every bad input there is an answer to, the tests that try it, and those that have no place elsewhere."""
+
+import ast
+import json
+import math
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from normalbench.bench.door.gates.limits import limit
+from normalbench.bench.ground.options.counts import checked_numbers
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.gbuffer.codecs.loops import loop_limit
+
+TESTS = Path(__file__).parents[2]
+# Input, answer, and by file the tests that hold it.
+ANSWERS = {
+    "NaN or infinite normal in a file: masked and counted, over a share refused": {
+        "test_captures": ["test_nan_is_refused_or_masked_and_counted_as_is_asked_for"],
+        "test_bad_scene_files": ["test_a_bad_gltf_is_one_line", "test_a_bad_text_is_one_line"],
+    },
+    "zero-length normal: background, counted, never NaN": {
+        "test_captures": ["test_normals_of_no_length_are_background"],
+    },
+    "not unit, or packed as [0, 1]: refused with the option that would read it": {
+        "test_captures": [
+            "test_packed_floats_are_read_with_unpack",
+            "test_floats_that_are_not_packed_are_not_read_with_unpack",
+            "test_what_is_not_unit_is_refused_with_what_it_is",
+        ],
+    },
+    "truncated or corrupt EXR, glTF, OBJ, PLY: refused with file, place, remedy": {
+        "test_bad_captures": [
+            "test_a_truncated_exr_is_one_line",
+        ],
+        "test_attack": ["test_what_is_damaged_is_measured_or_refused_in_a_line"],
+        "test_bad_scene_files": [
+            "test_a_truncated_glb_is_one_line",
+            "test_a_bad_text_is_one_line",
+        ],
+    },
+    "index out of range, node cycle: refused": {
+        "test_bad_scene_files": ["test_a_bad_gltf_is_one_line", "test_a_bad_text_is_one_line"],
+    },
+    "path that leaves the folder, network address: refused, nothing is fetched": {
+        "test_bad_scene_files": ["test_nothing_is_read_outside_the_folder_or_from_the_network"],
+    },
+    "image or texture larger than the device or a budget: refused before allocation": {
+        "test_bad_captures": [
+            "test_an_exr_that_is_too_large_or_of_another_kind_is_one_line",
+            "test_a_bad_file_is_one_line",
+        ],
+        "test_bad_scene_files": ["test_what_is_too_large_is_refused_before_it_is_read"],
+        "test_render": ["test_bad_input_is_one_line_and_nothing_is_written"],
+    },
+    "a user's shader that does not compile: its file and line, other cases go on": {
+        "test_user_encodings": ["test_what_is_wrong_with_one_spares_the_others"],
+        "test_cli": ["test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone"],
+    },
+    "a user's shader that does not end: a process of its own, a time limit, loops counted": {
+        "test_user_encodings": ["test_a_shader_that_does_not_end_or_kills_the_process_is_named"],
+        "test_bad_inputs": ["test_a_loop_that_does_not_end_spares_the_others"],
+    },
+    "identical images: inf in tables, null and exact in JSON": {
+        "test_bad_inputs": ["test_identical_images_are_infinitely_good"],
+    },
+    "no GL driver: JAX measures, GL rows skipped with the reason, what needs GL exits 3": {
+        "test_cli": [
+            "test_without_a_gl_driver_jax_measures_all_the_same",
+            "test_glsl_alone_without_a_gl_driver_exits_3_and_says_what_to_install",
+        ],
+        "test_plugin": ["test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped"],
+    },
+    "damaged, hostile or enormous device file: its place in one line, nothing is added, markup stays text": {
+        "test_device_file": [
+            "test_a_bad_file_is_one_line_with_its_name_and_the_place",
+            "test_an_enormous_file_is_refused_before_it_is_read",
+            "test_whatever_is_damaged_is_read_or_refused_in_one_line",
+        ],
+        "test_import": ["test_one_bad_file_of_several_leaves_the_run_as_it_was"],
+        "test_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
+    },
+    "interrupted run, full disk: finished rows are kept, running again resumes": {
+        "test_runs": ["test_a_run_killed_again_and_again_ends_as_one_that_was_not"],
+        "test_cli": ["test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table"],
+    },
+    "fuzzed TOML and gate expressions: one line, soon, nothing else opened": {
+        "test_attack": ["test_what_is_damaged_is_measured_or_refused_in_a_line"],
+        "test_bad_inputs": ["test_limits_are_read_or_refused"],
+        "test_check": ["test_no_gates_give_a_traceback"],
+    },
+}
+
+
+def _tests_in(name: str) -> set[str]:
+    tree = ast.parse(next(TESTS.rglob(f"{name}.py")).read_text())
+    return {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+
+
+@pytest.mark.parametrize("what", ANSWERS)
+def test_every_answer_has_its_tests(what):
+    for file, names in ANSWERS[what].items():
+        assert set(names) <= _tests_in(file), f"{file} has no {set(names) - _tests_in(file)}"
+
+
+@contextmanager
+def soon(seconds: float = 2.0) -> Iterator[None]:
+    start = time.process_time()
+    yield
+    taken = time.process_time() - start
+    assert taken < seconds, f"{taken:.1f} s"
+
+
+# Shaders that do not end
+
+
+LOOPS = """
+vec2 mine_encode(vec3 n, vec3 view) {
+    float s = 0.0;
+    %s
+    return n.xy * (s >= 0.0 ? 1.0 : 0.5);
+}
+vec3 mine_decode(vec2 e, vec3 view) {
+    return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))));
+}
+"""
+QUICK = ("--backend", "glsl", "--normals", "hemisphere", "--count", "4096", "--format", "json")
+TOO_LONG = {
+    "while": "while (s < 1.0) { s *= 0.5; }",
+    "for": "for (int i = 0; i >= 0; s += 1e-9) ;",
+    "for without a condition": "for (;;) { if (n.x > 2.0) break; s += 1.0; }",
+    "do": "do { s += n.z * n.z * 1e-9; } while (s < 1.0 /* ) */);",
+    "for too long": "for (int i = 0; i < 100000; i++) { s += 1e-5; }",
+    "one in another": "for (int i = 0; i < 256; i++) for (int j = 0; j < 256; j++) s += 1e-9;",
+    "one after another": "for (int i = 0; i < 40000; i++) s += 1e-9; for (int i = 0; i < 40000; i++) s += 1e-9;",
+    "a keyword by another name": "REPEAT (s < 0.7) s += 1e-5;",
+    "in a function": "for (int i = 0; i < 300; i++) s += inner(s);",
+    "of few directions": "for (int i = 0; i < (n.z > 0.99 ? 70000 : 3); i++) s += 1e-9;",
+}
+BEFORE = """
+#define REPEAT while
+float inner(float s) { int left = 300; do { s *= 0.999; left--; } while (left > 0); return s; }
+"""
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("what", TOO_LONG)
+def test_a_loop_that_the_device_ends_is_named(gl, tmp_path, what):
+    """A software driver ends all loops of a shader together and says nothing; its rows would be of something else."""
+    path = tmp_path / "mine.glsl"
+    path.write_text(BEFORE + LOOPS % TOO_LONG[what])
+    most = loop_limit(gl)
+    if not most:
+        pytest.skip("this device makes all turns")
+    found = first_look(path)["broken"]
+    assert found.startswith("the loops of encode for [") and f"after {most} turns in all this device ends" in found
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_a_loop_that_does_not_end_spares_the_others(run, tmp_path):
+    path = tmp_path / "mine.glsl"
+    path.write_text(LOOPS % TOO_LONG["while"])
+    status, out, err = run("quality", "--encoding", f"{path},xy", *QUICK)
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["xy"]
+    assert err.startswith(f"normalbench: left out: {path}: the loops of encode for [") and err.count("\n") == 1, err
+
+
+@pytest.mark.usefixtures("gl")
+def test_loops_that_end_are_measured(tmp_path):
+    """62500 turns, by loops of every form."""
+    path = tmp_path / "mine.glsl"
+    path.write_text(
+        LOOPS % "for (int i = 0; i < 250; i++) { int j = 0; while (true) { s += 1e-9; if (++j >= 250) break; } }"
+    )
+    assert "broken" not in first_look(path)
+
+
+# Identical images
+
+
+def test_identical_images_are_infinitely_good(run):
+    command = ("quality", "--encoding", "xyz", "--storage", "rgba32f", "--normals", "axes", "--backend", "jax")
+    (row,) = json.loads(run(*command, "--format", "json")[1])
+    assert row["psnr_db"] is None and row["exact"] is True
+    assert run(*command)[1].count(" inf ") == 2, "psnr_db and psnr_article_db"
+
+
+@pytest.mark.usefixtures("gl")
+def test_identical_frames_are_too(run):
+    command = ("render", "--layout", "fp32", "--size", "64x48", "--lights", "2", "--repeats", "1")
+    (row,) = json.loads(run(*command, "--format", "json")[1])
+    assert row["psnr_db"] is None and row["exact"] is True and " inf " in run(*command)[1]
+
+
+# Numbers in a row
+
+
+@pytest.mark.parametrize(
+    "command", [("depth", "--near"), ("depth", "--distance"), ("lights", "--sum"), ("lights", "--counts")]
+)
+@pytest.mark.parametrize("text", ["", ",", "1,x", "nan", "-1", "0", "1e99", "9" * 5000])
+def test_numbers_in_a_row_are_read_by_one_rule(run, command, text):
+    status, out, err = run(*command, text)
+    assert (status, out) == (2, "") and err.count("\n") == 1
+    begin = f"normalbench: {command[1]} {text}: "[:500]
+    assert err.startswith(begin) and err.endswith(", comma-separated\n") and len(err) < 2000, err[-200:]
+
+
+def test_numbers_in_a_row_are_each_there_once():
+    assert checked_numbers("--x", " 2,1,, 2 ,", int, 1, 2) == (2, 1)
+    assert checked_numbers("--x", "0.5,1e0", float, 0.5, 1.0) == (0.5, 1.0)
+
+
+# TOML, gates and baselines
+
+
+TEXTS = st.one_of(
+    st.text(max_size=50),
+    st.tuples(
+        st.sampled_from(["at least", "at most", " AT  LEAST", "at\tmost", "about"]),
+        st.sampled_from(["", " ", "\n ", "\u00a0"]),
+        st.one_of(st.text("0123456789.e+-", max_size=12), st.floats().map(str), st.text(max_size=8)),
+    ).map("".join),
+)
+
+
+@settings(max_examples=500, deadline=None, derandomize=True)
+@given(TEXTS)
+def test_limits_are_read_or_refused(text):
+    """A limit is what it says, or there is one line; what is not a limit is None."""
+    try:
+        found = limit("psnr_db", text)
+    except UsageError as error:
+        assert str(error).startswith("psnr_db: ") and str(error).endswith("is not a number")
+        return
+    if found:
+        assert found.side in ("at least", "at most") and not math.isnan(found.value)
+        assert limit("psnr_db", str(found)).value == pytest.approx(found.value, rel=1e-8)
+
+
+@pytest.mark.parametrize("text", ["1" * 10**6, " " * 10**6, "1." * 10**6, "x" + " " * 10**6 + "y", "e" * 10**6])
+def test_a_long_limit_takes_no_time(text):
+    with soon():
+        for side in ("at least ", "at most\n"):
+            try:
+                assert limit("x", side + text) is None or math.isinf(limit("x", side + text).value)
+            except UsageError as error:
+                assert len(str(error)) < 100

@@ -1,0 +1,136 @@
+"""Files of odd kinds and names, and places that go away: a line each, soon, and nothing is lost."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from written import some_normals
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.output.journal import journal
+from normalbench.bench.ground.output.writing import whole_file
+
+SHADER = """
+vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
+vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }
+"""
+GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
+JAX = ("quality", "--storage", "rg8", "--backend", "jax")
+QUICK = (*JAX, "--encoding", "octahedral")
+PIPED = {
+    "gates.toml": ("check", "gates.toml"),
+    "layout.toml": ("render", "--layout", "layout.toml"),
+    "mine.glsl": (*JAX, "--encoding", "mine.glsl"),
+    "matrix.txt": (*QUICK, "--normals", "list.npy", "--space", "world", "--view-matrix", "matrix.txt"),
+    "scales.npy": ("quality", "--backend", "jax", "--encoding", "best_fit:table=scales.npy", "--storage", "rgba8"),
+    "frame.png": (*QUICK, "--normals", "frame.png"),
+}
+
+
+@pytest.mark.parametrize("name", PIPED)
+def test_a_pipe_is_not_waited_for(run, tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    np.save("list.npy", some_normals())
+    os.mkfifo(name)
+    began = time.monotonic()
+    status, out, err = run(*PIPED[name])
+    assert (status, out, err.count("\n")) == (2, "", 1) and name in err and "plain file" in err, err
+    assert time.monotonic() - began < 20
+
+
+def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("gates.toml").write_text(GATE, encoding="utf-8-sig")
+    assert run("check", "gates.toml")[0] == 0
+    Path("mine.glsl").write_text(SHADER, encoding="utf-8-sig")
+    status, out, err = run(*JAX[:-2], "--backend", "glsl", "--encoding", "mine.glsl", "--format", "json")
+    assert status == 0 and json.loads(out)[0]["psnr_db"] > 1, err
+
+
+@pytest.mark.slow
+def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = os.fsdecode(b"n\xff.npy")
+    with Path(name).open("wb") as file:
+        np.save(file, some_normals())
+    for ending in ("table", "json", "csv", "markdown"):
+        status, _, err = run(*QUICK, "--normals", name, "--format", ending, "-o", f"rows.{ending}")
+        assert (status, err) == (0, "") and Path(f"rows.{ending}").read_text(encoding="utf-8"), ending
+    assert json.loads(Path("rows.json").read_text())[0]["normals"] == "n\\udcff.npy"
+    status, _, err = run("run", "--tables", "quality", *QUICK[1:], "--normals", name, "-o", "results")
+    assert status == 0 and Path("results", "report.html").exists(), err
+
+
+def test_a_comma_in_a_files_name_is_said(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    np.save("a,b.npy", some_normals())
+    Path("a,b.glsl").write_text(SHADER)
+    for words in ((*QUICK, "--normals", "a,b.npy"), (*JAX, "--encoding", "a,b.glsl")):
+        status, out, err = run(*words)
+        assert (status, out, err.count("\n")) == (2, "", 1) and "a comma in a file's name" in err, err
+
+
+def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
+    """A row of 2^25 pixels that was saved without its last axis."""
+    monkeypatch.chdir(tmp_path)
+    np.save("row.npy", np.zeros((1, 2**25), np.uint8))
+    began = time.process_time()
+    status, _, err = run(*QUICK, "--normals", "row.npy")
+    assert status == 2 and "33554432 channels; at most 1024 are read" in err
+    assert time.process_time() - began < 5
+
+
+@pytest.mark.slow
+def test_without_standard_output_a_file_will_do(tmp_path):
+    script = (
+        "import os, sys; os.close(1); sys.stdout = None; "
+        "from normalbench.bench.door.cli.app import main; sys.exit(main())"
+    )
+    said = {}
+    for words in (["-o", "rows.csv"], []):
+        command = [sys.executable, "-c", script, *QUICK, "--normals", "axes", "--format", "csv", *words]
+        done = subprocess.run(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+        said[bool(words)] = done.returncode, done.stderr
+    assert said[True] == (0, "") and (tmp_path / "rows.csv").read_text().count("\n") == 2
+    assert said[False] == (2, "normalbench: standard output is closed; name a file with -o\n")
+
+
+@pytest.mark.parametrize("name, option", [("page.html", "--report"), ("chart.PNG", "--plot")])
+def test_a_name_that_promises_a_page_or_a_chart_gets_no_text(run, tmp_path, name, option):
+    path = tmp_path / name
+    status, out, err = run(*QUICK, "-o", str(path))
+    assert (status, out, path.exists()) == (2, "", False)
+    assert err == f"normalbench: -o writes rows, not {name}; {option} {path} does, where a command has it\n"
+
+
+def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
+    script = "from normalbench.bench.door.cli import app; app.main = lambda: print('0.9\u00b0') or 0; app.program()"
+    known = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=known, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
+
+
+def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path):
+    path = tmp_path / "run" / "rows.jsonl"
+    with journal(path) as kept:
+        kept.add({"a": 1})
+        path.unlink()
+        path.parent.rmdir()
+        with pytest.raises(UsageError, match="it was deleted meanwhile"):
+            kept.add({"a": 2})
+
+
+def test_what_a_killed_process_left_half_written_goes(tmp_path):
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    gone, others = tmp_path / f".rows.csv.{ended.pid}.partial", tmp_path / f".rows.csv.{os.getppid()}.partial"
+    for path in (gone, others):
+        path.write_text("half")
+    with whole_file(tmp_path / "rows.csv") as partial:
+        partial.write_text("whole")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([others.name, "rows.csv"])

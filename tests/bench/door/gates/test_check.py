@@ -1,0 +1,396 @@
+"""`normalbench check`: gates that pass, fail, and say what is wrong with them."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from normalbench.bench.door.gates import listings
+from normalbench.bench.door.gates.gates import checked, read_gates
+from normalbench.bench.door.gates.limits import Limit
+from normalbench.bench.door.gates.measured import named_rows
+from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.keep.runs import opened
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Step
+
+PASSES = '[[gate]]\nencoding = "spheremap"\nstorage = "rgba8"\nnormals = "playground"\npsnr_db = "at least 47.5"\n'
+
+
+def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text(PASSES)
+    status, out, err = run("check", str(path), "--format", "json")
+    (row,) = json.loads(out)
+    assert (status, err) == (0, "") and row["holds"] == "pass" and row["figure"] > 47.5
+    path.write_text(PASSES + 'angle_max_deg = "at most 0.95"\n')
+    status, out, err = run("check", str(path))
+    assert status == 1 and "1 of 2 limits do not hold" in err
+    assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
+    rows = json.loads(run("check", str(path), "--format", "json")[1])
+    off = f"{rows[1]['figure']:.6g} degrees off"
+    assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith(off), rows
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
+    (tmp_path / "mine.glsl").write_text(
+        "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
+    )
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{tmp_path}/mine.glsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 1000\n'
+    path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
+    status, out, err = run("check", str(path), "--format", "json")
+    (row,) = json.loads(out)
+    assert (status, row["holds"]) == (0, "pass") and row["row"].endswith("glsl"), err
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_gate_does_not_pass_over_a_few_nan(run, tmp_path):
+    (tmp_path / "hole.glsl").write_text(
+        "vec2 hole_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 hole_decode(vec2 e, vec3 view) {\n"
+        "    float z = sqrt(distance(e, vec2(0.61, 0.473)) < 0.004 ? -1.0 : max(1.0 - dot(e, e), 0.0));\n"
+        "    return vec3(e, z);\n"
+        "}\n"
+    )
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{tmp_path}/hole.glsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 100000\n'
+    path.write_text(f'[[gate]]\n{words}angle_mean_deg = "at most 90"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    rows = [(row["column"], row["limit"], row["holds"]) for row in json.loads(out)]
+    assert status == 1
+    assert rows == [("angle_mean_deg", "at most 90", "pass"), ("invalid", "at most 0", "FAIL")]
+    path.write_text(path.read_text() + 'invalid = "at most 10000"\n')
+    assert run("check", str(path))[0] == 0, "it says how many may be"
+
+
+def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_path):
+    path, folder = tmp_path / "gates.toml", str(tmp_path / "results")
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    assert run("run", "--tables", "quality", *words, "-o", folder)[0] == 0
+    path.write_text('[[gate]]\nencoding = "xy"\nangle_sup_deg = "at most 90"\n')
+    status, out, err = run("check", str(path), "--run", folder)
+    assert (status, out) == (2, "") and f"{folder} has no angle_sup_deg; measure the run with --worst-case" in err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "encoding, said",
+    [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],
+)
+def test_a_gate_does_not_pass_without_a_row_that_it_names(run, tmp_path, encoding, said):
+    """One that does not fit or compile next to one that does: the others would pass for it."""
+    (tmp_path / "broken.glsl").write_text("vec2 broken_encode(vec3 n, vec3 view) { return n.xyz; }")
+    path = tmp_path / "gates.toml"
+    words = f'encoding = "{encoding.format(tmp_path)}"\nstorage = "rg8"\nnormals = "sphere"\ncount = 1000\n'
+    path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
+    status, out, err = run("check", str(path))
+    assert (status, out) == (2, "") and "a row that is asked for cannot be measured" in err and said in err
+    path.write_text(path.read_text().replace(encoding.format(tmp_path), "all"))
+    assert run("check", str(path))[0] == 0, "of all encodings some never fit"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_an_image_may_be_a_gate(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text('[[gate]]\ntable = "render"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 20"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    assert status == 0 and json.loads(out)[0]["table"] == "render"
+    path.write_text(path.read_text().replace("at least 20", "at least 99") + 'flip = "at most 0.5"\n')
+    status, out, _ = run("check", str(path), "--format", "json")
+    psnr, flip = json.loads(out)
+    assert status == 1 and "comes back as" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
+    """The codec that is usual for a gate is not put into it."""
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
+    )
+    (row,) = json.loads(run("check", str(path), "--format", "json")[1])
+    assert row["row"].startswith("hybrid cryengine3 best_fit rgba8 nearest"), row
+
+
+def test_figures_may_come_from_a_run(run, tmp_path):
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    rows = [{"depth": name, "distance": 10.0, "error_max": error} for name, error in (("a", 0.5), ("b", float("inf")))]
+    with opened(folder, {}) as made:
+        made.keep("depth", Step({}, None, ""), rows)
+    gate = '[[gate]]\ntable = "depth"\ndepth = "{}"\ndistance = 10\nerror_max = "at most 0.5"\n'
+    path.write_text(gate.format("a") + gate.format("a, b"))
+    status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
+    assert status == 1 and [row["holds"] for row in json.loads(out)] == ["pass", "pass", "FAIL"]
+
+
+TABLES_GATED = {
+    "cost": 'encoding = "octahedral"\noperation = "encode"\ninstructions = "at most {}"',
+    "lights": 'light_buffer = "rgbm"\nexperiment = "random"\ncounts = "8"\nmodel_max = "at most {}"',
+    "depth": 'depth = "linear"\nstorage = "packed16"\nerror_max = "at most {}"',
+    "frames": 'encoding = "qtangent"\nstorage = "rgba8"\ncount = 4096\nrotation_max_deg = "at most {}"',
+    "vectors": 'encoding = "sqrt"\nstorage = "rg8"\ncount = 256\nspeed = 1\nerror_max_px = "at most {}"',
+    "pick": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',
+    "quality": 'encoding = "octahedral"\narithmetic = "half"\ncount = 4096\nangle_max_deg = "at most {}"',
+    "mix": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',
+    "tune": 'encoding = "stereographic"\nnormals = "hemisphere"\ncount = 4096\ntuned = "at most {}"',
+}
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "radv")
+@pytest.mark.parametrize("table", TABLES_GATED)
+def test_every_table_may_be_a_gate(run, tmp_path, table):
+    path = tmp_path / "gates.toml"
+    for most, status, holds in ((1e6, 0, "pass"), (1e-9, 1, "FAIL")):
+        path.write_text(f'[[gate]]\ntable = "{table}"\n{TABLES_GATED[table].format(most)}\n')
+        found, out, err = run("check", str(path), "--format", "json")
+        assert found == status and {row["table"] for row in json.loads(out)} == {table}, err
+        assert holds in {row["holds"] for row in json.loads(out)}
+
+
+def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    with opened(folder, {}) as made:
+        rows = [{"depth": "linear", "far": 1.0, "error_max": 1.0}, {"depth": "log", "far": 10.0, "error_max": 1.0}]
+        made.keep("depth", Step({}, None, ""), rows)
+    path.write_text('[[gate]]\ntable = "depth"\ndepht = "linear"\nerror_max = "at most 2"\n')
+    status, out, err = run("check", str(path), "--run", str(folder))
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; they are named by depth" in err, err
+    for asked, said in (
+        ('depth = "linaer"', "no row of depth in {} has depth 'linaer'; there are linear, log"),
+        ('depth = "linear"\nfar = 10', "rows with each of depth 'linear', far 10, but none with all of them"),
+    ):
+        path.write_text(f'[[gate]]\ntable = "depth"\n{asked}\nerror_max = "at most 2"\n')
+        status, out, err = run("check", str(path), "--run", str(folder))
+        assert (status, out, err.count("\n")) == (2, "", 1) and said.format(folder) in err, err
+
+
+def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
+    least, most = Limit("x", "at least", 2.0), Limit("x", "at most", 2.0)
+    assert least.holds(2) and most.holds(2.0) and least.holds(float("inf")) and not most.holds(float("inf"))
+    assert not any(limit.holds(figure) for limit in (least, most) for figure in (None, float("nan"), "2"))
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("", "there is no [[gate]] table in it"),
+        ("gate = 1", "there is no [[gate]] table in it"),
+        ("gate = []", "0 gates; from 1"),
+        ("[[gate]]\n[other]", "'other' is not known; a file of gates has only [[gate]] tables"),
+        ('[[gates]]\nencoding = "xy"', "'gates' is not known; a file of gates has only [[gate]] tables"),
+        ("[[gate]", "this is not TOML"),
+        ('[[gate]]\nencoding = "xy"', "no limit given"),
+        ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a limit; say"),
+        ("[[gate]]\ncount = " + "9" * 5000, "a number has too many digits"),
+        ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is not a number"),
+        ('[[gate]]\npsnr_db = "at least nan"', "nan is not a number"),
+        ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is not a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
+        ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; it must be true or false"),
+        ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is not a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; it must be a text or a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; it must be a whole number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; it must be a whole number"),
+        ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: "),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
+        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures are bits"),
+        ('[[gate]]\ntable = "depths"\nerror_max = "at most 1"', "unknown table 'depths'; known: pick, quality, render"),
+        ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: pick, quality, render"),
+        ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be a text or a number"),
+        ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),
+    ],
+)
+def test_bad_gates_are_one_line_with_their_place(run, tmp_path, text, said):
+    path = tmp_path / "gates.toml"
+    path.write_text(text)
+    status, out, err = run("check", str(path))
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err and "gates.toml" in err, err
+
+
+def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
+    assert "none.toml: there is no such file" in run("check", str(tmp_path / "none.toml"))[2]
+    (tmp_path / "gates.toml").write_text(PASSES)
+    status, _, err = run("check", str(tmp_path / "gates.toml"), "--run", str(tmp_path))
+    assert status == 2 and "is not a results folder" in err and err.count("\n") == 1
+
+
+LIMITS = st.sampled_from(["at least 1", "at most nan"])
+VALUES = st.one_of(st.text(max_size=8), st.integers(), st.floats(), st.booleans(), LIMITS)
+NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_db", "x", "normals"])
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(st.one_of(st.text(max_size=200), st.lists(st.dictionaries(NAMES, VALUES, max_size=5), max_size=3)))
+def test_no_gates_give_a_traceback(tmp_path_factory, content):
+    """Text of every kind, and gates of every value: they are read and refused, or measured."""
+    path = tmp_path_factory.mktemp("gates") / "gates.toml"
+    if not isinstance(content, str):
+        lines = (f"{name} = {json.dumps(value)}" for gate in content for name, value in [("", None), *gate.items()])
+        content = "\n".join("[[gate]]" if line.startswith(" = ") else line for line in lines)
+    path.write_text(content, encoding="utf-8", errors="surrogatepass")
+    try:
+        gates = [gate for gate in read_gates(path) if gate.options.get("count", 10**9) in range(1, 1000)]
+        list(checked(gates, None, lambda _: None))
+    except (UsageError, MissingError) as error:
+        assert "\n" not in str(error) or "gates" in str(error)
+
+
+MINE = """
+vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
+vec3 mine_decode(vec2 e, vec3 view) { return DECODED; }
+"""
+PLAIN = "vec3(e, sqrt(max(1.0 - dot(e, e), 0.0)))"
+
+
+def golden_gate(tmp_path, decoded: str) -> str:
+    """A gate that compares what an encoder's decode costs with a file; the encoder's decode as given."""
+    (tmp_path / "mine.glsl").write_text(MINE.replace("DECODED", decoded))
+    path = tmp_path / "gates.toml"
+    asked = f'encoding = "{tmp_path}/mine.glsl"\nfamily = "navi21"\noperation = "decode"\nstage = "fragment"\n'
+    path.write_text(f'[[gate]]\ntable = "cost"\n{asked}storage = "rgba8"\nmatches_baseline = "kept/costs.json"\n')
+    return str(path)
+
+
+def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatch):
+    """Wherever the command runs; a file that only the shell's folder has is an error of one line."""
+    folder, shell = tmp_path / "gates", tmp_path / "shell"
+    folder.mkdir()
+    shell.mkdir()
+    monkeypatch.chdir(shell)
+    np.save(folder / "bumps.npy", np.eye(3))
+    path, asked = folder / "gates.toml", '[[gate]]\nencoding = "xyz"\nnormals = "bumps.npy"\npsnr_db = "at least 1"\n'
+    path.write_text(asked + 'matches_baseline = "kept.json"\n')
+    assert run("check", str(path), "--write-baseline")[0] == 0
+    monkeypatch.chdir(tmp_path)
+    assert run("check", "gates/gates.toml")[0] == 0, "its baseline does not depend on the shell's folder"
+    monkeypatch.chdir(shell)
+    (folder / "bumps.npy").rename(shell / "bumps.npy")
+    path.write_text(asked)
+    status, out, err = run("check", str(path))
+    said = "gate 1: normals: bumps.npy is in this shell's folder, and paths are relative to the file of gates; write "
+    assert (status, out, err.count("\n")) == (2, "", 1) and said + os.path.relpath("bumps.npy", folder) in err, err
+
+
+@pytest.mark.parametrize(
+    "given, expected",
+    [
+        # An encoding, its storage's packing and another storage's, as `cost` gives them.
+        ({"encoding": "xy", "operation": "decode", "storage": "12:12"}, ["xy decode"]),
+        ({"encoding": "xy"}, ["xy encode", "xy decode"]),
+        ({"storage": "12:12"}, ["12:12 unpack"]),
+        ({"encoding": "xy", "storage": "12:12"}, ["xy encode", "xy decode", "12:12 unpack"]),
+        ({"family": "radeon"}, ["xy encode", "xy decode", "12:12 unpack"]),
+        ({}, ["xy encode", "xy decode", "12:12 unpack"]),
+    ],
+)
+def test_a_gate_judges_the_rows_that_it_names(given, expected):
+    rows = [
+        {"encoding": "xy", "storage": None, "operation": "encode", "family": "vega10"},
+        {"encoding": "xy", "storage": None, "operation": "decode", "family": "vega10"},
+        {"encoding": None, "storage": "12:12", "operation": "unpack", "family": "vega10"},
+    ]
+    found = named_rows(TABLES["cost"], given, rows)
+    assert [f"{row['encoding'] or row['storage']} {row['operation']}" for row in found] == expected
+
+
+def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
+    """The whole range is measured beside it, and its error is another one."""
+    path = tmp_path / "gates.toml"
+    asked = 'table = "depth"\ndepth = "linear"\nstorage = "r32f"\nbackend = "jax"\ncount = 16\ndistance = "10"\n'
+    path.write_text(f'[[gate]]\n{asked}error_max = "at most 1"\n')
+    rows = json.loads(run("check", str(path), "--format", "json")[1])
+    assert [row["row"].split() for row in rows] == [["linear", "r32f", "eye_ray", "jax", "0.1", "1000.0", "10.0"]]
+
+
+@pytest.mark.usefixtures("radv")
+def test_a_gate_on_decoding_does_not_judge_unpacking(run, tmp_path):
+    (row,) = json.loads(run("check", golden_gate(tmp_path, PLAIN), "--write-baseline", "--format", "json")[1])
+    assert row["row"] == "isa mine decode fragment navi21"
+
+
+@pytest.mark.usefixtures("radv")
+def test_a_cost_that_grew_is_shown_with_the_instructions_that_came_to_it(run, tmp_path):
+    gates = golden_gate(tmp_path, PLAIN)
+    assert run("check", gates, "--write-baseline")[0] == 0
+    status, out, _ = run("check", gates, "--format", "json")
+    assert status == 0 and {row["holds"] for row in json.loads(out)} == {"pass"}
+    status, out, err = run("check", golden_gate(tmp_path, f"normalize({PLAIN})"), "--format", "json")
+    (row,) = [row for row in json.loads(out) if row["holds"] == "FAIL"]
+    assert status == 1 and "instructions is 10, the baseline says 4 (+6)" in row["changed"]
+    added = [line.split() for line in row["changed"].splitlines() if line.startswith(("  +", "  -"))]
+    names = [f"{sign} {name}" for sign, name, *_ in added]
+    # Two multiply-adds make the squared length, then its reciprocal root scales three components.
+    assert names == ["+ v_fmac_f32_e32", "+ v_fmac_f32_e32", "+ v_rsq_f32_e32", *["+ v_mul_f32_e32"] * 3]
+    assert "\n  + v_rsq_f32_e32" in err and err.count("+ v_mul_f32_e32") == 3
+
+
+@pytest.mark.usefixtures("radv")
+def test_costs_by_another_compiler_are_not_compared_and_both_are_kept(run, tmp_path):
+    gates, kept = golden_gate(tmp_path, PLAIN), tmp_path / "kept" / "costs.json"
+    status, _, err = run("check", gates)
+    assert status == 1 and err.count("\n") == 3, err
+    assert "costs.json has no row isa mine decode fragment navi21; normalbench check --write-baseline" in err
+    run("check", gates, "--write-baseline")
+    entries = json.loads(kept.read_text())
+    mesa = entries[0]["key"]["driver"]
+    kept.write_text(kept.read_text().replace(mesa, "Mesa 0.0.1"))
+    status, _, err = run("check", gates)
+    assert status == 1 and f"by {mesa}; it has one by Mesa 0.0.1" in err
+    run("check", gates, "--write-baseline")
+    assert len(json.loads(kept.read_text())) == 2 * len(entries) and run("check", gates)[0] == 0
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ('matches_baseline = 3\npsnr_db = "at least 3"', "matches_baseline is 3; it must be a file's name"),
+        ('matches_baseline = "gates.toml"', "gates.toml is not a baseline"),
+        ('psnr_db = "at least 3"', 'no gate names a baseline; add matches_baseline = "costs.json" to one'),
+    ],
+)
+def test_what_is_no_baseline_is_said_in_a_line(run, tmp_path, words, said):
+    path = tmp_path / "gates.toml"
+    path.write_text(f'[[gate]]\nencoding = "xy"\nstorage = "rg8"\nnormals = "axes"\n{words}\n')
+    for more in ([], ["--write-baseline"]) if "no gate" not in said else (["--write-baseline"],):
+        status, out, err = run("check", str(path), *more)
+        assert (status, out) == (2, "") and said in err
+
+
+def test_figures_of_any_table_are_compared_with_a_baseline(run, tmp_path):
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        PASSES.replace("psnr_db", "mse").replace("at least 47.5", "at most 1") + 'matches_baseline = "q.json"\n'
+    )
+    assert run("check", str(path), "--write-baseline")[0] == 0 and run("check", str(path))[0] == 0
+    kept = json.loads((tmp_path / "q.json").read_text())
+    kept[0]["row"]["psnr_db"] += 1.0
+    (tmp_path / "q.json").write_text(json.dumps(kept))
+    status, _, err = run("check", str(path))
+    measured = kept[0]["row"]["psnr_db"] - 1.0
+    assert status == 1 and f"psnr_db is {measured:.2f}"[:-1] in err and "1 of 2 limits do not hold" in err
+
+
+def test_registers_alone_are_no_difference_between_listings():
+    before = ["v_mul_f32 v1, v2, s[2:3]", "mul(16) g2<1>F -g13<8,8,1>F", "s_endpgm"]
+    after = ["v_mul_f32 v7, v9, s[4:5]", "mul(16) g18<1>F -g12<8,8,1>F", "v_add_f32 v1, v2, v3", "s_endpgm"]
+    assert list(listings.differences(before, after)) == ["+ v_add_f32 v1, v2, v3"]
+    assert list(listings.differences(after, before)) == ["- v_add_f32 v1, v2, v3"]
+    nvidia = ["        /*{:04x}*/    FMUL R3, R2, R4 ;   /* 0x0000000402037220 */", "   /* 0x000fe20000410000 */"]
+    lines = [listings.lines_of("\n".join([nvidia[0].format(at), nvidia[1], "/*0200*/ NOP;"])) for at in (16, 48)]
+    assert lines == [["FMUL R3, R2, R4"]] * 2
+    r600 = " 00{} 800004FE 60006910     {} t:     RECIPSQRT_IEEE         R0.w,  PV.y"
+    assert (
+        listings.lines_of(r600.format(10, 2))
+        == listings.lines_of(r600.format(24, 3))
+        == ["t: RECIPSQRT_IEEE R0.w, PV.y"]
+    )
+    long = list(listings.differences([], [f"v_op{at}" for at in range(100)]))
+    assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 lines more"

@@ -1,0 +1,204 @@
+"""A run of two processes: the answer first, the same rows and files, and nothing left of it when it is ended."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from normalbench.bench.door import run as run_of
+from normalbench.bench.door import second_child
+from normalbench.bench.ground.machine.children import environment
+from normalbench.bench.keep.measuring import HERE, Asked
+from normalbench.bench.keep.runs import read_run
+from normalbench.bench.run import second
+from normalbench.bench.show import report
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Measured
+
+# The first process measures `effects`, the second one the others.
+CODE = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+SMALL = ("run", "--tables", "mix,effects,quality", "--effect", "water", *CODE)
+CHARTS = {"mix", "effects", "angles-0", "sphere-16-bits"}
+
+
+@pytest.fixture
+def cores(monkeypatch):
+    """Says how many cores there are."""
+    return lambda count: monkeypatch.setattr(second, "cores", lambda: count)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
+    """Rows and files are those of a run in one process, and tables are printed in their order. The second one draws
+    what it measured."""
+    said, drawn = {}, {1: [], 2: []}
+    kept = report._write_chart
+    for count in (1, 2):
+        cores(count)
+        here = drawn[count]
+        monkeypatch.setattr(report, "_write_chart", lambda one, to, here=here: here.append(one.name) or kept(one, to))
+        status, said[count], err = run(*SMALL, "-o", str(tmp_path / str(count)))
+        assert status == 0 and err == "", err
+    one, two = (read_run(tmp_path / str(count)).tables for count in (1, 2))
+    assert {name: one[name] for name in sorted(one)} == {name: two[name] for name in sorted(two)}
+    files = [{str(p.relative_to(tmp_path / n)) for p in (tmp_path / n).rglob("*")} for n in ("1", "2")]
+    assert files[0] == files[1] and "report.html" in files[1]
+    # What the first process has measured by then, the second one draws as well.
+    assert set(drawn[1]) == CHARTS and set(drawn[2]) <= {"effects"}, drawn
+    assert (tmp_path / "1/charts/mix.png").read_bytes() == (tmp_path / "2/charts/mix.png").read_bytes()
+    assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
+    """A second process that dies costs time and no rows; what it said last is told."""
+    cores(2)
+    monkeypatch.setattr(second, "CHILD", [sys.executable, "-c", "raise SystemExit('broken')"])
+    status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
+    assert status == 0 and read_run(tmp_path / "run").finished, err
+    assert set(read_run(tmp_path / "run").tables) == {"mix", "effects", "quality"}
+    assert err == "normalbench: broken\n"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
+    """Where their folder is a file, the second process leaves it to the first to say so."""
+    cores(2)
+    folder = tmp_path / "run"
+    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
+    shutil.rmtree(folder / "charts")
+    (folder / "charts").touch()
+    status, _, err = run(*SMALL, "-o", str(folder))
+    lines = err.splitlines()
+    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_an_error_there_is_an_error_here(run, tmp_path, cores, monkeypatch):
+    """One line, the same exit status, and what was measured is kept."""
+    cores(2)
+    line = json.dumps({"error": "cannot write x.npz: No space left on device", "status": 2})
+    monkeypatch.setattr(second, "CHILD", [sys.executable, "-c", f"print({line!r})"])
+    status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
+    assert status == 2 and err == "normalbench: cannot write x.npz: No space left on device\n"
+    assert set(read_run(tmp_path / "run").tables) == {"effects"}
+
+
+def children_of(process: int) -> set[int]:
+    """The processes that a process has started."""
+    return {int(word) for path in Path(f"/proc/{process}/task").glob("*/children") for word in path.read_text().split()}
+
+
+def is_there(process: int) -> bool:
+    try:
+        return "\nState:\tZ" not in Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return False
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_no_process_outlives_a_run(tmp_path, ended):
+    """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
+    words = ("run", "--tables", "effects,depth", "-o", "ended")
+    command = [sys.executable, "-m", "normalbench.bench", *words]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        rows, until = tmp_path / "ended/rows.jsonl", time.monotonic() + 120
+        while not (rows.exists() and b'"table": "depth"' in rows.read_bytes()):
+            assert time.monotonic() < until and process.poll() is None, "no row of the second process"
+            time.sleep(0.05)
+        others = children_of(process.pid)
+        process.send_signal(ended)
+        process.communicate(timeout=30)
+    until = time.monotonic() + 10
+    while any(map(is_there, others)) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert others and not any(map(is_there, others)), "the second process is still there"
+    assert any(step["table"] == "depth" for step in read_run(tmp_path / "ended").steps)
+
+
+def test_the_answer_comes_first(cores, monkeypatch):
+    """The table that leads the page is measured and printed before another one begins, wherever it was named."""
+    cores(1)
+    seen = []
+    monkeypatch.setattr(
+        run_of, "measured", lambda ask, *_: seen.append(ask.table.name) or Measured(ask.options, None, (), ())
+    )
+    monkeypatch.setattr(run_of, "show_summary", lambda table, _: seen.append(f"{table.name} is shown"))
+    tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
+    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE, None)
+    assert seen[:2] == ["pick", "pick is shown"], seen
+
+
+@pytest.mark.parametrize("rows", [[{"psnr_db": 47.5}], None])
+def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows):
+    """The files of the answer; where a row of it is still missing they are left to the first process."""
+    written, sent = [], []
+    work = SimpleNamespace(write=lambda done, _: written.append(done))
+    ask = SimpleNamespace(table=SimpleNamespace(name="pick", work=work), steps=["a step"])
+    journal = SimpleNamespace(find=lambda *_: rows, send=sent.append)
+    monkeypatch.setattr(second_child, "measured", lambda *_: rows)
+    second_child._write_others([ask], journal)
+    assert (written, sent) == (([rows], [{"written": "pick"}]) if rows else ([], []))
+
+
+@pytest.mark.slow
+def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
+    """A chart's two files come of one drawing."""
+    drawn = []
+    kept = report._write_chart
+    monkeypatch.setattr(report, "_write_chart", lambda one, folder: drawn.append(one.name) or kept(one, folder))
+    assert run("run", "--tables", "quality", *CODE, "-o", str(tmp_path / "run"))[0] == 0
+    assert sorted(drawn) == sorted({path.stem for path in (tmp_path / "run/charts").iterdir()})
+
+
+def measured(folder: Path, *more: str, **variables: str) -> str:
+    """What a process says of one code whose caches lie in a folder."""
+    words = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    own = {name: value for name, value in environment().items() if not name.startswith("JAX_")}
+    command = [sys.executable, "-m", "normalbench.bench", *words, *more, "--format", "json"]
+    done = subprocess.run(
+        command, env=own | {"XDG_CACHE_HOME": str(folder)} | variables, capture_output=True, text=True
+    )
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    return done.stdout
+
+
+def programs(folder: Path) -> dict[str, int]:
+    return {path.name: path.stat().st_mtime_ns for path in folder.glob("normalbench/programs/*/*-cache")}
+
+
+@pytest.mark.slow
+def test_a_second_process_compiles_nothing(tmp_path):
+    """It finds every program in the cache, and says the same."""
+    first, made = measured(tmp_path), programs(tmp_path)
+    assert made, "nothing was kept"
+    assert measured(tmp_path) == first and programs(tmp_path) == made
+    damaged = next(tmp_path.glob("normalbench/programs/*/*-cache"))
+    damaged.write_bytes(damaged.read_bytes()[:100])
+    assert measured(tmp_path) == first, "a damaged program"
+
+
+@pytest.mark.slow
+def test_compiled_programs_need_not_be_kept(tmp_path):
+    found = measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
+    assert not programs(tmp_path)
+    assert measured(tmp_path, "--no-cache") == found
+    assert not [*tmp_path.iterdir()], "without the cache nothing is kept"
+
+
+@pytest.mark.slow
+def test_a_cache_that_cannot_be_written_is_no_error():
+    assert measured(Path(os.devnull) / "nowhere")
