@@ -12,7 +12,7 @@ from unittest.mock import patch
 from .table import Measured, Row, Table
 
 # Step times and costs by `python -m normalbench.bench.run.workers.simulate --record`.
-RECORD = Path(__file__).parents[1] / "bench" / "workers" / "record.json"
+RECORD = Path(__file__).parents[1] / "bench" / "run" / "workers" / "record.json"
 
 
 def measure(table: Table, is_again: bool = False) -> Measured:

@@ -1,4 +1,4 @@
-"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/door/python/stub.py."""
+"""normalbench in Python: every table as a function, and codecs on arrays. Made by bench/door/python."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -22,6 +22,7 @@ from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.output import journal
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
+from normalbench.bench.keep import table_files
 from normalbench.bench.keep.measuring import files_of
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.run.workers.orders import Packing
@@ -300,15 +301,15 @@ def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, 
     parquet = pytest.importorskip("pyarrow.parquet")
     case = quality.Case(Codec(ENCODINGS["octahedral"], STORAGES["rgba8"]), normal_sets.axes(0, 0), "jax")
     rows = [quality.measure(case), quality.measure(case) | {"psnr_db": math.inf, "bits": None}]
-    run_command._write_table(tmp_path / "rows", rows)
+    table_files._write_table(tmp_path / "rows", rows)
     table = parquet.read_table(tmp_path / "rows.parquet")
     assert table.to_pylist() == rows
-    run_command._write_table(tmp_path / "wide", [{"codes": 2**130, "bits": None}, {"codes": 3, "bits": 8}])
+    table_files._write_table(tmp_path / "wide", [{"codes": 2**130, "bits": None}, {"codes": 3, "bits": 8}])
     wide = parquet.read_table(tmp_path / "wide.parquet").to_pylist()
     assert wide == [{"codes": 2.0**130, "bits": None}, {"codes": 3.0, "bits": 8}]
     assert [str(table.schema.field(name).type) for name in ("bits", "psnr_db", "exact")] == ["int64", "double", "bool"]
     monkeypatch.setattr(tables, "find_spec", lambda _: None)
-    run_command._write_table(tmp_path / "others", rows)
+    table_files._write_table(tmp_path / "others", rows)
     assert sorted(path.suffix for path in tmp_path.glob("others.*")) == [".csv", ".json"]
 
 

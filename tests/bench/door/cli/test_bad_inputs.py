@@ -18,7 +18,7 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.gbuffer.codecs.loops import loop_limit
 
-TESTS = Path(__file__).parents[2]
+TESTS = Path(__file__).parents[3]
 # Input, answer, and by file the tests that hold it.
 ANSWERS = {
     "NaN or infinite normal in a file: masked and counted, over a share refused": {

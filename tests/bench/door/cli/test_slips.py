@@ -79,13 +79,13 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a format that is not": ((*ONE, "--format", "xlsx"), "'xlsx' is not one of"),
     "Parquet on a terminal": ((*ONE, "--format", "parquet"), "name a file with -o FILE.parquet"),
     "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not read"),
-    "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "only functions, constants, structures and aliases"),
+    "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "one function of a file": (
         (*ROW, "--encoding", "mine.hlsl:Encode"),
         "mine.hlsl:Encode: name both functions, such as",
     ),
     "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "short.glsl:s:t: name both functions"),
-    "WGSL to doctor": (("doctor", "mine.wgsl"), "only functions, constants, structures and aliases"),
+    "WGSL to doctor": (("doctor", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),
         "unknown encoding 'hlsl'; did you mean the file hlsl.glsl?",

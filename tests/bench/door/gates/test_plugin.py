@@ -17,7 +17,7 @@ from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""}
-(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[3] / "README.md").read_text(), re.S)
+(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[4] / "README.md").read_text(), re.S)
 SMALL = 'dict(encoding="xy", normals="sphere", count=4096)'
 # Hypothesis is rewritten anew each time pytest is run inside pytest, which takes seconds.
 PLAIN = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest")
@@ -385,10 +385,11 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
             heavy = {"jax", "numpy", "moderngl", "typer", "rich", "pandas", "matplotlib", "PIL"}
             assert not heavy & set(sys.modules)
             named = [m.removeprefix("normalbench.bench") for m in sys.modules if m.startswith("normalbench.")]
-            rooms = ("", ".pytest_plugin", ".options", ".output", ".tables")
+            rooms = ("", ".door", ".door.pytest_plugin", ".ground", ".ground.options", ".ground.output", ".tables")
             assert {m for m in named if not m.startswith(".tables.")} <= {
-                *rooms, ".pytest_plugin.plugin", ".pytest_plugin.own_options", ".options.option", ".options.counts",
-                ".options.gpu_families", ".output.errors", ".output.spelling"
+                *rooms, ".door.pytest_plugin.plugin", ".door.pytest_plugin.own_options", ".ground.options.option",
+                ".ground.options.counts", ".ground.options.gpu_families", ".ground.output.errors",
+                ".ground.output.spelling"
             }
             light = (".table", ".registry", ".rates")
             assert all(m.endswith(light) or m.count(".") == 2 for m in named if ".tables." in m)

@@ -16,7 +16,7 @@ from normalbench.gbuffer.gl.shader import ShaderError
 
 pytestmark = pytest.mark.slow
 
-FOLDER = Path(__file__).parents[2] / "inputs" / "code"
+FOLDER = Path(__file__).parents[3] / "inputs" / "code"
 ENDINGS = {"python": "py", "msl": "metal"}
 STEPS = np.array([[[3.0, 0.5], [5.0, 0.25]]], np.float32)
 SPHEREMAP = Interface("spheremap_rg8", 2, 0, 1, False)

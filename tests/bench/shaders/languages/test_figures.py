@@ -8,7 +8,7 @@ import pytest
 import normalbench as nb
 
 pytestmark = pytest.mark.usefixtures("gl", "hlsl")
-FILES = Path(__file__).parents[2] / "inputs" / "hlsl"
+FILES = Path(__file__).parents[3] / "inputs" / "hlsl"
 # The catalogue's encoding of the same code, storage and rounding; then mean and largest angle in degrees of two million
 # uniform directions, computed by NumPy in float64 from the engines' bit layouts. None: no figure with three digits.
 PUBLISHED = {

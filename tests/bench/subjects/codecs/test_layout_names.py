@@ -13,7 +13,7 @@ from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.encodings.catalogue import ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
-OWN = Path(__file__).parents[3] / "docs" / "bring-your-own.md"
+OWN = Path(__file__).parents[4] / "docs" / "bring-your-own.md"
 LAYOUT, *_ = re.findall(r"```toml\n(.*?)```", OWN.read_text(), re.S)
 THREE_NUMBERS = """
 encoding = "best_fit:table=scales.npy"

@@ -15,7 +15,7 @@ from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
-(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[3] / "README.md").read_text(), re.S)
+(MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[4] / "README.md").read_text(), re.S)
 TWIN = """
 from normalbench.encodings.vec import Vec2, Vec3, normalize
 
