@@ -30,9 +30,9 @@ from normalbench.bench.ground.machine.memory import (
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.keep import measuring
 from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.measures.metrics import published
+from normalbench.bench.run import measuring
 from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.shaders.isa.nvidia import tools
 from normalbench.gbuffer.gl.device import NoDeviceError, device

@@ -9,7 +9,7 @@ import kept_rows
 import pytest
 from slowly import all_but
 
-from normalbench.bench.keep.measuring import asked
+from normalbench.bench.run.measuring import asked
 from normalbench.bench.tables.registry import TABLES
 
 

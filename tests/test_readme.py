@@ -22,7 +22,8 @@ from written import as_document, packed, planes_of, png_bytes, some_normals, wri
 
 from normalbench.bench.door import code_command, examine, run
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.keep import machine, measuring
+from normalbench.bench.keep import machine
+from normalbench.bench.run import measuring
 from normalbench.bench.run.workers import places
 from normalbench.bench.show import report
 from normalbench.bench.tables.columns import explained

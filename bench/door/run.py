@@ -17,9 +17,9 @@ from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
 from ..ground.output.progress import progress_of_all
 from ..ground.output.writing import say
-from ..keep.measuring import Asked, Place, asked, measured, with_parts
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
+from ..run.measuring import Asked, Place, asked, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import keep_times, place
 from ..show.showing import say_lines, say_skipped, show_summary

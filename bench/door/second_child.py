@@ -27,9 +27,9 @@ from ..ground.machine.memory import (
     look_for_garbage_seldom,
 )
 from ..ground.output.errors import MissingError, UsageError, told
-from ..keep.measuring import Asked, measured
 from ..keep.plain import key_text, plain
 from ..keep.runs import read_run
+from ..run.measuring import Asked, measured
 from ..show.report import draw_ahead
 from ..tables.registry import TABLES
 from ..tables.table import Row, Step

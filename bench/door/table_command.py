@@ -16,9 +16,9 @@ from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_writable, say
-from ..keep.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..keep.plain import plain
 from ..keep.runs import Done, facts_of
+from ..run.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..run.workers.places import place
 from ..show.showing import say_lines, say_skipped, show
 from ..tables.table import Measured, Row, Table

@@ -16,11 +16,11 @@ from threading import Lock
 
 from ...encodings.codecs.files import file_json
 from ..ground.output.errors import UsageError
-from ..ground.output.journal import Journal, data_of, journal, read_lines
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
 from ..tables.table import PART, Role, Row, Step, Table
+from .journal import Journal, data_of, journal, read_lines
 from .plain import key_text, plain
 
 RUN, ROWS = "run.json", "rows.jsonl"

@@ -19,10 +19,10 @@ from typing import IO, Any
 from ..ground.machine.children import environment, python
 from ..ground.machine.cores import cores
 from ..ground.output.errors import MissingError, UsageError, tell, told
-from ..keep.measuring import Asked, with_parts
 from ..keep.plain import key_text
 from ..keep.runs import Run
 from ..tables.table import Step, Table
+from .measuring import Asked, with_parts
 
 ERRORS: Mapping[int, type[Exception]] = {error.exit_code: error for error in (UsageError, MissingError)}
 

@@ -11,7 +11,7 @@ import numpy as np
 from written import packed, some_normals, write_image
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.keep import measuring
+from normalbench.bench.run import measuring
 
 from .kind import MEASURED, Attack, Kind, command, outcome
 

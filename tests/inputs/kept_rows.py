@@ -16,8 +16,8 @@ from pathlib import Path
 
 from normalbench.bench.ground.machine.devices import found_device, processor_kind
 from normalbench.bench.ground.output.cache import key_of
-from normalbench.bench.keep.measuring import Asked
 from normalbench.bench.keep.plain import key_text, plain
+from normalbench.bench.run.measuring import Asked
 from normalbench.bench.tables.table import Row, Step, Tick
 
 ROOT = Path(__file__).parents[2]

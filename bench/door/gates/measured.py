@@ -11,8 +11,8 @@ from typing import Any
 
 from ...ground.options.option import checked_options, fields_of
 from ...ground.output.errors import UsageError, names_a_file, noting_what_is_left_out
-from ...keep.measuring import Nothing, asked, measured_steps
 from ...measures.metrics.totals import Worst
+from ...run.measuring import Nothing, asked, measured_steps
 from ...shaders.languages.words import file_of, files_in, names_an_encoder, twin_of, with_files
 from ...tables.registry import TABLES
 from ...tables.table import Role, Row, Step, Table

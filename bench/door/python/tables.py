@@ -15,7 +15,7 @@ from ....encodings.storages.storage import Storage
 from ...ground.options.option import checked_options, fields_of
 from ...ground.options.words import Words
 from ...ground.output.errors import UsageError
-from ...keep.measuring import Nothing, asked, measured
+from ...run.measuring import Nothing, asked, measured
 from ...run.workers.places import place
 from ...run.workers.words import HELP, check_place
 from ...subjects.normals.captures import OFF_UNIT_SHARE, UNIT_WITHIN

@@ -13,10 +13,10 @@ from typing import Any
 
 from ...ground.options.words import given_in
 from ...ground.output.errors import UsageError, noting_what_is_left_out
-from ...keep.measuring import Asked, companions, file_digest, words_of
 from ...keep.plain import key_text
 from ...shaders.languages.words import files_in, with_files
 from ...tables.table import Row, Step
+from ..measuring import Asked, companions, file_digest, words_of
 
 # Where a worker keeps files that do not lie below the folder in which the command was typed.
 ELSEWHERE = ".elsewhere"

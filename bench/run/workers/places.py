@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...ground.output.writing import whole_file
-from ...keep.measuring import HERE, Here
+from ..measuring import HERE, Here
 from .words import Local, place_named, require_dask
 
 if TYPE_CHECKING:

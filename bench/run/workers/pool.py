@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 
 from ...ground.output.errors import leave_out, tell
 from ...ground.output.writing import whole_file
-from ...keep.measuring import HERE, Asked
 from ...tables.table import Role, Row, Step, Table, Tick
+from ..measuring import HERE, Asked
 from . import tasks
 from .chunks import MOST_LOST, Chunk, Group, Line, Waiting
 from .crew import Crew

@@ -22,7 +22,7 @@ from typing import Any
 
 from ....reports.tables import written
 from ...ground.output.errors import UsageError
-from ...ground.output.journal import journal
+from ...keep.journal import journal
 from ...measures.metrics.growth import exponent
 from .chunks import chunk_size
 from .places import TIMES

@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 
 from ...ground.output.errors import MissingError, UsageError, told
-from ...keep.measuring import Asked, asked, with_parts
 from ...tables.registry import TABLES
 from ...tables.table import Measured, Row, Step
+from ..measuring import Asked, asked, with_parts
 from .about import About, about
 from .orders import PICTURES, Order, check_paths
 

@@ -19,12 +19,11 @@ import pytest
 from normalbench.bench.door import run as run_command
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.door.run_options import RunOptions
-from normalbench.bench.ground.output import journal
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
-from normalbench.bench.keep import table_files
-from normalbench.bench.keep.measuring import files_of
+from normalbench.bench.keep import journal, table_files
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
+from normalbench.bench.run.measuring import files_of
 from normalbench.bench.run.workers.orders import Packing
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files

@@ -10,8 +10,8 @@ from PIL import Image
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.options.effect_names import effects_named
-from normalbench.bench.keep.measuring import Nothing, asked, measured
 from normalbench.bench.measures.metrics.totals import psnr_db
+from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.effects import work as effects_work
 from normalbench.bench.tables.effects.measure import Bench, drawn_at, in_order

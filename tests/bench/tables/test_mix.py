@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.bench.keep.measuring import Nothing, asked, measured
+from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.mix import reference, worst

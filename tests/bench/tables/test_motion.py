@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from normalbench.bench.keep.measuring import Nothing, asked, measured
 from normalbench.bench.measures.metrics.totals import psnr_db
+from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.motion import highlights, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble

@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from normalbench.bench.keep.measuring import Nothing, asked, measured_steps
 from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
+from normalbench.bench.run.measuring import Nothing, asked, measured_steps
 from normalbench.bench.run.workers import tasks
 from normalbench.bench.run.workers.orders import parcels_of
 from normalbench.bench.subjects.normals import normal_sets

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.keep.measuring import beside
+from normalbench.bench.run.measuring import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.measure import STAGES
 from normalbench.bench.tables.sweep import measure as sweep

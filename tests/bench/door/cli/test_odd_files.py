@@ -12,8 +12,8 @@ import pytest
 from written import some_normals
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.ground.output.journal import journal
 from normalbench.bench.ground.output.writing import whole_file
+from normalbench.bench.keep.journal import journal
 
 SHADER = """
 vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }

@@ -15,9 +15,9 @@ import pytest
 from normalbench.bench.door import run as run_of
 from normalbench.bench.door import second_child
 from normalbench.bench.ground.machine.children import environment
-from normalbench.bench.keep.measuring import HERE, Asked
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.run import second
+from normalbench.bench.run.measuring import HERE, Asked
 from normalbench.bench.show import report
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured

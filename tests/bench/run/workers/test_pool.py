@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from normalbench.bench.ground.options.words import Words, given_in
-from normalbench.bench.keep.measuring import Asked
+from normalbench.bench.run.measuring import Asked
 from normalbench.bench.run.workers.admission import Admission
 from normalbench.bench.run.workers.chunks import MOST_LOST, MOST_TOGETHER, chunk_size
 from normalbench.bench.run.workers.link import LOST

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench.ground.directions import directions
-from normalbench.bench.keep.measuring import files_of
+from normalbench.bench.run.measuring import files_of
 from normalbench.bench.shaders.languages import tools, translated
 from normalbench.bench.shaders.languages.plain import NotPlainError, plain
 from normalbench.bench.subjects.codecs.doctor.exact import is_unit

@@ -13,8 +13,8 @@ import devices as made
 import pytest
 
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.ground.output.journal import Journal
 from normalbench.bench.keep import runs
+from normalbench.bench.keep.journal import Journal
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.show.devices import import_command
 from normalbench.bench.tables.devices.agreement import sentences

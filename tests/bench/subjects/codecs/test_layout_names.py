@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.keep.measuring import companions, files_of
+from normalbench.bench.run.measuring import companions, files_of
 from normalbench.bench.subjects.codecs.layout_names import files_of_layout, layouts_named
 from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.encodings.catalogue import ENCODINGS

@@ -12,8 +12,8 @@ from io import FileIO
 from pathlib import Path
 from typing import Any
 
-from ....encodings.codecs.files import file_bytes
-from .errors import UsageError
+from ...encodings.codecs.files import file_bytes
+from ..ground.output.errors import UsageError
 
 Line = dict[str, Any]
 # Of a journal, in bytes; the largest runs have some megabytes.

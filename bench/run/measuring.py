@@ -15,13 +15,13 @@ from typing import Any, Protocol
 from ..ground.machine.settings import settings
 from ..ground.options.option import Reading, fields_of
 from ..ground.output.errors import UsageError
-from ..ground.output.journal import Journal, journal
 from ..ground.output.progress import progress
 from ..ground.output.writing import is_special, target_of
+from ..keep.journal import Journal, journal
+from ..keep.plain import key_text, plain
 from ..shaders.languages.source import Source
 from ..shaders.languages.words import files_in, names_an_encoder, twin_of
 from ..tables.table import Measured, Row, Step, Table, Tick
-from .plain import key_text, plain
 
 # Beside a file of one of these, files that it refers to are read too.
 COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
@@ -262,7 +262,7 @@ class Beside:
 def _checked(kept: Journal) -> list[Row]:
     """The lines below the first. Raises UsageError where one is not a step."""
     if lines := kept.lines[1:]:
-        from .schema import check_kept
+        from ..keep.schema import check_kept
 
         for at, line in enumerate(lines, 2):
             check_kept(line, f"{kept.path}, line {at}")
