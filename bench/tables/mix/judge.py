@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
+from statistics import fmean
 
 from ....encodings.codecs.codec import Codec
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
 from .measure import Case, measure
 from .patches import Mixes, mixes_of, patches_of
-from .table import USES
+from .table import COUNT, USES
 from .verdict import Row, decides, decides_across, summed_up, worst_fault
 
 # All around, and about the six axes, where seams lie.
-SETS, ANGLES, COUNT = ("sphere", "axes"), (1.0, 5.0), 2048
+AXES = "axes"
+SETS, ANGLES = ("sphere", AXES), (1.0, 5.0)
 SAMPLES, POWER = 4, 1.0
 
 
@@ -35,8 +38,24 @@ def _mixes(normals: NormalSet) -> tuple[Mixes, ...]:
     return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
 
 
-def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> tuple[dict[str, str], dict[str, str]]:
-    """Why a codec cannot be used so, by use: inside a surface, and across an edge; nothing where it can.
+@dataclass(frozen=True)
+class Judgement:
+    """What mixing does to a codec.
+
+    Attributes:
+        inside, across: why it cannot be used so, by use: inside a surface, and across an edge; nothing where it can.
+        mean_deg, max_deg: the errors of what is mixed inside a surface: the mean of all operations at all distances,
+            and the largest; None where nothing was measured.
+    """
+
+    inside: dict[str, str]
+    across: dict[str, str]
+    mean_deg: float | None
+    max_deg: float | None
+
+
+def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> Judgement:
+    """What mixing does to a codec.
 
     Args:
         uses: some of table.USES.
@@ -50,7 +69,10 @@ def faults(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -
     cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes(normals))
     rows = [row for case in cases for row in measure(case)]
     inside, across = ([row for row in rows if is_decisive(row)] for is_decisive in (decides, decides_across))
-    return _summed(inside, uses), _summed(across, uses)
+    # Seams lie about the axes: a mean over these is not that of a surface.
+    means = [row["angle_mean_deg"] for row in inside if row["normals"] != AXES]
+    largest = max((row["angle_max_deg"] for row in inside), default=None)
+    return Judgement(_summed(inside, uses), _summed(across, uses), fmean(means) if means else None, largest)
 
 
 def _summed(rows: Sequence[Row], uses: Sequence[str]) -> dict[str, str]:

@@ -38,7 +38,7 @@ INDISTINGUISHABLE_DB = 70.0
 # The share of the angle that the error of a decode's length has, from which on it must be normalised before it is lit.
 # `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
 LENGTH = 0.1
-# Nobody chooses by less than half a decibel, or half a doubling of the price.
+# Nobody chooses by less than half a decibel.
 STEP = 0.5
 # Prices that are apart by less of a doubling are one.
 SAME_PRICE = 0.1
@@ -51,7 +51,7 @@ NO_FIGURE = "no figure for --aim"
 # A code has no use for a storage that has so many more bits than it has codes for.
 WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
-TIES = 3
+TIES = 4
 
 
 def places_of(row: Row) -> list[str]:
@@ -61,7 +61,21 @@ def places_of(row: Row) -> list[str]:
 
 def largest(row: Row) -> float | None:
     """The supremum, or the largest angle that was met: float32 may lose what exact arithmetic does not."""
-    return max((row[name] for name in ("angle_max_deg", "angle_sup_deg") if row[name] is not None), default=None)
+    return _most(row["angle_max_deg"], row["angle_sup_deg"])
+
+
+def mean(row: Row) -> float | None:
+    """The mean angle, or the mean error after the mixing that is asked for, if that is larger."""
+    return _most(row["angle_mean_deg"], row.get("mixed_mean_deg"))
+
+
+def largest_mixed(row: Row) -> float | None:
+    """The largest angle, or the largest error after the mixing that is asked for, if that is larger."""
+    return _most(largest(row), row.get("mixed_max_deg"))
+
+
+def _most(*angles: float | None) -> float | None:
+    return max((angle for angle in angles if angle is not None), default=None)
 
 
 def images(row: Row) -> dict[tuple[str, str], float]:
@@ -90,10 +104,10 @@ def _of_image(row: Row) -> float:
 # By aim: what a code loses, in decibels; less is better.
 AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
     {
-        "angle": lambda row: decibels(row["angle_mean_deg"]),
-        "worst": lambda row: decibels(largest(row)),
+        "angle": lambda row: decibels(mean(row)),
+        "worst": lambda row: decibels(largest_mixed(row)),
         "image": _of_image,
-        "cost": lambda row: decibels(row["angle_mean_deg"]),
+        "cost": lambda row: decibels(mean(row)),
     }
 )
 
@@ -123,26 +137,26 @@ def doublings(row: Row) -> float:
 def is_enough(row: Row) -> bool:
     """Whether an environment map does not show what a code does to a reflection: twice its largest angle is at most
     what was asked for."""
-    found = largest(row)
+    found = largest_mixed(row)
     return found is not None and 2 * found <= row["enough"]
 
 
 def order(row: Row) -> tuple[float, ...]:
     """By what rows are sorted, less is better.
 
-    Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to half a doubling. The
+    Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
     others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
     """
-    ties = (_of_image(row), price(row), _bits(row))
+    ties = (_to_a_step(_of_image(row)), price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
-        return (0, bool(row["table"]), _bits(row), _to_a_step(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
+        return (0, bool(row["table"]), _bits(row), round(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
     return (1, _to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
 
 
 def _to_a_step(figure: float) -> float:
-    """A score to the half decibel, or a price to the half doubling: nobody chooses by less."""
+    """A score to the half decibel: nobody chooses by less."""
     return round(figure / STEP) * STEP if math.isfinite(figure) else figure
 
 
@@ -334,9 +348,15 @@ def _apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     return kept
 
 
+def is_much_better(row: Row, best: Row) -> bool:
+    """Whether a code of another storage is worth a word: by a bit of each component, and not worse at its worst."""
+    is_worse = (largest_mixed(row) or math.inf) > (largest_mixed(best) or math.inf)
+    return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse
+
+
 def _elsewhere(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
-    """The best code of other storages of the same bytes, where it is much better."""
+    """The best code of other storages of the same bytes, where it is much better, at its worst as well."""
     others = [row for row in judged if row["beside"] and not row["left_out"]]
-    better = [row for row in others if fit and loss_db(fit[0]) - loss_db(row) >= MUCH_BETTER_DB]
+    better = [row for row in others if fit and is_much_better(row, fit[0])]
     kept = sorted(better, key=lambda row: order(row)[:-TIES])[:1]
     return [row | {"front": False, "place": ELSEWHERE} for row in kept]

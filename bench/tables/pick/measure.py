@@ -30,7 +30,7 @@ from ...ground.output.sources import sources
 from ...measures.metrics.images import squared_error
 from ...measures.metrics.totals import psnr_db
 from ...shaders.code.twin import has_twin
-from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
+from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..mix import judge
 from ..mix.patches import in_domain
 from ..mix.verdict import DONE
@@ -160,11 +160,10 @@ class Question:
         self._measure_axes([self._cases[_name(row)] for row in placed])
 
     def _measure_axes(self, cases: Sequence[Case]) -> None:
-        """Errors of axis-aligned normals, of codes for every direction."""
-        whole = [case for case in cases if case.codec.encoding.domain == "sphere"]
-        axes = NORMAL_SETS["axes"](0, 0)
-        for case, row in zip(whole, _angles([replace(case, normal_set=axes) for case in whole]), strict=True):
-            self._rows[case.codec.name][AXES] = row["angle_max_deg"]
+        """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
+        axes = {case.codec.name: replace(case, normal_set=_axes(_is_half(case))) for case in cases}
+        for name, row in zip(axes, _angles(list(axes.values())), strict=True):
+            self._rows[name][AXES] = row["angle_max_deg"]
 
     def answered(self) -> list[Row]:
         """The rows as far as they are known, the best first."""
@@ -194,22 +193,47 @@ class Question:
         return list(self._rows.values())
 
 
+def _is_half(case: Case) -> bool:
+    """Whether a code need not hold all directions, or does not."""
+    return bool(case.said["needs"] not in (None, "", "sphere") or case.codec.encoding.domain != "sphere")
+
+
+@cache
+def _axes(is_half: bool) -> NormalSet:
+    """Axis-aligned normals, all or those with z >= 0: what faces the viewer of floors, walls and ceilings."""
+    axes = NORMAL_SETS["axes"](0, 0)
+    if not is_half:
+        return axes
+    (load,) = axes.loads()
+    chunk = load()
+    n, view = (
+        np.stack([np.asarray(plane)[: axes.count] for plane in planes], axis=1) for planes in (chunk.n, chunk.view)
+    )
+    held = n[:, 2] >= 0
+    return from_arrays("axes, z >= 0", axes.title, n[held], view[held], np.ones(held.sum(), bool), None)
+
+
 def _name(row: Row) -> str:
     """The name of a row's codec."""
     return f"{row['encoding']}/{row['storage']}"
 
 
 def _mixed(case: Case) -> Row:
-    """Why a code does not survive the mixing that is asked for, if it does not."""
+    """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
     uses, domain = case.said["mixing"], case.said["needs"] or case.codec.encoding.domain
     if domain == "sphere" and not _lost(case.normal_set, "hemisphere"):
         domain = "hemisphere"
     key = _key("mixing", case.codec, uses, domain, _normals(case))
 
     def judged() -> Row:
-        inside, across = judge.faults(case.codec, uses.split(","), case.normal_set, domain)
-        said = (f"cannot be {DONE[use]}: {why}" for use, why in inside.items())
-        return {"cannot_mix": "; ".join(said) or None, "mixed_across": "; ".join(across.values()) or None}
+        found = judge.judgement(case.codec, uses.split(","), case.normal_set, domain)
+        said = (f"cannot be {DONE[use]}: {why}" for use, why in found.inside.items())
+        return {
+            "cannot_mix": "; ".join(said) or None,
+            "mixed_across": "; ".join(found.across.values()) or None,
+            "mixed_mean_deg": found.mean_deg,
+            "mixed_max_deg": found.max_deg,
+        }
 
     return kept.kept(key, judged)
 
@@ -312,8 +336,9 @@ class Pictures:
             except (LayoutError, *render.UNMEASURABLE):
                 continue
         if case.codec.encoding.domain != "sphere":
-            lost = (self.lost_percent(case, maker) for maker in case.makers)
-            found["image_lost_percent"] = max(lost, default=0.0)
+            lost = {maker.name: self.lost_percent(case, maker) for maker in case.makers}
+            found["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
+            found["image_lost_percent"] = max(lost.values(), default=0.0)
         return found
 
     def lost_percent(self, case: Case, maker: SceneMaker) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
+from ....reports.page.verdict import MADE_FOR
 from .answer import (
     ACROSS,
     BEST,
@@ -22,10 +23,14 @@ from .answer import (
     floor,
     images,
     is_enough,
+    is_much_better,
     is_same_price,
     largest,
+    largest_mixed,
     loss_db,
     lost,
+    mean,
+    order,
     places_of,
     price,
     why_unfit,
@@ -35,6 +40,8 @@ from .table import TEXEL_DEG
 Row = dict[str, Any]
 
 AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst image", "cost": "mean error"}
+# Percent of the visible normals of a scene, from which on the first line says that they are not held.
+MUCH_LOST = 1.0
 # The rungs, as a sentence begins with each.
 RUNGS = {
     MORE_EXACT: "More exact",
@@ -58,10 +65,10 @@ WOBBLES = "A code in view space wobbles when the camera turns; one in world spac
 def sentences(group: Sequence[Row]) -> list[str]:
     """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences."""
     best = next((row for row in group if BEST in places_of(row)), None)
-    where = f"{group[0]['asked']}, on {group[0]['normals']}"
+    where = f"{group[0]['asked']}, {_on(group[0])}"
     if best is None:
         return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group), *left_out(group)]
-    others = [_elsewhere(row, best) for row in group if ELSEWHERE in places_of(row)]
+    others = [*_not_held(best), *(_elsewhere(row, best) for row in _much_better(group, best))]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
     made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
     made += list(filter(None, [_images(best), _mixing(best)]))
@@ -71,15 +78,47 @@ def sentences(group: Sequence[Row]) -> list[str]:
     return [*made, *left_out(group)]
 
 
+def _on(row: Row) -> str:
+    """What was measured, in words; where the set stands for a domain, the domain as well."""
+    on = f"on {row['normals']}"
+    return f"for {MADE_FOR[row['needs']]}, {on}" if row["needs"] == "view" else on
+
+
+def _not_held(best: Row) -> Iterator[str]:
+    """What images have that the answer does not hold, where that is much."""
+    lost = best.get("image_lost_percent") or 0.0
+    if lost >= MUCH_LOST:
+        yield f"It does not hold {lost:.2g} % of the visible normals of {best['image_lost_scene']}."
+
+
+def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
+    """The code of another storage of the same bytes that is worth a word."""
+    others = [row for row in group if ELSEWHERE in places_of(row)]
+    rungs = [row for row in group if {MORE_EXACT, MOST_EXACT} & {*places_of(row)} and row["storage"] != best["storage"]]
+    return others or sorted((row for row in rungs if is_much_better(row, best)), key=order)[:1]
+
+
 def _instead(group: Sequence[Row]) -> Iterator[str]:
     """What comes nearest where no code qualifies."""
-    fit = [row for row in group if not row["beside"] and not row.get("hole") and not why_unfit(row)]
     if group[0]["mixing"]:
         yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
-    elif fit and group[0]["most_instructions"] is not None:
-        nearest = min(fit, key=lambda row: math.inf if row["slots_once"] is None else row["slots_once"])
-        if nearest["slots_once"] is not None:
-            yield f"The nearest is {_called(nearest)}, with {nearest['slots_once']:g} issue slots."
+        if group[0]["needs"] not in ("hemisphere", "view"):
+            yield "Or ask for another storage, or for half of the sphere (--domain hemisphere), which has no seam."
+        return
+    priced = [row for row in group if not row["beside"] and not why_unfit(row) and row["slots_once"] is not None]
+    if priced and (most := group[0]["most_instructions"]) is not None:
+        nearest = min((row for row in priced if not row.get("hole")), key=_slots_once, default=None)
+        if nearest:
+            said = f"{_called(nearest)}, with {_slots_once(nearest):g} issue slots"
+            yield f"Of codes without a hole the nearest is {said}."
+        holed = min((row for row in priced if row.get("hole")), key=_slots_once, default=None)
+        if holed and _slots_once(holed) <= most:
+            said = f"{_called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
+            yield f"--accept-holes takes {said}."
+
+
+def _slots_once(row: Row) -> float:
+    return row["slots_once"]
 
 
 def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
@@ -124,7 +163,7 @@ def _largest(row: Row) -> str:
 
 def _moved(row: Row) -> list[float]:
     """How far a mirror's reflection moves, in the mean and at most: by twice the angle that its normal is turned."""
-    return [2 * value for value in (row["angle_mean_deg"], largest(row)) if value is not None]
+    return [2 * value for value in (mean(row), largest_mixed(row)) if value is not None]
 
 
 def _seen(row: Row) -> str:
@@ -181,7 +220,7 @@ def _images(row: Row) -> str:
     scenes = " and ".join(dict.fromkeys(name for name, _ in found))
     effects = f" with {row['effects']}" if row.get("effects") else ""
     lost = row.get("image_lost_percent")
-    beyond = f" It does not hold {lost:.2g} % of the visible normals, which are left out of it." if lost else ""
+    beyond = f" Images leave out the normals that it does not hold, up to {lost:.2g} %." if lost else ""
     if worst > INDISTINGUISHABLE_DB:
         return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}.{beyond}"
     return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}.{beyond}"
@@ -189,14 +228,15 @@ def _images(row: Row) -> str:
 
 def _mixing(row: Row) -> str:
     """What mixing does to a code that survives it inside a surface; empty where it was not asked for."""
-    if not row["mixing"]:
+    if not row.get("mixing"):
         return ""
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
     said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     across = row.get("mixed_across")
+    left = f"mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     if across:
-        return f"{said}Inside a surface it survives {_uses(row)}. Across an edge it does not: {across}."
-    return f"{said}It survives {_uses(row)}, inside a surface and across an edge."
+        return f"{said}Inside a surface it survives {_uses(row)} ({left}). Across an edge it does not: {across}."
+    return f"{said}It survives {_uses(row)}, inside a surface ({left}) and across an edge."
 
 
 def _uses(row: Row) -> str:
@@ -217,8 +257,14 @@ def _gain(row: Row, best: Row) -> str:
 
 def _rung(row: Row, best: Row) -> str:
     """A rung of the ladder: what it gains, and for what price."""
-    said = f"{_called(row)}, {_gain(row, best)} (mean {degrees(row['angle_mean_deg'])}, {_largest(row)})"
+    said = f"{_called(row)}, {_gain(row, best)} ({_errors(row)})"
     return f"{said}, {_priced(row, best)}{_spared(row, best)}."
+
+
+def _errors(row: Row) -> str:
+    if not row.get("mixing"):
+        return f"mean {degrees(row['angle_mean_deg'])}, {_largest(row)}"
+    return f"after {_uses(row)} mean {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
 
 
 def _priced(row: Row, best: Row) -> str:
@@ -249,7 +295,7 @@ def _elsewhere(row: Row, best: Row) -> str:
     gain = loss_db(best) - loss_db(row)
     free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
     said = f"In {row['storage']}, of the same {best['bytes']} bytes, {row['encoding']} is {gain:.0f} dB better"
-    return f"{said} (mean {degrees(row['angle_mean_deg'])}), and {free}."
+    return f"{said} (mean {degrees(mean(row))}), and {free}."
 
 
 def _against(row: Row, best: Row) -> str:
@@ -274,6 +320,8 @@ def left_out(group: Sequence[Row]) -> Iterator[str]:
 
 def _with_reason(rows: Sequence[Row], why: str) -> str:
     """The codes that are left out for a reason; where its details differ, those of the first."""
+    # The example is the one that people would ask about.
+    rows = sorted(rows, key=lambda row: (bool(row.get("hole")), loss_db(row)))
     names = [f"{_called(row)} {row['hole']}" if row.get("hole") else _called(row) for row in rows]
     detail = str(rows[0].get("cannot_mix") or "").partition(":")[2]
     if not detail:

@@ -162,6 +162,7 @@ COLUMNS = (
         better="less",
         shown=False,
     ),
+    Column("image_lost_scene", "That scene.", HOW, shown=False),
     Column(
         "slots",
         "The price: issue slots to encode once and to decode for each of `readers`, as they are executed.",
@@ -201,6 +202,15 @@ COLUMNS = (
     Column("needs", "The domain that was asked for.", HOW),
     Column("mixing", "What stored codes must survive, as --needs says it.", HOW),
     Column("cannot_mix", "Why the code does not survive that inside a surface: the verdict of `mix`.", HOW),
+    Column(
+        "mixed_mean_deg",
+        "Mean error after that mixing inside a surface, over neighbours 1 and 5 degrees apart or an image's own. If it "
+        "is larger than the mean angle, it decides.",
+        HOW,
+        "degrees",
+        shown=False,
+    ),
+    Column("mixed_max_deg", "Largest error after that mixing inside a surface.", HOW, "degrees", shown=False),
     Column("mixed_across", "What it does to the code across an edge, where that is garbage.", HOW),
     Column("against", "Whether the code was named by --against.", HOW, shown=False),
     Column("beside", "Whether it is of another storage of the same bytes.", HOW, shown=False),
@@ -219,6 +229,15 @@ COLUMNS = (
     shared.SKIPPED,
 )
 
+ALSO = (
+    Column(
+        "largest_deg",
+        "The supremum, or the largest angle that was met if that is larger.",
+        unit="degrees",
+        better="less",
+    ),
+)
+
 TABLE = Table(
     name="pick",
     package=__package__ or "",
@@ -229,6 +248,7 @@ TABLE = Table(
     options=PickOptions,
     outputs=PickOutputs,
     columns=COLUMNS,
+    also=ALSO,
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
     files={"images": "images"},

@@ -28,7 +28,7 @@ from ...subjects.normals.normal_sets import NormalSet
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
-from .answer import AIMS, HOLDS, answered, groups
+from .answer import AIMS, HOLDS, answered, groups, largest
 from .sentences import sentences
 from .table import TABLE, PickOptions, PickOutputs
 
@@ -37,7 +37,7 @@ MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
 # By the domain that is asked for, the set that is measured.
 SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}
 # What people see of the front.
-SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", "angle_max_deg", "image_db_*", "slots")
+SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", "largest_deg", "image_db_*", "slots")
 
 
 @dataclass(frozen=True)
@@ -208,6 +208,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _short(row: Row) -> Row:
+    row = row | {"largest_deg": largest(row)}
     return {name: row[name] for pattern in SHOWN for name in row if fnmatchcase(name, pattern)}
 
 

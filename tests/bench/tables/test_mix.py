@@ -15,7 +15,7 @@ from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.mix import reference, worst
 from normalbench.bench.tables.mix.figures import error_of_percent
-from normalbench.bench.tables.mix.judge import faults
+from normalbench.bench.tables.mix.judge import judgement
 from normalbench.bench.tables.mix.measure import Case, Modelled, measure
 from normalbench.bench.tables.mix.model import BY_MODEL, MODEL, Texels, Way
 from normalbench.bench.tables.mix.patches import SIDE, TEXELS, mixes_of, patches_of
@@ -270,24 +270,35 @@ def test_a_verdict_follows_from_the_thresholds():
 def test_octahedral_can_be_filtered_where_z_is_not_negative():
     """Its seams lie at z < 0; the sentence says what goes wrong on the whole sphere."""
     sphere = NORMAL_SETS["sphere"](64, 0)
-    found, _ = faults(codec("octahedral/rg8"), ("filter", "blend"), sphere, "sphere")
+    found = judgement(codec("octahedral/rg8"), ("filter", "blend"), sphere, "sphere").inside
     assert set(found) == {"filter", "blend"} and "garbage, up to" in found["filter"], found
-    assert not faults(codec("octahedral/rg8"), ("filter", "blend", "resolve"), sphere, "hemisphere")[0]
+    assert not judgement(codec("octahedral/rg8"), ("filter", "blend", "resolve"), sphere, "hemisphere").inside
 
 
 def test_a_code_may_survive_inside_a_surface_and_not_across_an_edge():
     """xyz / max |n| weighs normals by another length; xyz is linear. Who decodes first has no edge to mind."""
     sphere = NORMAL_SETS["sphere"](64, 0)
-    inside, across = faults(codec("xyz_largest/rgba8"), ("filter", "upsample"), sphere, "sphere")
-    assert not inside and set(across) == {"filter"} and "an edge of 60 degrees" in across["filter"], across
-    assert faults(codec("xyz_renormalised/rgba8"), ("filter", "upsample"), sphere, "sphere") == ({}, {})
+    found = judgement(codec("xyz_largest/rgba8"), ("filter", "upsample"), sphere, "sphere")
+    assert not found.inside and set(found.across) == {"filter"}, found
+    assert "an edge of 60 degrees" in found.across["filter"], found
+    found = judgement(codec("xyz_renormalised/rgba8"), ("filter", "upsample"), sphere, "sphere")
+    assert (found.inside, found.across) == ({}, {}), found
+
+
+def test_a_code_of_best_fit_loses_its_advantage_where_it_is_filtered():
+    """Its texels have lengths of their own, which weigh the normals: by itself it is four times as exact."""
+    sphere = NORMAL_SETS["sphere"](64, 0)
+    own, plain = (
+        judgement(codec(name), ("filter",), sphere, "sphere") for name in ("best_fit/rgba8", "xyz_largest/rgba8")
+    )
+    assert not own.inside and own.mean_deg > 1.5 * plain.mean_deg > 0.2, (own, plain)
 
 
 @pytest.mark.parametrize("name", ["xy_sign/rg8", "octahedral/rg8", "spherical/rg8"])
 def test_no_code_of_two_numbers_in_rg8_can_be_filtered_on_the_sphere(name):
     """xy_sign is 6 degrees off by itself and 9 after a mip: its own error is no excuse. All can be upsampled."""
-    inside, across = faults(codec(name), ("filter", "upsample"), NORMAL_SETS["sphere"](64, 0), "sphere")
-    assert set(inside) == {"filter"} and "upsample" not in across, (inside, across)
+    found = judgement(codec(name), ("filter", "upsample"), NORMAL_SETS["sphere"](64, 0), "sphere")
+    assert set(found.inside) == {"filter"} and "upsample" not in found.across, found
 
 
 def test_an_edge_runs_through_the_mix_of_every_patch():
