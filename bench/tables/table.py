@@ -41,6 +41,16 @@ class Role(StrEnum):
     REASON = "reason"  # why there are no figures
 
 
+class Group(StrEnum):
+    """What a command is for, as the program's help groups them; in its order."""
+
+    ANSWER = "The answer"
+    MEASURE = "Measure"
+    OWN = "Your own"
+    KEEP = "Keep and compare"
+    MACHINE = "This program and this machine"
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of a table.
@@ -252,6 +262,7 @@ class Table:
         columns: the columns of its rows, in order.
         also: columns that only its summaries have.
         section: its part of the page.
+        group: where the program's help has its command.
         usual: what `run` measures of it where nothing else is asked for: sets of options.
         usual_where_said: by an option, what of `usual` is replaced where `run` is given that option.
         single: options of a gate or a test that says nothing else.
@@ -275,6 +286,7 @@ class Table:
     columns: tuple[Column, ...]
     section: Section
     outputs: type = NoOutputs
+    group: Group = Group.MEASURE
     also: tuple[Column, ...] = ()
     usual: tuple[Mapping[str, Any], ...] = ({},)
     usual_where_said: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)

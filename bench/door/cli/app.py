@@ -18,6 +18,7 @@ from types import FrameType
 from typing import IO, Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperGroup
 from typer.exceptions import Abort, TyperException
 
 from ....encodings.codecs.files import CatalogueError
@@ -28,13 +29,24 @@ from ...ground.output.progress import ending
 from ...ground.output.writing import abandon_output, check_is_folder, write
 from ...run.workers.words import check_place
 from ...tables.registry import TABLES
+from ...tables.table import Group
 from ..run_options import RunOptions
 from .commands import OnOption, add_tables, command_with
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .typed import added_up, check_begins_with_command
 
+
+class Grouped(TyperGroup):
+    """The commands, by what they are for."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        panels = {name: getattr(command, "rich_help_panel", None) for name, command in self.commands.items()}
+        return sorted(super().list_commands(ctx), key=lambda name: [*Group].index(Group(panels[name])))
+
+
 app = typer.Typer(
+    cls=Grouped,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
@@ -77,7 +89,7 @@ def every_command(
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
 
 
-@app.command("list")
+@app.command("list", rich_help_panel=Group.MACHINE)
 def list_command(
     what: Annotated[
         str,
@@ -95,7 +107,7 @@ def list_command(
     write(listing(what), format_of(format, output), output, SPARED, by="kind")
 
 
-@app.command()
+@app.command(rich_help_panel=Group.OWN)
 def doctor(
     file: Annotated[
         Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")
@@ -168,12 +180,13 @@ RunOutput = Annotated[
 ]
 app.command(
     "run",
+    rich_help_panel=Group.ANSWER,
     help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
     "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
 )(command_with(RunOptions, _run, output=RunOutput, on=OnOption))
 
 
-@app.command()
+@app.command(rich_help_panel=Group.MACHINE)
 def worker(
     scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
 ) -> int:
@@ -195,13 +208,14 @@ CodeOutput = Annotated[
 ]
 app.command(
     "code",
+    rich_help_panel=Group.OWN,
     help="Code of any codec to paste into an engine: encode, pack, unpack and decode, run and compared before it is "
     "written.",
     epilog="Example: normalbench code octahedral --storage rgb10a2 --to hlsl",
 )(command_with(CodeOptions, _code, format=FormatOption, output=CodeOutput))
 
 
-@app.command("columns")
+@app.command("columns", rich_help_panel=Group.MACHINE)
 def columns_command(
     table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
     format: FormatOption = None,
@@ -213,7 +227,7 @@ def columns_command(
     write(columns(table), format_of(format, output), output, by="table")
 
 
-@app.command()
+@app.command(rich_help_panel=Group.KEEP)
 def check(
     gates: Annotated[Path, typer.Argument(help=r"A TOML file of \[\[gate]] tables.")],
     run: Annotated[
@@ -238,7 +252,7 @@ class FailOn(StrEnum):
     change = "change"
 
 
-@app.command()
+@app.command(rich_help_panel=Group.KEEP)
 def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
@@ -260,7 +274,7 @@ class PicturePlace(StrEnum):
     beside = "beside"
 
 
-@app.command()
+@app.command(rich_help_panel=Group.KEEP)
 def report(
     runs: Annotated[list[Path], typer.Argument(help="A results folder; or several, to compare.", metavar="RUN...")],
     markdown: Annotated[
@@ -275,7 +289,7 @@ def report(
         typer.Option("-o", "--output", help="The page. Default: report.html in the folder; runs.html for several."),
     ] = None,
 ) -> None:
-    """A run on one page: who wins, tables, pictures, charts, and how each figure was measured. Opens offline.
+    """A run on one page: the answer, tables, pictures, charts, and how each figure was measured. Opens offline.
 
     Several runs on one page: what differs, on which machines, and every figure side by side.
 

@@ -35,7 +35,8 @@ OnOption = Annotated[str | None, typer.Option("--on", help=HELP, metavar="WORKER
 def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
     """A command for each table."""
     for table in tables:
-        app.command(table.name, help=table.help, epilog=f"Example: {table.example}")(command_of(table))
+        more = {"epilog": f"Example: {table.example}", "rich_help_panel": table.group}
+        app.command(table.name, help=table.help, **more)(command_of(table))
 
 
 def command_of(table: Table) -> Callable[..., int]:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ...ground.output.writing import check_is_folder
+from ...tables.table import Group
 
 Files = Annotated[
     list[Path], typer.Argument(help='Device files, which a page saves by "Save this device".', metavar="FILE...")
@@ -19,8 +20,8 @@ SiteFolder = Annotated[Path, typer.Option("-o", "--output", help="The folder of 
 
 def add_devices(app: typer.Typer) -> None:
     """Both commands."""
-    app.command("import")(import_command)
-    app.command("site")(site_command)
+    app.command("import", rich_help_panel=Group.KEEP)(import_command)
+    app.command("site", rich_help_panel=Group.KEEP)(site_command)
 
 
 def import_command(files: Files, output: RunFolder = None) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..devices.table import BROWSER, DEVICE, MADE, PROGRAM, RENDERER, Devices
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +29,7 @@ COLUMNS = (
 TABLE = Table(
     name="device_facts",
     package=__package__ or "",
+    group=Group.KEEP,
     help="How readers' devices round, filter and resolve each format, and how exactly they compute.\n\n"
     'A device file is what the live section of a page saves by "Save this device".',
     example="normalbench device_facts --devices phone.json",

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from ...ground.options.option import Option
 from .. import shared_columns as shared
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
@@ -76,6 +76,7 @@ COLUMNS = (
 TABLE = Table(
     name="devices",
     package=__package__ or "",
+    group=Group.KEEP,
     help="What readers' devices make of each codec: codes that differ from the run's, angles and times.\n\n"
     'A device file is what the live section of a page saves by "Save this device".',
     example="normalbench devices --devices phone.json",

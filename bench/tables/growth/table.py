@@ -10,7 +10,7 @@ from typing import Annotated
 from ...ground.options.counts import MAX_COUNT, MAX_LIGHTS, MAX_OBJECTS
 from ...ground.options.option import Option, Plot
 from .. import shared_columns as shared
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
@@ -81,6 +81,7 @@ COLUMNS = (
 TABLE = Table(
     name="growth",
     package=__package__ or "",
+    group=Group.MACHINE,
     help="How the time grows with the number of normals, codecs, codes, objects and lights.",
     example="normalbench growth --over normals --sizes 1e5,1e6",
     options=GrowthOptions,

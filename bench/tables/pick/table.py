@@ -19,7 +19,7 @@ from ...ground.options.option import (
 )
 from .. import shared_columns as shared
 from ..mix.table import USES
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
 # One chunk of normals. More of them move the mean by less than a thousandth of itself.
@@ -241,6 +241,7 @@ ALSO = (
 TABLE = Table(
     name="pick",
     package=__package__ or "",
+    group=Group.ANSWER,
     help="Which code to take for each storage, at what price, and what to take instead.\n\n"
     "Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much "
     "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from ...ground.options.option import Encodings, Option, Plot
 from .. import shared_columns as shared
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 RATE = "million/s"
@@ -62,6 +62,7 @@ COLUMNS = (
 TABLE = Table(
     name="throughput",
     package=__package__ or "",
+    group=Group.MACHINE,
     help="How fast rows are measured, next to a C program, NumPy and reading the input.\n\n"
     "All of them encode, store in UNORM of 8 bits, decode and measure the same normals, on all cores in one run, and "
     "take turns.",

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from ...ground.options.option import Option, Reading, Seed
 from .. import shared_columns as shared
-from ..table import Column, Role, Section, Table
+from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
 
@@ -57,6 +57,7 @@ COLUMNS = (
 TABLE = Table(
     name="tune",
     package=__package__ or "",
+    group=Group.OWN,
     help="Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out."
     "\n\nWhat is found has a name that --encoding and --storage take in every command, such as "
     "stereographic:scale=1.31.",

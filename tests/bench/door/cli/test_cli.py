@@ -40,6 +40,19 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""
 LIGHT = ("--help", "list", *(f"{name} --help" for name in ("quality", "render", "sweep", "depth", "frames", "report")))
 
 
+def test_the_help_groups_commands_by_what_they_are_for(run):
+    _, out, _ = run("--help")
+    titles = [line.strip("╭─╮ \n") for line in out.splitlines() if line.startswith("╭")]
+    assert titles == [
+        "Options",
+        "The answer",
+        "Measure",
+        "Your own",
+        "Keep and compare",
+        "This program and this machine",
+    ]
+
+
 def test_help_and_list_import_nothing_heavy():
     """JAX, pandas and matplotlib take a second each; `--help` and `list` answer without them."""
     program = (
