@@ -221,6 +221,20 @@ def test_each_storey_of_bench_imports_those_below_it_alone():
     assert not wrong, wrong
 
 
+def test_a_table_imports_no_other_ones_work_or_pictures():
+    """What two tables share stands beside them, or is one's way to measure."""
+    wrong = []
+    for path in (BENCH / "tables").glob("*/*.py"):
+        others = [module.split(".") for module in imported(path) if module.startswith("bench.tables.")]
+        own = path.parent.name
+        wrong += [f"{path.relative_to(ROOT)} imports {'.'.join(one)}" for one in others if _is_anothers(one, own)]
+    assert not wrong, wrong
+
+
+def _is_anothers(module: list[str], own: str) -> bool:
+    return len(module) > 3 and module[2] != own and module[3] in ("work", "pictures")
+
+
 def test_what_the_set_up_imports_is_there():
     """A script that asks for a name of an older version installs everything anew, and says that it is missing."""
     asked = [

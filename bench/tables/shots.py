@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -57,3 +58,8 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
         return [row]
 
     return measure
+
+
+def name_of_file(effects: str) -> str:
+    """Names of effects as a part of a file's name."""
+    return re.sub(r"[^\w.]+", "_", effects)

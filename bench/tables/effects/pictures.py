@@ -12,7 +12,7 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...ground.output.writing import files_of, whole_file
-from ..render.pictures import name_of_file
+from ..shots import name_of_file
 from ..table import Row
 from .measure import Drawn, in_order
 

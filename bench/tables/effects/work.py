@@ -32,7 +32,7 @@ from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having
-from ..render.work import attempt, with_codecs
+from ..plans import attempt, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Row, Sheet, Step, Work
 from . import pictures

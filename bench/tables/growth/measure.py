@@ -20,8 +20,8 @@ from ...subjects.codecs.names import codecs_named
 from ...subjects.normals.normal_sets import sphere
 from ..quality import measure as quality
 from ..sweep import measure as sweep
+from ..sweep.points import points
 from ..sweep.table import SweepOptions
-from ..sweep.work import points
 from ..throughput.measure import least_times
 from .table import KINDS, TABLE
 

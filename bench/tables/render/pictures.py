@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -14,6 +13,7 @@ from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ....reports.page.verdict import LEADING, is_number
 from ...ground.output.writing import files_of, whole_file
+from ..shots import name_of_file
 from ..table import Row
 from .measure import Drawn, shown_scene
 
@@ -29,11 +29,6 @@ def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
     effects = [name_of_file(row["effects"])] if row.get("effects") else []
     shadow = [] if row["shadow"] else ["unshadowed"]
     return "-".join([row["scene"], *power, *effects, row["pipeline"], *content, *shadow])
-
-
-def name_of_file(effects: str) -> str:
-    """Names of effects as a part of a file's name."""
-    return re.sub(r"[^\w.]+", "_", effects)
 
 
 def stem(row: Row) -> str:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
-from ....encodings.catalogue import LIGHT_BUFFERS
-from ....encodings.codecs.codec import Codec
 from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout
-from ....gbuffer.layouts.presets import LAYOUTS
-from ....gbuffer.layouts.words import LayoutError
-from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import check
+from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....reports.charts import charts, specs
 from ....reports.charts.drawings import Drawing
@@ -25,12 +20,13 @@ from ...ground.options.effect_names import effects_named, lacking, name_of, pipe
 from ...ground.options.light_names import light_buffers_named
 from ...ground.options.scene_names import powers_named, scenes_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...ground.output.errors import UsageError, by_reason, pick, pick_one
+from ...ground.output.errors import UsageError, pick, pick_one
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
-from ...subjects.codecs.names import check_twin, codecs_named
+from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having
+from ..plans import suited, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
@@ -41,8 +37,6 @@ MAX_FRAMES = 1000
 # Percent of covered pixels beyond which a line says that they are black, or clipped.
 MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
-
-T = TypeVar("T")
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
@@ -62,18 +56,6 @@ def layouts(options: RenderOptions) -> list[Layout]:
     )
     complaints: list[str] = []
     return what_is_left(with_codecs(chosen, codecs, complaints), complaints)
-
-
-def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: list[str]) -> list[Layout]:
-    """Each layout with every codec that fits in it; why others do not is appended to `complaints`."""
-    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
-        check_twin(encoding)
-    complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
-    made: list[Layout] = []
-    for layout in chosen:
-        for codec in (codec for codec in codecs if codec.fits):
-            attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
-    return made
 
 
 def cases(options: RenderOptions, device: Device) -> list[Case]:
@@ -126,33 +108,6 @@ def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
     if not abs(stops) <= MAX_EXPOSURE:
         raise UsageError(f"--exposure {asked}: {-MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
     return stops
-
-
-def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
-    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`."""
-    made: dict[Plan, None] = {}
-    for plan in plans:
-        own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
-        if not pipeline.has_gbuffer:
-            # Neither layouts nor light buffers reach it: one row for all of them.
-            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
-        elif len(pipeline.light_targets) == 1:
-            own = replace(own, light_targets=pipeline.light_targets[0])
-        try:
-            check(device, pipeline, own)
-        except LayoutError as error:
-            complaints.append(str(error))
-        else:
-            made[own] = None
-    return list(made)
-
-
-def attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
-    """Append what can be made; why it cannot is appended to `complaints`."""
-    try:
-        made.append(make())
-    except LayoutError as error:
-        complaints.append(str(error))
 
 
 def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:

@@ -1,0 +1,60 @@
+"""What frames are rendered with: layouts with codecs in them, and plans that suit a pipeline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+from ...encodings.catalogue import LIGHT_BUFFERS
+from ...encodings.codecs.codec import Codec
+from ...gbuffer.frame.plan import Plan
+from ...gbuffer.gl.device import Device
+from ...gbuffer.layouts.layout import Layout
+from ...gbuffer.layouts.presets import LAYOUTS
+from ...gbuffer.layouts.words import LayoutError
+from ...gbuffer.pipelines import Pipeline
+from ...gbuffer.render import check
+from ..ground.output.errors import by_reason
+from ..subjects.codecs.names import check_twin
+
+T = TypeVar("T")
+
+
+def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: list[str]) -> list[Layout]:
+    """Each layout with every codec that fits in it; why others do not is appended to `complaints`."""
+    for encoding in dict.fromkeys(codec.encoding for codec in codecs):
+        check_twin(encoding)
+    complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
+    made: list[Layout] = []
+    for layout in chosen:
+        for codec in (codec for codec in codecs if codec.fits):
+            attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
+    return made
+
+
+def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
+    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`."""
+    made: dict[Plan, None] = {}
+    for plan in plans:
+        own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
+        if not pipeline.has_gbuffer:
+            # Neither layouts nor light buffers reach it: one row for all of them.
+            own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
+        elif len(pipeline.light_targets) == 1:
+            own = replace(own, light_targets=pipeline.light_targets[0])
+        try:
+            check(device, pipeline, own)
+        except LayoutError as error:
+            complaints.append(str(error))
+        else:
+            made[own] = None
+    return list(made)
+
+
+def attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
+    """Append what can be made; why it cannot is appended to `complaints`."""
+    try:
+        made.append(make())
+    except LayoutError as error:
+        complaints.append(str(error))

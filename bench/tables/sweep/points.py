@@ -1,0 +1,54 @@
+"""The points of a sweep: what is rendered with how many objects."""
+
+from __future__ import annotations
+
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.pipelines import PIPELINES
+from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
+from ...ground.options.light_names import light_buffers_named
+from ...ground.options.targets import (
+    SHADOWS,
+    TARGETS,
+    check_scale,
+    checked_setting,
+    checked_target,
+    what_is_left,
+)
+from ...ground.output.errors import pick
+from ...subjects.codecs.layout_names import layouts_named
+from ..plans import suited
+from .measure import Point
+from .table import SweepOptions
+
+SIZE, SOFTWARE_SIZE = "640x480", "320x240"
+
+
+def points(options: SweepOptions, device: Device) -> list[Point]:
+    """One point for each row; what does not suit a pipeline is named on standard error.
+
+    Raises:
+        UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+    """
+    auto = SOFTWARE_SIZE if device.is_software else SIZE
+    size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)
+    check_scale(options.scale)
+    in_range("--repeats", options.repeats, 1, MAX_REPEATS)
+    pipelines = pick("pipeline", options.pipeline, PIPELINES)
+    # Read once: a layout's own encoder is looked at, which takes seconds.
+    asked = None if options.layout is None else layouts_named(options.layout)
+    made: list[Point] = []
+    complaints: list[str] = []
+    for shadows in pick("shadow", options.shadow, SHADOWS):
+        for count in checked_numbers("--objects", options.objects, int, 1, MAX_OBJECTS):
+            setting = checked_setting(count, options.lights, options.seed)
+            for pipeline in pipelines:
+                plans = [
+                    Plan(size, samples, layout, light, targets, shadows, options.scale)
+                    for layout in asked or layouts_named(pipeline.usual_layout)
+                    for light in light_buffers_named(options.light_buffer)
+                    for targets in pick("number of light targets", options.light_targets, TARGETS)
+                ]
+                for plan in suited(device, pipeline, plans, complaints):
+                    made.append(Point(pipeline, plan, setting, options.repeats, options.samples))
+    return what_is_left(made, complaints)
