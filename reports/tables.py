@@ -21,7 +21,7 @@ PLAIN, CODE = re.compile(r"[\w .,+%():;>=<'/-]*"), re.compile(r"`[^`\n]*`")
 # What a spreadsheet takes for a formula.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 # What it takes for a number is harmless.
-NUMBER = re.compile(r"-?\d+(\.\d+)?")
+NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?(e[-+]?\d+)?( ?%)?|inf)")
 
 
 def text_of(value: Any) -> str:
@@ -204,12 +204,14 @@ def written(
     width: int = 200,
     expendable: Sequence[str] = (),
     by: str | None = None,
+    lead: str = "",
     total: str = "",
 ) -> str:
     """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
 
-    Tables for people are one for each value of column `by`, where it is given. `total` is the line below the table:
-    columns that say the same in every row then stay in the table, as that line would be read as their sum.
+    Tables for people are one for each value of column `by`, where it is given. `lead` is the lines above them. `total`
+    is the line below the table: columns that say the same in every row then stay in the table, as that line would be
+    read as their sum.
     """
     if format == "json":
         return to_json(rows)
@@ -218,7 +220,16 @@ def written(
     groups: dict[Any, list[dict[str, Any]]] = {}
     for row in rows:
         groups.setdefault(row[by] if by else None, []).append(row)
-    return "\n".join(
+    shown = (
         to_markdown(group, total) if format == "markdown" else to_terminal(group, width, expendable, total)
         for group in groups.values()
     )
+    return "\n".join([*_lead(lead, format), *shown])
+
+
+def _lead(lead: str, format: str) -> list[str]:
+    """What stands above a table, with an empty line below it; in Markdown each of its lines is a paragraph."""
+    if not lead:
+        return []
+    lines = [markdown_sentence(line) if format == "markdown" else visible(line) for line in lead.split("\n")]
+    return [("\n\n" if format == "markdown" else "\n").join(lines) + "\n"]

@@ -8,7 +8,8 @@ from typing import Any
 
 from ..ground.output.errors import tell
 from ..ground.output.writing import check_writable, without, write
-from .comparison import GONE, compared, in_short, total
+from .change_lines import in_short, total, what_matters
+from .comparison import GONE, compared
 from .runs import read_run
 
 # What begins the names of such facts: see `machine.settings`.
@@ -39,7 +40,9 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     if format in ("table", "markdown"):
         lines = in_short(changes)
         is_each_of_one = all(line["rows"] == 1 for line in lines)
-        write(without(lines, ("rows",) if is_each_of_one else ()), format, output, total=total(changes))
+        shown = without(lines, ("rows",) if is_each_of_one else ())
+        lead = "\n".join(what_matters(ours, theirs, changes))
+        write(shown, format, output, lead=lead, total=total(changes))
     else:
         write(without(changes, FOR_PROGRAMS), format, output)
     failing = [change for change in changes if change["verdict"] in FAILS[fail_on]]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..tables.registry import TABLES
@@ -17,19 +16,22 @@ LEAST_EFFECT = 0.05
 CHANCE = 0.01
 # Each frame's time, where a row has them.
 EACH, FRAME = "ms_frame_each", "ms_frame"
-# How many lines people read of a comparison.
-LINES = 20
 # The units of errors that people know, which come before counts and times; a row is named by its first figure in them.
 ERRORS = ("dB", "degrees")
 # A figure counts as at least this share of the other one, so that a change from 0 is 60 dB and not infinite.
 FLOOR = 1e-3
+# And so is a change from infinitely many decibels.
+CEILING = -20 * math.log10(FLOOR)
+# Changes below these decibels are small. Of an angle they are about 1 %; of a mean square 0.1 dB are 0.2 of
+# `severity_of`, and counts and times are taken like it.
+SMALL, SMALL_OTHER = 0.1, 0.2
+# As people read it.
+LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}".replace("%", " %")
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
 # And of a figure that only one of the runs has.
 NOT_MEASURED, NEW = "not measured", "new"
-# What is said of a row, the first that holds: of its worst figure, or of the row itself. "changed" is neither.
-VERDICTS = ("worse", GONE, "better", NEW, "changed")
 
 
 def compared(before: Done, after: Done) -> list[Row]:
@@ -41,12 +43,74 @@ def compared(before: Done, after: Done) -> list[Row]:
         table = TABLES.get(name)
         before_rows, after_rows = (named_rows(table, rows.get(name, [])) for rows in (ours, theirs))
         found += _between(name, table, before_rows, after_rows, same_machine)
-    return sorted(found, key=lambda row: (not _is_error(row), -row["severity"]))
+    return in_order(found)
 
 
-def _is_error(change: Row) -> bool:
-    """Whether it says that an error grew, or that it can no longer be measured."""
-    return change["severity"] > 0 and (change["unit"] in ERRORS or math.isinf(change["severity"]))
+def in_order(changes: Sequence[Row]) -> list[Row]:
+    """Changes, those of one row together: rows by their headline, and the worst of a row first.
+
+    A row that lost a figure comes first, then grown errors, the largest first, other figures that are worse, rows that
+    are gone, what is better, what is new, and last what changed by little.
+    """
+    rows: dict[tuple, list[Row]] = {}
+    for change in changes:
+        rows.setdefault(by_row(change), []).append(change)
+    ranked = sorted(rows.values(), key=lambda row: _rank(headline(row)))
+    return [change for row in ranked for change in sorted(row, key=_rank)]
+
+
+def by_row(change: Row) -> tuple:
+    """What tells a row from all others."""
+    return change["table"], change["row"], presence(change)
+
+
+def presence(change: Row) -> str:
+    """Whether only one of the runs has the row, and which; empty where both have it."""
+    return change["change"] if change["change"] in ONLY.values() else ""
+
+
+def headline(row: Sequence[Row]) -> Row:
+    """Of the changes of one row the first in decibels, else in degrees, that says what the worst says; else the
+    worst."""
+    worst = min(row, key=_rank)
+    return next(known_figures(row, ERRORS), worst)
+
+
+def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
+    """Of the changes of one row that say what its worst says, the first in each of some units."""
+    group = min(map(_group, row))
+    alike = _by_column([change for change in row if _group(change) == group])
+    for unit in units:
+        yield from [change for change in alike if change["unit"] == unit][:1]
+
+
+def _by_column(row: Sequence[Row]) -> list[Row]:
+    """The changes of one row in the order of its table's columns."""
+    table = TABLES.get(row[0]["table"])
+    names = [column.name for column in table.columns] if table else []
+    return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))
+
+
+def _rank(change: Row) -> tuple[int, float]:
+    """What changes are ordered by."""
+    return _group(change), -abs(change["severity"])
+
+
+def _group(change: Row) -> int:
+    """The place of a kind of change among the others."""
+    severity = change["severity"]
+    if severity == math.inf:
+        return 0
+    if is_small(change):
+        return 6
+    if severity > 0:
+        return 1 if change["unit"] in ERRORS else 2
+    return 3 if change["verdict"] == GONE else 4 if severity < 0 else 5
+
+
+def is_small(change: Row) -> bool:
+    """Whether a figure is better or worse by so little that only a program cares."""
+    return 0 < abs(change["severity"]) < (SMALL if change["unit"] in ERRORS else SMALL_OTHER)
 
 
 def named_rows(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
@@ -86,12 +150,12 @@ def _change(
 
 
 def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
-    gives_reason = bool(table) and any(row.get(c.name) for c in table.of_role(Role.REASON) for row in (one, other))
+    has_reason = gives_reason(table, one) or gives_reason(table, other)
     for column in dict.fromkeys([*one, *other]):
         known = table.column(column) if table else None
         before, after = one.get(column), other.get(column)
         if _is_compared(table, known) and not same(before, after):
-            severity = severity_of(known, before, after, gives_reason)
+            severity = severity_of(known, before, after, has_reason)
             yield _change(name, table, one, called, column, before, after, severity)
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
@@ -102,12 +166,17 @@ def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, 
             yield change | {"change": f"{100 * effect:+.1f} %"}
 
 
+def gives_reason(table: Table | None, row: Row) -> bool:
+    """Whether a row says why it lacks figures."""
+    return bool(table) and any(row.get(column.name) for column in table.of_role(Role.REASON))
+
+
 def _is_compared(table: Table | None, known: Column | None) -> bool:
     """Figures are, and whether there are any; of a table that this version does not know, everything."""
     return not table or (known is not None and known.role in (Role.FIGURE, Role.REASON))
 
 
-def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bool) -> float:
+def severity_of(column: Column | None, before: Any, after: Any, has_reason: bool) -> float:
     """How much worse a figure has become, in decibels; below 0 where it is better, 0 for neither.
 
     A figure that could not be measured any more is infinitely worse, one that now can be is infinitely better. Without
@@ -116,7 +185,7 @@ def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bo
     if not column or not column.better:
         return 0.0
     if before is None or after is None:
-        return 0.0 if not gives_reason else math.inf if after is None else -math.inf
+        return 0.0 if not has_reason else math.inf if after is None else -math.inf
     if not all(isinstance(value, int | float) for value in (before, after)):
         return 0.0
     grows = _growth(column, before, after)
@@ -125,7 +194,7 @@ def severity_of(column: Column | None, before: Any, after: Any, gives_reason: bo
 
 def _growth(column: Column, before: float, after: float) -> float:
     if column.unit == "dB":
-        return after - before
+        return max(-CEILING, min(CEILING, after - before)) if math.isinf(after - before) else after - before
     # A count that was 0 was less than 1; any other figure was less than what can be told from the larger one.
     is_count = isinstance(before, int) and isinstance(after, int)
     least = 1.0 if is_count else FLOOR * max(abs(before), abs(after))
@@ -151,95 +220,3 @@ def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:
     # The exact distribution knows no ties.
     ties = len({*one, *other}) < len(one) + len(other)
     return float(mannwhitneyu(one, other, method="asymptotic" if ties else "exact").pvalue)
-
-
-def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
-    """Changes for people, the worst first: a line for each row, or for rows that changed together; where these are more
-    than `most`, a line for several rows that share an encoding, or a table."""
-    grouped: list[list[Row]] = []
-    for by in (_together(changes), _by_encoding, _by_table):
-        groups: dict[tuple, list[Row]] = {}
-        for change in changes:
-            groups.setdefault(by(change), []).append(change)
-        grouped = list(groups.values())
-        if len(grouped) <= most:
-            break
-    return [_line(group) for group in grouped]
-
-
-def total(changes: Sequence[Row]) -> str:
-    """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
-    rows: dict[tuple, list[Row]] = {}
-    for change in changes:
-        rows.setdefault(_by_row(change), []).append(change)
-    counts = Counter(map(_verdict, rows.values()))
-    said = ", ".join(f"{_several(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
-    return f"{_several(len(rows), 'row')}, {_several(_figures(changes), 'figure')}: {said}"
-
-
-def _verdict(row: Sequence[Row]) -> str:
-    """One of VERDICTS of all that changed in a row."""
-    found = {change["verdict"] for change in row} | {NEW for change in row if _presence(change) == ONLY[False]}
-    return next((verdict for verdict in VERDICTS if verdict in found), VERDICTS[-1])
-
-
-def _several(count: int, what: str) -> str:
-    return f"{count} {what}" + "s" * (count != 1)
-
-
-def _figures(changes: Sequence[Row]) -> int:
-    """How many figures changed; a row that only one of the runs has is of no column."""
-    return sum(bool(change["column"]) for change in changes)
-
-
-def _presence(change: Row) -> str:
-    """Whether only one of the runs has the row, and which; empty where both have it."""
-    return change["change"] if change["change"] in ONLY.values() else ""
-
-
-def _by_row(change: Row) -> tuple:
-    return change["table"], change["row"], _presence(change)
-
-
-def _together(changes: Sequence[Row]) -> Callable[[Row], tuple]:
-    """What tells rows apart that did not change together: rows of a table whose figures all went from the same to the
-    same."""
-    rows: dict[tuple, list[tuple]] = {}
-    for change in changes:
-        rows.setdefault(_by_row(change), []).append((change["column"], str(change["before"]), str(change["after"])))
-    return lambda change: (change["table"], _presence(change), *rows[_by_row(change)])
-
-
-def _by_encoding(change: Row) -> tuple:
-    keys = change["keys"]
-    code = next((keys[name] for name in ("encoding", "depth", "light_buffer") if keys.get(name)), "")
-    return change["table"], code, _presence(change)
-
-
-def _by_table(change: Row) -> tuple:
-    return change["table"], _presence(change)
-
-
-def _line(group: Sequence[Row]) -> Row:
-    """Of several changes the worst, named by what they have in common, with the figure of it that people know."""
-    rows = list(dict.fromkeys(change["row"] for change in group))
-    worst = _headline([change for change in group if change["row"] == group[0]["row"]])
-    shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
-    name = worst["row"] if len(rows) == 1 else " ".join(map(str, shared)) or "several"
-    kept = {column: worst[column] for column in ("column", "before", "after", "change", "verdict")}
-    return {"table": worst["table"], "row": name, "rows": len(rows), "figures": _figures(group)} | kept
-
-
-def _headline(row: Sequence[Row]) -> Row:
-    """Of the changes of one row the first in decibels, else in degrees, that has the verdict of the worst; else the
-    worst."""
-    alike = [change for change in row if change["verdict"] == row[0]["verdict"]]
-    known = (change for unit in ERRORS for change in _in_order(alike) if change["unit"] == unit)
-    return next(known, row[0])
-
-
-def _in_order(row: Sequence[Row]) -> list[Row]:
-    """The changes of one row in the order of its table's columns."""
-    table = TABLES.get(row[0]["table"])
-    names = [column.name for column in table.columns] if table else []
-    return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))

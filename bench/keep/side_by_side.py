@@ -11,7 +11,8 @@ from ...reports.page.several import Figures
 from ...reports.page.verdict import is_number
 from ..tables.registry import TABLES
 from ..tables.table import Role, Row, Table
-from .comparison import compared, in_short, named_rows, same
+from .change_lines import in_short, what_matters
+from .comparison import compared, named_rows, same
 from .runs import Done
 
 # How many differing figures a page holds.
@@ -26,9 +27,10 @@ def sheets(runs: Mapping[str, Done]) -> Iterator[Sheet]:
     """The tables of a page of several runs, differences first."""
     first, *others = runs
     for other in others:
-        changes = in_short(compared(runs[first], runs[other]))
-        said = f"From {first} to {other}, the worst first"
-        yield Sheet(said, changes or [{"table": "all", "change": "no figure differs"}])
+        changes = compared(runs[first], runs[other])
+        title = f"From {first} to {other}, the worst first"
+        rows = in_short(changes) or [{"table": "all", "change": "no figure differs"}]
+        yield Sheet(title, rows, said=tuple(what_matters(runs[first], runs[other], changes)))
     different = list(_different(runs))
     if different:
         more = f", the first {MOST} of {len(different)}" if len(different) > MOST else ""

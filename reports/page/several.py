@@ -90,7 +90,8 @@ def markdown(names: Sequence[str], sheets: Sequence[Sheet]) -> str:
     for sheet in sheets:
         if not sheet.folded:
             rows = [{tables.markdown_text(k): _text(v) for k, v in row.items()} for row in sheet.rows]
-            blocks += [f"**{tables.markdown_sentence(sheet.title)}**\n", tables.to_markdown(rows)]
+            said = [f"{tables.markdown_sentence(line)}\n" for line in sheet.said]
+            blocks += [f"**{tables.markdown_sentence(sheet.title)}**\n", *said, tables.to_markdown(rows)]
     return "\n".join(blocks)
 
 

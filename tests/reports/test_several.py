@@ -75,6 +75,9 @@ def test_a_text_for_a_pull_request_has_what_differs(run, runs):
     status, out, _ = run("report", str(runs["one"]), str(runs["two"]), "--markdown")
     assert status == 0 and out.startswith("## normalbench: one, two\n")
     assert "**From one to two, the worst first**" in out and "| fact " in out and "Every figure" not in out
+    assert (
+        "xy: worse in 1 of 2 rows; most in quality rgba8 nearest playground glsl: psnr_db from 40.00 to 39.50 dB" in out
+    )
 
 
 def test_hostile_runs_inject_nothing(run, tmp_path):

@@ -10,13 +10,13 @@ from normalbench.reports.page import page
 HOSTILE = "<script src=//x>[a](http://b) |`@c\x1b[2J"
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1+2", "-A1", "@SUM(A1)", "\t=1"])
+@pytest.mark.parametrize("text", ["=1+1", "+1+2", "-1+2", "-A1", "@SUM(A1)", "\t=1"])
 def test_no_cell_of_csv_is_a_formula(text):
     (_, line) = tables.to_csv([{"name": text, "figure": -1.5}]).splitlines()
     assert line.lstrip('"').startswith("'") and line.endswith(",-1.5")
 
 
-@pytest.mark.parametrize("text", ["-1", "-0.52032965", "17"])
+@pytest.mark.parametrize("text", ["-1", "-0.52032965", "17", "+0.0362", "-1.2e-05", "-inf", "+20.1 %"])
 def test_a_number_as_it_is_printed_stays_one_in_csv(text):
     assert tables.to_csv([{"printed": text}]).splitlines()[1] == text
 

@@ -173,22 +173,24 @@ def write(
     output: Path | None,
     expendable: Sequence[str] = (),
     by: str | None = None,
+    lead: str = "",
     total: str = "",
 ) -> None:
     """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
 
-    For people, rows that differ in column `by` are tables of their own, and `total` is the line below the table.
+    For people, rows that differ in column `by` are tables of their own, `lead` is what stands above the table, and
+    `total` is the line below it.
     """
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns
-        say(tables.written(rows, format, width, expendable, by, total))
+        say(tables.written(rows, format, width, expendable, by, lead, total))
         return
     check_writable(output)
     with whole_file(output) as partial:
         if format == "parquet":
             tables.write_parquet(rows, partial)
         else:
-            partial.write_text(tables.written(rows, format, by=by, total=total), encoding="utf-8")
+            partial.write_text(tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8")
 
 
 def files_of(folder: Path) -> dict[str, Path]:

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +13,8 @@ from test_readme import a_copy_of_the_rooms
 
 from normalbench.bench.ground.machine.settings import settings
 from normalbench.bench.keep import compare_command
-from normalbench.bench.keep.comparison import compared, in_short, mann_whitney, total
+from normalbench.bench.keep.change_lines import in_short, total, what_matters
+from normalbench.bench.keep.comparison import compared, mann_whitney
 from normalbench.bench.keep.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -95,6 +97,74 @@ def test_the_total_is_one_of_rows_and_of_figures():
     assert total(compared(quality_of(), quality_of(xy=39.0))) == "1 row, 0 figures: 1 row new"
 
 
+def broken_fold() -> tuple[Done, Done]:
+    """One encoding in five storages, of which a sharp one gets the fewest decibels less, and one is nearly the same."""
+    names = ("rg16f", "rg16", "rg8", "rgba8")
+    before = [(79.9, math.inf, 0.005), (101.1, math.inf, 0.001), (48.6, 50.0, 0.1), (49.9, 50.0, 0.1)]
+    after = [(78.24, 83.0, 0.006), (56.7, 55.4, 0.036), (10.9, 11.0, 22.0), (49.8983, 50.0, 0.1001)]
+    made = []
+    for figures in (before, after):
+        rows = [
+            {"encoding": "mine", "storage": name, "psnr_db": psnr, "psnr_article_db": article, "angle_mean_deg": mean}
+            for name, (psnr, article, mean) in zip(names, figures, strict=True)
+        ]
+        skipped = {"encoding": "mine", "storage": "rg8", "backend": "jax", "skipped": "no twin"}
+        made.append(Done(MACHINE, [{"table": "quality", "key": {}, "rows": [*rows, skipped]}]))
+    return made[0], made[1]
+
+
+def test_rows_are_ordered_by_the_figure_that_they_show_and_small_changes_are_last():
+    """No column that is infinite before ranks a row, and less than 0.1 dB is not said in one word with -44 dB."""
+    lines = in_short(compared(*broken_fold()))
+    assert [(line["row"], line["column"], line["change"], line["verdict"]) for line in lines] == [
+        ("mine rg16", "psnr_db", "-44.4", "worse"),
+        ("mine rg8", "psnr_db", "-37.7", "worse"),
+        ("mine rg16f", "psnr_db", "-1.66", "worse"),
+        ("mine rgba8", "psnr_db", "-0.0017", "slightly worse"),
+    ]
+    assert total(compared(*broken_fold())).endswith(
+        ": 3 rows worse, 1 row slightly worse (slightly: by less than 0.1 dB, about 1 %)"
+    )
+
+
+def test_a_code_that_was_exact_and_is_not_is_among_the_worst():
+    (line,) = in_short(compared(quality_of(xy=math.inf), quality_of(xy=50.0)))
+    assert (line["column"], line["before"], line["verdict"]) == ("psnr_db", math.inf, "worse")
+    ranked = in_short(compared(quality_of(xy=60.0, xyz=math.inf), quality_of(xy=55.0, xyz=50.0)))
+    assert [line["row"] for line in ranked] == ["xyz rg8", "xy rg8"]
+
+
+def test_the_first_line_says_which_encoding_changed_in_how_many_rows_and_by_how_much():
+    """A row that says why it has no figures does not count."""
+    before, after = broken_fold()
+    assert what_matters(before, after, compared(before, after)) == [
+        "mine: worse in 3 of 4 rows, slightly worse in 1; most in quality rg16: "
+        "angle_mean_deg from 0.001000 to 0.03600 degrees, psnr_db from 101.1 to 56.70 dB"
+    ]
+    assert what_matters(before, before, []) == []
+
+
+def test_encodings_that_changed_are_five_sentences_and_a_number():
+    names = [f"code{number}" for number in range(7)]
+    before, after = (quality_of(**{name: db - at for at, name in enumerate(names)}) for db in (60.0, 50.0))
+    said = what_matters(before, after, compared(before, after))
+    assert len(said) == 6 and said[-1] == "and 2 more of 7"
+    assert said[0].startswith("code0: worse in its only row; most in quality rg8: angle_max_deg ")
+
+
+def test_runs_that_share_no_row_say_so_first(run, monkeypatch):
+    runs = {"before": quality_of(xy=40.0), "after": quality_of(xyz=44.0)}
+    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    for kind in ("table", "markdown"):
+        assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs share no row\n")
+
+
+def test_a_spreadsheet_gets_numbers_as_they_are(run, monkeypatch):
+    monkeypatch.setattr(compare_command, "read_run", lambda folder: broken_fold()[folder.name == "after"])
+    out = run("compare", "before", "after", "--format", "csv")[1]
+    assert "-inf" in out and "-44.4" in out and "+0.035" in out and "'" not in out
+
+
 def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0, xyz=45.0), "after": quality_of(xy=39.0, xyz=44.0)}
     monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
@@ -102,7 +172,8 @@ def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, 
         status, out, _ = run("compare", "before", "after", "--format", kind)
         *above, last = out.splitlines()
         assert status == 0 and last == "2 rows, 4 figures: 2 rows worse"
-        assert "figures" in above[0] and "verdict" in above[0] and "rows" not in above[0]
+        (head,) = (line for line in above if "verdict" in line)
+        assert "figures" in head and "rows" not in head
     status, out, _ = run("compare", "before", "after", "--format", "csv")
     assert status == 0 and out.splitlines()[0] == "table,row,column,before,after,change,verdict"
 

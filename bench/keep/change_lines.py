@@ -1,0 +1,177 @@
+"""What changed between two runs, for people: a sentence for each encoding, a line for each row, and a total."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+
+from ...reports.tables import text_of
+from ..tables.registry import TABLES
+from ..tables.table import Row
+from .comparison import (
+    GONE,
+    LITTLE,
+    NEW,
+    ONLY,
+    by_row,
+    gives_reason,
+    headline,
+    is_small,
+    known_figures,
+    named_rows,
+    presence,
+)
+from .runs import Done
+
+# How many lines people read of a comparison, and how many sentences above them.
+LINES, SENTENCES = 20, 5
+# The columns that say what a row is of, the first that it has.
+SUBJECTS = ("encoding", "depth", "light_buffer")
+# What is said of a row, the first that holds: of its figures, or of the row itself. "changed" is neither.
+SLIGHTLY = {"worse": "slightly worse", "better": "slightly better"}
+VERDICTS = ("worse", GONE, "better", NEW, *SLIGHTLY.values(), "changed")
+# How figures are written in a sentence, by their units.
+UNITS = ("degrees", "dB")
+
+
+def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
+    """Which encodings changed, each a sentence, the worst first: in how many of their rows, and the figures that people
+    know of the row that changed most."""
+    counts = _rows_of_each(before, after)
+    if changes and not _share_a_row(before, after):
+        return ["the runs share no row"]
+    groups: dict[str, list[Row]] = {}
+    for change in changes:
+        groups.setdefault(_subject(change["table"], change["keys"]), []).append(change)
+    said = [_sentence(name, counts[name], group) for name, group in groups.items()]
+    more = len(said) - SENTENCES
+    return said if more <= 0 else [*said[:SENTENCES], f"and {more} more of {len(counts)}"]
+
+
+def _share_a_row(before: Done, after: Done) -> bool:
+    ours, theirs = _names(before), _names(after)
+    return not ours or not theirs or bool(ours & theirs)
+
+
+def _names(done: Done) -> set[tuple]:
+    return {(name, *key) for name, rows in done.tables.items() for key in named_rows(TABLES.get(name), rows)}
+
+
+def _rows_of_each(before: Done, after: Done) -> Counter[str]:
+    """How many rows either run has of each encoding; of those that say why they have no figures, none."""
+    found: dict[tuple, str] = {}
+    for done in (before, after):
+        for name, rows in done.tables.items():
+            table = TABLES.get(name)
+            named = named_rows(table, rows).items()
+            found |= {(name, *key): _subject(name, row) for key, row in named if not gives_reason(table, row)}
+    return Counter(found.values())
+
+
+def _subject(table: str, keys: Mapping[str, object]) -> str:
+    """What a row is of: an encoding of any kind, else its table."""
+    return str(next((keys[name] for name in SUBJECTS if keys.get(name)), table))
+
+
+def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
+    """In how many of `count` rows an encoding changed, and the figures of its worst row."""
+    rows = _rows(changes)
+    verdicts = Counter(map(_verdict, rows))
+    first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
+    said = [f"{first} in {_of(verdicts[first], count)}", *(f"{verdict} in {verdicts[verdict]}" for verdict in others)]
+    return f"{name}: {', '.join(said)}{_figures_said(rows[0], name)}"
+
+
+def _of(some: int, count: int) -> str:
+    every = "its only row" if count == 1 else f"all {count} rows"
+    return every if some == count else f"{some} of {count} rows"
+
+
+def _figures_said(row: Sequence[Row], name: str) -> str:
+    """Where a row is, and its figures in degrees and in decibels before and after; empty where none changed."""
+    where = " ".join(row[0]["row"].replace(name, " ", 1).split())
+    known = (f"{change['column']} {_both(change)}" for change in known_figures(row, UNITS))
+    said = ", ".join(known)
+    return f"; most in {row[0]['table']} {where}: {said}" if said else ""
+
+
+def _both(change: Row) -> str:
+    before, after = (text_of(change[when]) or "nothing" for when in ("before", "after"))
+    return f"from {before} to {after} {change['unit']}"
+
+
+def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
+    """Changes for people, the worst first: a line for each row, or for rows that changed together; where these are more
+    than `most`, a line for several rows that share an encoding, or a table."""
+    grouped: list[list[Row]] = []
+    for by in (_together(changes), _by_subject, _by_table):
+        groups: dict[tuple, list[Row]] = {}
+        for change in changes:
+            groups.setdefault(by(change), []).append(change)
+        grouped = list(groups.values())
+        if len(grouped) <= most:
+            break
+    return [_line(group) for group in grouped]
+
+
+def _together(changes: Sequence[Row]) -> Callable[[Row], tuple]:
+    """What tells rows apart that did not change together: rows of a table whose figures all went from the same to the
+    same."""
+    rows: dict[tuple, list[tuple]] = {}
+    for change in changes:
+        rows.setdefault(by_row(change), []).append((change["column"], str(change["before"]), str(change["after"])))
+    return lambda change: (change["table"], presence(change), *rows[by_row(change)])
+
+
+def _by_subject(change: Row) -> tuple:
+    return change["table"], _subject("", change["keys"]), presence(change)
+
+
+def _by_table(change: Row) -> tuple:
+    return change["table"], presence(change)
+
+
+def _line(group: Sequence[Row]) -> Row:
+    """Of several changes the worst row, named by what they have in common, with the figure of it that people know."""
+    rows = _rows(group)
+    worst = headline(rows[0])
+    shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
+    names = {change["row"] for change in group}
+    name = worst["row"] if len(names) == 1 else " ".join(map(str, shared)) or "several"
+    kept = {column: worst[column] for column in ("column", "before", "after", "change")}
+    verdict = {"verdict": SLIGHTLY[worst["verdict"]] if is_small(worst) else worst["verdict"]}
+    return {"table": worst["table"], "row": name, "rows": len(names), "figures": _figures(group)} | kept | verdict
+
+
+def total(changes: Sequence[Row]) -> str:
+    """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
+    rows = _rows(changes)
+    counts = Counter(map(_verdict, rows))
+    said = ", ".join(f"{_several(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
+    is_any_small = any(counts[verdict] for verdict in SLIGHTLY.values())
+    note = f" (slightly: by less than {LITTLE})" if is_any_small else ""
+    return f"{_several(len(rows), 'row')}, {_several(_figures(changes), 'figure')}: {said}{note}"
+
+
+def _rows(changes: Sequence[Row]) -> list[list[Row]]:
+    """The changes of each row."""
+    rows: dict[tuple, list[Row]] = {}
+    for change in changes:
+        rows.setdefault(by_row(change), []).append(change)
+    return list(rows.values())
+
+
+def _verdict(row: Sequence[Row]) -> str:
+    """One of VERDICTS of all that changed in a row."""
+    found = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
+    found |= {NEW for change in row if presence(change) == ONLY[False]}
+    return next((verdict for verdict in VERDICTS if verdict in found), VERDICTS[-1])
+
+
+def _several(count: int, what: str) -> str:
+    return f"{count} {what}" + "s" * (count != 1)
+
+
+def _figures(changes: Sequence[Row]) -> int:
+    """How many figures changed; a row that only one of the runs has is of no column."""
+    return sum(bool(change["column"]) for change in changes)
