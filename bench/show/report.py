@@ -27,7 +27,7 @@ from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
 from ...reports.page.live import Live
 from ...reports.page.pixels import Subject, film_uri
-from ...reports.page.sections import Section, Sheet, whole
+from ...reports.page.sections import Section, Sheet, answered_first, whole
 from ...reports.page.verdict import BACKENDS, LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..ground.options.gpu_families import FAMILIES, usual_stage
@@ -254,7 +254,7 @@ def gathered(folder: Path, done: Done) -> Found:
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
     sections = [_section(folder, found, table, table.name in asked, remarks) for table in shown]
-    return replace(found, sections=sections)
+    return replace(found, sections=answered_first(sections))
 
 
 def _section(folder: Path, found: Found, table: Table, asked: bool, remarks: list[str]) -> Section:
@@ -291,7 +291,7 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
     try:
         finished = table.work.finish([dict(row) for row in rows]) if rows else []
         return [
-            Sheet(one.title, one.rows, said=one.said, keys=dict(one.keys))
+            Sheet(one.title, one.rows, said=one.said, aside=one.aside, keys=dict(one.keys))
             for one in table.work.summary(finished)
             if one.rows
         ]

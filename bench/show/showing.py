@@ -84,7 +84,7 @@ def _said(sheet: Sheet, width: int) -> str:
     """The paragraphs of a sheet: the first as it is, the others as a list, for a terminal and for Markdown."""
     if not sheet.said:
         return ""
-    first, *rest = sheet.said
+    first, *rest = (*sheet.said, *sheet.aside)
     wide = min(width, SENTENCE_WIDTH)
     made = (textwrap.fill(said, wide, initial_indent="- ", subsequent_indent="  ") for said in rest)
     return "\n".join([textwrap.fill(first, wide), *made]) + "\n\n"

@@ -144,6 +144,7 @@ class Sheet:
         drops: the columns that a narrow terminal leaves out, the first first.
         notes: lines below them.
         said: paragraphs above them, the first of which is the answer.
+        aside: paragraphs after those that say what is not part of the answer; a page folds them.
         keys: what the title says of every row, by column.
     """
 
@@ -152,6 +153,7 @@ class Sheet:
     drops: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     said: tuple[str, ...] = ()
+    aside: tuple[str, ...] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
 
 

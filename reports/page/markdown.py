@@ -39,7 +39,7 @@ def _blocks(found: Found) -> Iterator[str]:
     for remark in remarks(found):
         yield f"> {_plain(remark)}\n"
     for sheet in (sheet for section in found.sections if section.leads for sheet in section.summary if sheet.said):
-        first, *rest = map(tables.markdown_sentence, sheet.said)
+        first, *rest = map(tables.markdown_sentence, (*sheet.said, *sheet.aside))
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
     if said := agreement(found.tables.get("quality", ())):
         yield f"{said}\n"

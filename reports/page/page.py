@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -68,6 +69,7 @@ class Table:
     constants: str
     folded: bool = False
     said: Sequence[str] = ()
+    aside: Sequence[str] = ()
     keys: Row = field(default_factory=dict)
 
 
@@ -96,12 +98,13 @@ def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str
         )
         for at, (row, one) in enumerate(zip(shown, rows, strict=True))
     ]
-    return Table(sheet.title, columns, lines, constants.replace("_", " "), sheet.folded, sheet.said, sheet.keys)
+    about = {"folded": sheet.folded, "said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
+    return Table(sheet.title, columns, lines, constants.replace("_", " "), **about)
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
     """The places of a column's best figures, of those of as many bits and of one operation; none where all are the
-    same."""
+    same, or where several are infinite: then the column cannot tell which is the best."""
     groups: dict[Any, list[int]] = {}
     for at, row in enumerate(rows):
         if is_number(row[column.name]):
@@ -109,10 +112,9 @@ def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator
     for places in groups.values():
         texts = {tables.text_of(shown[at][column.name]) for at in places}
         best = (max if column.better == "more" else min)(shown[at][column.name] for at in places)
-        if len(texts) > 1:
-            yield from (
-                (at, column.name) for at in places if tables.text_of(shown[at][column.name]) == tables.text_of(best)
-            )
+        winners = [at for at in places if tables.text_of(shown[at][column.name]) == tables.text_of(best)]
+        if len(texts) > 1 and (math.isfinite(best) or len(winners) == 1):
+            yield from ((at, column.name) for at in winners)
 
 
 def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:

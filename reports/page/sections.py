@@ -20,6 +20,7 @@ class Sheet:
         rows: all with the same columns.
         folded: whether it is shown only when asked for.
         said: paragraphs above it, the first of which is the answer.
+        aside: paragraphs that say what is not part of the answer, and are shown only when asked for.
         keys: what the title says of every row, by column.
     """
 
@@ -27,6 +28,7 @@ class Sheet:
     rows: Sequence[Row]
     folded: bool = False
     said: tuple[str, ...] = ()
+    aside: tuple[str, ...] = ()
     keys: Row = field(default_factory=dict)
 
 
@@ -94,6 +96,17 @@ class Section:
             if values:
                 said.append((column.replace("_", " "), ", ".join(values[:8]) + (" ..." if len(values) > 8 else "")))
         return said
+
+
+def answered_first(sections: Sequence[Section]) -> list[Section]:
+    """The sections, each with those sheets first that are of a storage, and a set of normals, that the page's answer is
+    of."""
+    answers = [sheet.keys for section in sections if section.leads for sheet in section.summary]
+
+    def is_other(sheet: Sheet) -> tuple[bool, ...]:
+        return tuple(sheet.keys.get(key) not in [keys.get(key) for keys in answers] for key in ("storage", "normals"))
+
+    return [replace(section, summary=sorted(section.summary, key=is_other)) for section in sections]
 
 
 def whole(rows: Sequence[Row]) -> list[Row]:

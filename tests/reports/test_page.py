@@ -43,6 +43,25 @@ def test_the_page_itself_never_scrolls_sideways(seen):
     assert max(widths[:2]) <= widths[2], f"unfolded: {widths}"
 
 
+# How many links of the navigation are outside its box, and in how many directions it scrolls.
+HIDDEN_LINKS = """() => {
+  const list = document.querySelector("nav ul"), box = list.getBoundingClientRect();
+  const places = Array.from(list.querySelectorAll("li:not([hidden])"), (item) => item.getBoundingClientRect());
+  const hidden = places.filter((at) => at.left < box.left || at.right > box.right + 1 || at.bottom > box.bottom + 1);
+  return hidden.length + (list.scrollWidth > list.clientWidth) + (list.scrollHeight > list.clientHeight);
+}"""
+
+
+@pytest.mark.parametrize("width", [1400, 800, 390])
+def test_the_navigation_shows_every_section_and_has_no_scrollbar(opened, width):
+    """With as many sections as a whole run has."""
+    opened.page.set_viewport_size({"width": width, "height": 900})
+    opened.page.evaluate("""() => { const list = document.querySelector("nav ul"), all = Array.from(list.children);
+      for (let at = 0; at < 20 - all.length; at++) list.append(all[at % all.length].cloneNode(true)); }""")
+    assert opened.page.evaluate(HIDDEN_LINKS) == 0
+    opened.page.set_viewport_size({"width": DESKTOP[0], "height": DESKTOP[1]})
+
+
 def test_the_answer_is_what_is_seen_first(seen):
     lead = seen.page.locator(".lead")
     assert lead.text_content().startswith("What normals lose")

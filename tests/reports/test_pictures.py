@@ -216,3 +216,19 @@ def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
         "**rg8, on sphere: take &#60;b&#62;fine.**" in text
         and "Cheaper: &#95;cheap&#95; www&#46;a&#46;b, 3.5 dB worse" in text
     )
+
+
+def test_the_answers_table_is_open_what_does_not_qualify_folded_and_its_storage_comes_first(run, tmp_path):
+    lost = pick_row("xy", 0.5, 10) | {"domain": "hemisphere", "lost_percent": 50.0}
+    rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10), lost]
+    sets = [("playground", "rgba8"), ("sphere", "rg8"), ("playground", "rg8")]
+    quality = [quality_row("xyz", normals=normals, storage=storage) for normals, storage in sets]
+    folder = a_run(tmp_path / "run", {"pick": rows, "quality": quality})
+    assert run("report", str(folder))[0] == 0
+    page = (folder / "report.html").read_text()
+    table, fold = page.index('id="pick-1-caption"'), page.index('<details class="aside">')
+    assert page.rindex("<details", 0, table) < page.rindex("</details>", 0, table), "in no fold"
+    assert fold < page.index("<p>Left out: xy (") < page.index("</details>", fold) and "<li>Left out" not in page
+    titles = [page.index(f"{normals}, {storage}: ") for normals, storage in (sets[1], sets[2], sets[0])]
+    assert titles == sorted(titles)
+    assert "- Left out: xy (" in run("report", str(folder), "--markdown")[1]

@@ -171,6 +171,21 @@ def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
     assert "no twin" in read.text
 
 
+def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_left_out(run, tmp_path):
+    """Rounded to 8 bits, as the article does, many exact codes lose nothing: the column then tells nothing."""
+    best = {"psnr_db": math.inf, "psnr_article_db": math.inf, "angle_mean_deg": 0.1}
+    rows = [quality_row("xyz", **best), quality_row("octahedral", **best), quality_row("xy")]
+    text, _ = reported(run, a_run(tmp_path / "run", {"quality": rows}))
+    shown = text[text.index('id="quality-1-caption"') : text.index("Every row of quality")]
+    assert "psnr article" not in shown and '<td class="n">inf</td>' in shown
+    assert shown.count('class="n best"') == 2, "the mean angle, of the two"
+    rows[0] |= {"psnr_db": 60.0, "psnr_article_db": 55.0}
+    rows[1] |= {"psnr_article_db": 60.0}
+    text, _ = reported(run, a_run(tmp_path / "run", {"quality": rows}))
+    shown = text[text.index('id="quality-1-caption"') : text.index("Every row of quality")]
+    assert "psnr article" in shown and '<td class="n best">inf</td>' in shown
+
+
 def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, left_out=["mine.glsl: line 3 does not compile"])
     _, read = reported(run, folder)

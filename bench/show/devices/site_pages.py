@@ -92,7 +92,7 @@ def _device_page(entry: Entry) -> DevicePage:
     codecs = [_without(row, OF_DEVICE) for row in entry.rows]
     facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
     tables = [_shown("Every codec", codecs, DEVICES), *([_shown("Facts", facts, FACTS)] if facts else [])]
-    answered = [Answer(sheet.said, _front(sheet)) for sheet in entry.answers]
+    answered = [Answer((*sheet.said, *sheet.aside), _front(sheet)) for sheet in entry.answers]
     said = f"{device.called} {difference(entry.rows)}."
     return DevicePage(device.called, entry.path, said, known, answered, tables)
 

@@ -29,7 +29,7 @@ from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, groups, largest
-from .sentences import sentences
+from .sentences import left_out, sentences
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
@@ -61,7 +61,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     against = codecs_named(options.against, ",".join(_names(asked)), "nearest") if options.against else []
     named = {codec.encoding.name for codec in against}
     codecs = dict.fromkeys([*codecs_named(options.encoding, ",".join(_names(asked)), "nearest"), *against])
-    fit, left_out = _fitting(codecs)
+    fit, misfits = _fitting(codecs)
     # Those of the catalogue are traced by tests.
     encodings = list(dict.fromkeys(codec.encoding for codec in codecs))
     for encoding in dict.fromkeys(codec.encoding for codec in fit if not is_in_catalogue(codec.encoding)):
@@ -74,7 +74,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     setting = Setting(seed=options.seed)
     pipeline = _pipeline(effects, makers, setting)
     said |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
-    for line in left_out if options.encoding.strip() != "all" else ():
+    for line in misfits if options.encoding.strip() != "all" else ():
         leave_out(line)
 
     def case(codec: Codec, normals: NormalSet, about: Row) -> measure.Case:
@@ -154,13 +154,13 @@ def _question(options: PickOptions) -> Row:
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
     """The codecs that fit, and a line for each reason why others do not. Raises UsageError where none fits."""
-    left_out, fit = [], []
+    misfits, fit = [], []
     for codec in codecs:
         if codec.misfit:
-            left_out.append((codec.encoding.name, codec.misfit))
+            misfits.append((codec.encoding.name, codec.misfit))
         else:
             fit.append(codec)
-    said = by_reason(left_out)
+    said = by_reason(misfits)
     if not fit:
         raise UsageError(said[0])
     return fit, said
@@ -203,8 +203,10 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
-        said, keys = tuple(sentences(group)), {"storage": asked, "scene": scene.split(",")[0]}
-        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, keys=keys)
+        aside = tuple(left_out(group))
+        said = tuple(line for line in sentences(group) if line not in aside)
+        keys = {"storage": asked, "normals": normals, "scene": scene.split(",")[0]}
+        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
 
 
 def _short(row: Row) -> Row:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
@@ -32,6 +33,8 @@ BY_ARITHMETIC = 1.05
 SUMMARY_DROPS = ("p99", "psnr_db_glsl", "mean")
 # The figures that a summary shows of every back end.
 BY_BACKEND = ("psnr_article_db", "psnr_db")
+# Of their names, what marks the article's: it rounds to 8 bits, so what is more exact has none.
+ARTICLE = "psnr_article"
 # How many rows without figures a line names.
 MOST_NAMED = 4
 AGREED = "dB, the same by JAX and GLSL"
@@ -162,7 +165,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         said = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
         measured = backends_of(one_backend([row for row in part if row["angle_mean_deg"] is not None]))
         title = f"{normals}, {storage}: {said}; angles in degrees" + (f", by {measured}" if measured else "")
-        yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage})
+        yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage, "normals": normals})
 
 
 def _sheet_of(row: Row, measured: Sequence[Row]) -> tuple[str, str]:
@@ -171,7 +174,7 @@ def _sheet_of(row: Row, measured: Sequence[Row]) -> tuple[str, str]:
 
 def beside(rows: Iterable[Row]) -> list[Row]:
     """One line for each encoding: the article's figure where it has one, and a column for each back end, or one column
-    where all agree in every digit shown."""
+    where all agree in every digit shown. The article's PSNR is left out where it is infinite for some."""
     lines: dict[str, Row] = {}
     for row in rows:
         name = row["encoding"] + ("" if row["rounding"] == "nearest" else f" {row['rounding']}")
@@ -188,7 +191,13 @@ def beside(rows: Iterable[Row]) -> list[Row]:
     found = dict.fromkeys(column for line in lines.values() for column in line)
     order = [c for c in first if c in found] + sorted((c for c in found if c.startswith("psnr")), key=_psnr_order)
     order += [column for column in found if column not in order]
-    return [{column: line.get(column) for column in order} for line in lines.values()]
+    kept = [column for column in order if not (ARTICLE in column and _is_beyond(column, lines.values()))]
+    return [{column: line.get(column) for column in kept} for line in lines.values()]
+
+
+def _is_beyond(column: str, lines: Iterable[Row]) -> bool:
+    """Whether a figure is infinite for some codes, among which it then tells nothing."""
+    return any(line.get(column) == math.inf for line in lines)
 
 
 def _merge(column: str, lines: Sequence[Row]) -> None:
@@ -203,7 +212,7 @@ def _merge(column: str, lines: Sequence[Row]) -> None:
 
 def _psnr_order(column: str) -> tuple[bool, bool]:
     """The article's measure before the plain one, JAX before GLSL."""
-    return "article" not in column, "glsl" in column
+    return ARTICLE not in column, "glsl" in column
 
 
 def _write(done: Measured, _: Tick) -> None:
