@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ...reports import tables
-from ..ground.output.errors import UsageError, tell
+from ..ground.output.errors import NO_TWIN, UsageError, tell
 from ..ground.output.writing import check_writable, say, whole_file
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
@@ -115,9 +115,20 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
     if told and not table.partial and all(row.get("skipped") for row in rows):
         raise UsageError(told[0])
     for reason in told:
-        rest = any(_has_figures(table, row) for row in rows if row.get("skipped") == reason)
-        what = "some of their figures" if rest else "figures"
-        tell(f"rows without {what}: {reason}")
+        tell(f"{_kind_of_skip(table, rows, reason)}: {reason}")
+
+
+def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
+    """What a reason has kept from some rows; that an encoding without a twin is measured otherwise is not a failure."""
+    skipped = [row for row in rows if row.get("skipped") == reason]
+    measured = {row.get("encoding") for row in rows if not row.get("skipped")}
+    if NO_TWIN in reason and all(row.get("encoding") in measured for row in skipped):
+        return "measured by OpenGL alone"
+    return (
+        "rows without some of their figures"
+        if any(_has_figures(table, row) for row in skipped)
+        else "rows without figures"
+    )
 
 
 def _has_figures(table: Table, row: Row) -> bool:

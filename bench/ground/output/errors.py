@@ -12,6 +12,8 @@ from typing import TypeVar
 from .spelling import meant, spelled
 
 T = TypeVar("T")
+# What a reason says of an encoding that is written for shaders alone.
+NO_TWIN = "has no Python twin"
 # Letters of a line: what a word of thousands would make of it is not a message.
 LONGEST = 1500
 

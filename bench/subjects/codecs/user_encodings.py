@@ -23,7 +23,7 @@ from ....gbuffer.gl.shader import ShaderError, read_shader
 from ...ground.machine import children, forks
 from ...ground.machine.cores import on_all_cores
 from ...ground.options.words import given_in
-from ...ground.output.errors import MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
+from ...ground.output.errors import NO_TWIN, MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ...ground.output.spelling import spelled
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.pairs import NORMAL, Function
@@ -281,7 +281,7 @@ def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
 def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
     if not path.exists():
-        return _lacking(f"{path} is not there: this encoding has no Python twin")
+        return _lacking(f"{path.stem} {NO_TWIN}; {path.name} next to it would add rows by JAX")
     try:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader

@@ -55,7 +55,9 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     jax_row, gl_row = json.loads(out)
-    assert status == 0 and "has no Python twin" in jax_row["skipped"] and "mine.py is not there" in err
+    said = "mine has no Python twin; mine.py next to it would add rows by JAX"
+    assert status == 0 and jax_row["skipped"] == said
+    assert f"normalbench: measured by OpenGL alone: {said}\n" in err and "without figures" not in err
     _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
     assert "| mine " in out and "jax" not in out.partition("- not shown")[0], "a row by GLSL alone"
     assert f"not shown, without figures: mine/rgba8 on hemisphere by jax ({jax_row['skipped']})" in out
