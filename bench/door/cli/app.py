@@ -55,6 +55,12 @@ app = typer.Typer(
 SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "engine")
 INTERRUPTED, TERMINATED = 130, 143
 NO_CACHE = "--no-cache"
+# What the library that reads values says, and what is said for it.
+PARSERS_WORDS = {
+    "Value error, ": "",
+    "Input should be a valid number, unable to parse string as a number": "it takes a number, such as 0.5",
+    "Input should be a valid integer, unable to parse string as an integer": "it takes a whole number, such as 4",
+}
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02
 # A part of the paths of moderngl's own files.
@@ -363,7 +369,8 @@ def main() -> int:
         _say(str(error))
         return UsageError.exit_code
     except TyperException as error:
-        _say(error.format_message() + _hint(error.format_message()))
+        said = _plainly(error.format_message())
+        _say(said + _hint(said))
         return UsageError.exit_code
     except (KeyboardInterrupt, Abort):
         _say("interrupted")
@@ -372,6 +379,13 @@ def main() -> int:
         abandon_output()
         _say(f"cannot write: {error.strerror or error}")
         return UsageError.exit_code
+
+
+def _plainly(said: str) -> str:
+    """What the parser says, without the words of the library that reads values."""
+    for theirs, ours in PARSERS_WORDS.items():
+        said = said.replace(theirs, ours)
+    return said
 
 
 def _hint(said: str) -> str:

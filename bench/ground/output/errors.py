@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -12,6 +13,8 @@ from typing import TypeVar
 from .spelling import meant, spelled
 
 T = TypeVar("T")
+# Digits that nobody reads to their end, and how many of them are shown.
+LONG_NUMBER, DIGITS = re.compile(r"\d{25,}"), 6
 # What a reason says of an encoding that is written for shaders alone.
 NO_TWIN = "has no Python twin"
 # Letters of a line: what a word of thousands would make of it is not a message.
@@ -80,11 +83,16 @@ def tell(line: str) -> None:
     # Here, because every run of pytest imports this module.
     from ....reports.tables import visible
 
-    text = visible(" ".join(line.split()))
+    text = LONG_NUMBER.sub(_cut, visible(" ".join(line.split())))
     shown = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
     if shown not in told:
         told.add(shown)
         print(f"normalbench: {shown}", file=sys.stderr)
+
+
+def _cut(number: re.Match[str]) -> str:
+    """A number of very many digits in short."""
+    return f"{number[0][:DIGITS]}... ({len(number[0])} digits)"
 
 
 def tell_together(first: str, lines: Iterable[str]) -> None:
@@ -123,7 +131,7 @@ def pick_one(what: str, name: str, known: Collection[str]) -> str:
 
 
 def _unknown(what: str, names: list[str], known: Iterable[str], listed: str) -> UsageError:
-    guess = "".join(f" {said}" for name in names if (said := meant(name, known)))
+    guess = "".join(f" {said}" for name in names if (said := meant(name, known, what)))
     return UsageError(f"unknown {what} {quoted(names)};{guess} known: {listed}")
 
 

@@ -46,6 +46,10 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
 )
 
 
+# How alike a word must be to a name that it may have been meant for; of one with few letters one may be another.
+ALIKE, SHORT, SHORT_ALIKE = 0.75, 4, 0.65
+
+
 def plain(word: str) -> str:
     """A name in lower case without hyphens, underscores and spaces."""
     return "".join(letter for letter in word.lower() if letter not in "-_ ")
@@ -61,14 +65,19 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
     return found[0] if len(found) == 1 else None
 
 
-def meant(word: str, known: Iterable[str]) -> str:
-    """What somebody may have meant by an unknown word, as the end of a sentence; empty for no idea."""
+def meant(word: str, known: Iterable[str], what: str = "") -> str:
+    """What somebody may have meant by an unknown word, as the end of a sentence; empty for no idea.
+
+    Args:
+        what: the kind of name, which may have other words for it.
+    """
     known = list(known)
     parts = [part for part in re.split(r"[\s;|+]+", word) if part]
     if len(parts) > 1 and all(part in known or "." in part for part in parts):
         return f"separate names by commas: {','.join(parts)}"
     from difflib import get_close_matches
 
-    by_plain = {plain(name): name for name in known}
-    near = get_close_matches(plain(word), by_plain, n=1, cutoff=0.75)
+    by_plain = {other: name for other, name in OTHER_WORDS.get(what, {}).items() if name in known}
+    by_plain |= {plain(name): name for name in known}
+    near = get_close_matches(plain(word), by_plain, n=1, cutoff=SHORT_ALIKE if len(word) <= SHORT else ALIKE)
     return f"did you mean {by_plain[near[0]]}?" if near else ""

@@ -25,6 +25,7 @@ from ...ground.output.errors import MissingError, UsageError, pick
 from ...ground.output.writing import check_folder, check_plot, whole_file
 from ...shaders.isa import isa, spirv
 from ...subjects.codecs.user_encodings import encodings_named
+from ..families_named import families_named
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .measure import file_name
@@ -59,9 +60,9 @@ OWN = (families.NVRTC, *families.MOBILE)
 def chosen_families(names: str) -> list[str]:
     """What `--family` names: families, and vendors for all of theirs. Those whose compiler people install or build
     themselves are among all of them where it is there. Raises UsageError."""
-    found = dict.fromkeys(name for several in pick("family", names, families.CHOICES) for name in several)
+    found = families_named(names)
     if names.strip().lower() != "all":
-        return list(found)
+        return found
     lost = {library for library in OWN if isa.missing(library)}
     return [name for name in found if families.FAMILIES[name].library not in lost]
 

@@ -18,13 +18,13 @@ from ....gbuffer.scenes.setting import Setting
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.gpu_families import CHOICES
 from ...ground.options.scene_names import powers_named, scenes_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import check_twin, codecs_named, storages_named
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
+from ..families_named import families_named
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
@@ -36,6 +36,8 @@ MOST_INSTRUCTIONS = 10**6
 MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
 # By the domain that is asked for, the set that is measured.
 SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}
+# Below so many random normals, chance decides between codes.
+FEW = 4096
 # What people see of the front.
 SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", "largest_deg", "image_db_*", "slots")
 
@@ -69,6 +71,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     chosen = options.normals or SETS[said["needs"]]
     sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
+    _say_if_few(sets)
     powers, makers = tuple(powers_named(options.power)), tuple(scenes_named(options.scene))
     effects = effects_named(options.effects) if options.effects else []
     setting = Setting(seed=options.seed)
@@ -88,6 +91,13 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
         if any(codec.storage in storages for codec in fit)
         for normals in sets
     ]
+
+
+def _say_if_few(sets: Iterable[NormalSet]) -> None:
+    """A line where an answer is of so few random normals that another seed may give another answer."""
+    few = {one.count: one.name for one in sets if one.area is not None and one.count < FEW}
+    for count, name in few.items():
+        tell(f"--count {count}: with fewer than {FEW} random normals ({name}), another --seed may give another answer")
 
 
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
@@ -141,8 +151,7 @@ def _question(options: PickOptions) -> Row:
     if not 0 < options.worth <= MOST_WORTH:
         raise UsageError(f"--worth {options.worth:g}: above 0 to {MOST_WORTH:g} decibels")
     needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
-    chosen = [name for names in pick("family", options.family, CHOICES) for name in names]
-    aim, family = pick_one("aim", options.aim, {name: name for name in AIMS}), ",".join(dict.fromkeys(chosen))
+    aim, family = pick_one("aim", options.aim, {name: name for name in AIMS}), ",".join(families_named(options.family))
     uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
     said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
     if not 0 <= options.enough <= MOST_ENOUGH:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from ...ground.options.gpu_families import FAMILIES
 from ...ground.output.errors import UsageError
+from ...ground.output.spelling import meant
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,8 @@ def _gpu(word: str) -> tuple[str, Rates]:
             raise UsageError(f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {such}")
         made = Rates(FAMILIES[name].title, name, **changed)
     else:
-        raise UsageError(f"--gpu {word}: unknown GPU; known: all, {', '.join(GPUS)}, or a family with its rates")
+        guess = f" {said}" if (said := meant(name, GPUS)) else ""
+        raise UsageError(f"--gpu {word}: unknown GPU;{guess} known: all, {', '.join(GPUS)}, or a family with its rates")
     if bool(made.cache) != bool(made.cached):
         raise UsageError(f"--gpu {word}: cache, in MB, and cached, in GB/s, go together")
     return word, made

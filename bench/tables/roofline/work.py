@@ -16,6 +16,7 @@ from ...subjects.codecs.names import codecs_named
 from ..charts import drawing, having
 from ..table import COMPILERS, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
+from .answers import answers
 from .measure import Case, Frame
 from .rates import RANGES, gpus_named
 from .table import TABLE, RooflineOptions, RooflineOutputs
@@ -32,7 +33,7 @@ def cases(options: RooflineOptions) -> list[Case]:
     if not 0 <= options.cache_share <= 1:
         raise UsageError(f"--cache-share {options.cache_share}: a share is 0 to 1")
     sizes = [checked_sides(word, MOST_SIDE, "here") for word in options.size.split(",")]
-    reads = checked_numbers("--reads", options.reads, int, 0, MOST_READS)
+    reads = checked_numbers("--reads", options.reads, int, 1, MOST_READS)
     gpus = gpus_named(options.gpu)
     codecs = that_fit(codecs_named(options.encoding, options.storage, "nearest"))
     frames = [Frame(size, count, options.overdraw, options.cache_share) for size in sizes for count in reads]
@@ -62,9 +63,10 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """A table for each GPU and size, the fastest code first, of the fewest reads."""
+    """A table for each GPU and size, the fastest code first, of the fewest reads; the answers above the first."""
     hidden = ["encoding", "storage", "gpu", "size", "shared", "overdraw", "ridge", "family", "driver", "skipped"]
     known = [row for row in rows if row["frame_us"] is not None]
+    said = answers(rows)
     for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
         part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]
         ridges = {row["in_cache"]: row["ridge"] for row in part}
@@ -76,7 +78,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
             {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in unseen}
             for row in part
         ]
-        yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines))
+        yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines), said=said)
+        said = ()
 
 
 def _duels(case: Case) -> Iterator[str]:
@@ -113,6 +116,7 @@ def _said(said: str, sizes: Sequence[str]) -> str:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """A line for each code, GPUs and sizes side by side."""
     known = [row for row in rows if row["frame_us"] is not None]
+    said = answers(rows)
     for reads in dict.fromkeys(row["reads"] for row in known):
         part = [row for row in known if row["reads"] == reads]
         lines: dict[str, Row] = {}
@@ -121,7 +125,9 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             line = lines.setdefault(code, {"code": code, "bits": row["bits"]})
             line[f"{row['gpu']} {row['size']}"] = row["frame_us"]
         times = "1 read" if reads == 1 else f"{reads} reads"
-        yield Sheet(f"microseconds that a code takes of a frame, {times} of the G-buffer", list(lines.values()))
+        title = f"microseconds that a code takes of a frame, {times} of the G-buffer"
+        yield Sheet(title, list(lines.values()), said=said)
+        said = ()
 
 
 def _write(done: Measured, _: Tick) -> None:

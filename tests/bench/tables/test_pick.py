@@ -319,3 +319,12 @@ def test_the_dearest_of_several_families_is_the_price(run):
         (rows[families],) = [row for row in json.loads(out) if row["storage"] == "rg8"]
     assert rows["turing"]["dearest_family"] == rows["navi21,turing"]["dearest_family"] == "sm_75"
     assert rows["navi21,turing"]["slots"] == rows["turing"]["slots"] > rows["navi21"]["slots"]
+
+
+def test_an_answer_of_few_random_normals_is_warned_of(run):
+    """Of one normal any code may be the best; the axes are few and are all that there are."""
+    words = ("pick", "--encoding", "octahedral,spheremap", "--storage", "rg8", "--aim", "angle", "--format", "json")
+    said = "with fewer than 4096 random normals (sphere), another --seed may give another answer"
+    assert f"--count 1: {said}" in run(*words, "--count", "1")[2]
+    assert "another --seed" not in run(*words, "--count", "4096")[2]
+    assert "another --seed" not in run(*words, "--count", "1", "--normals", "axes")[2]

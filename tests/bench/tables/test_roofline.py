@@ -12,6 +12,7 @@ from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.isa import spirv
 from normalbench.bench.tables.roofline import measure
+from normalbench.bench.tables.roofline.answers import answers
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
 from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named
 from normalbench.reports.charts import roofline
@@ -228,3 +229,37 @@ def test_without_a_compiler_the_command_says_what_to_install(run, monkeypatch):
     monkeypatch.setattr(spirv, "COMPILER", "no-such-compiler")
     status, _, err = run("roofline", "--encoding", "octahedral", "--storage", "rg8", "--gpu", "rx480")
     assert status == 3 and "apt-get install glslang-tools" in err
+
+
+def ranked_row(gpu: str, code: str, rank: int, reads: int = 1, size: str = "1920x1080") -> dict:
+    encoding, storage = code.split()
+    return {"gpu": gpu, "size": size, "reads": reads, "encoding": encoding, "storage": storage, "rank": rank}
+
+
+def test_the_first_sentences_say_the_fastest_codes_of_each_gpu():
+    one = [ranked_row("a", "spheremap rg8", 1), ranked_row("a", "octahedral rg8", 1), ranked_row("a", "xyz rgba8", 3)]
+    assert answers(one) == ("a: spheremap and octahedral in rg8 are equally fast.",)
+    other = [ranked_row("b", "xyz rgba8", 1), ranked_row("b", "xyz rgba8", 2, 4), ranked_row("b", "xy rg8", 1, 4)]
+    same = [row | {"gpu": "c"} for row in other]
+    assert answers([*one, *other, *same, ranked_row("a", "spheremap rg8", 1, 4)]) == (
+        "The fastest codes on each GPU:",
+        "a: spheremap and octahedral in rg8 are equally fast with 1 read; "
+        "spheremap in rg8 is the fastest with 4 reads.",
+        "b and c: xyz in rgba8 is the fastest with 1 read; xy in rg8 is the fastest with 4 reads.",
+    )
+    assert answers([ranked_row("a", "xyz rgba8", 0) | {"rank": None}]) == ()
+
+
+@pytest.mark.usefixtures("radv")
+def test_the_answer_is_above_the_first_table(run):
+    out = run("roofline", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--gpu", "rx480", "--reads", "1")[1]
+    assert re.match(r"rx480: (octahedral and xyz|xyz and octahedral) in rgba8 are equally fast in every case\.\n", out)
+
+
+def test_no_read_at_all_is_not_a_g_buffer(run):
+    status, out, err = run("roofline", "--reads", "0")
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "--reads 0: whole numbers from 1 to 1024" in err
+
+
+def test_an_unknown_gpu_is_suggested_one(run):
+    assert "did you mean rtx3080?" in run("roofline", "--gpu", "rtx3081")[2]

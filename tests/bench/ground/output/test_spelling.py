@@ -44,6 +44,8 @@ def test_a_name_is_understood(what, typed, meant):
         ("encoding", "octahedral spheremap", "separate names by commas: octahedral,spheremap"),
         ("storage", "rgba8_snrm", "did you mean rgba8_snorm?"),
         ("family", "navi32", "did you mean navi31?"),
+        ("family", "turning", "did you mean sm_75?"),
+        ("storage", "rg9", "did you mean rg8?"),
         ("encoding", "zzzz", "unknown encoding 'zzzz'; known: all, xyz"),
     ],
 )

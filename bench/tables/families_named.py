@@ -1,0 +1,19 @@
+"""GPU families as `--family` names them."""
+
+from __future__ import annotations
+
+from ..ground.options.gpu_families import CHOICES
+from ..ground.output.errors import UsageError, pick
+from .roofline.rates import GPUS
+
+
+def families_named(names: str) -> list[str]:
+    """The families of comma-separated names, each once: families, and vendors for all of theirs.
+
+    Raises:
+        UsageError: an unknown name; of a GPU that `roofline` knows, the message says its family.
+    """
+    words = [word.strip() for word in names.split(",")]
+    if gpu := next((word for word in words if word.lower() in GPUS), None):
+        raise UsageError(f"{gpu} is a GPU and not a family; its family is {GPUS[gpu.lower()].family}")
+    return list(dict.fromkeys(name for several in pick("family", names, CHOICES) for name in several))
