@@ -14,7 +14,7 @@ from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.output.errors import UsageError, leave_out, names_by_reason
+from ...ground.output.errors import NO_TWIN, UsageError, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
@@ -135,8 +135,9 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
             yield f"{_named(row)}: {row['below_limit']}; {wrong}"
 
 
-def _named(row: Row) -> str:
-    return f"{row['encoding']}/{row['storage']} on {row['normals']} by {row['backend']}"
+def _named(row: Row, reason: str = "") -> str:
+    where = "" if NO_TWIN in reason else f" by {row['backend']}"
+    return f"{row['encoding']}/{row['storage']} on {row['normals']}{where}"
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
@@ -148,10 +149,11 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
     """A line for each reason why rows have no figures."""
-    skipped = ((_named(row), row["skipped"]) for row in rows if row["skipped"])
+    skipped = ((_named(row, row["skipped"]), row["skipped"]) for row in rows if row["skipped"])
     for reason, names in names_by_reason(skipped).items():
         said = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
-        yield f"not shown, without figures: {said} ({reason})"
+        what = "by OpenGL alone" if NO_TWIN in reason else "not shown, without figures"
+        yield f"{what}: {said} ({reason})"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
