@@ -31,7 +31,7 @@ def seen(request, browser, report):
 def test_nothing_is_fetched_and_nothing_complains(seen, report):
     assert [url for url in seen.asked if not url.startswith("data:")] == [report.as_uri()]
     assert seen.said == []
-    assert seen.page.locator(".plot svg").count() == 2
+    assert seen.page.locator(".plot svg").count() == 4, "a chart for each set of normals"
 
 
 def test_the_page_itself_never_scrolls_sideways(seen):
