@@ -19,6 +19,9 @@ vec3 mine_decode(vec2 e) {
     return normalize(n);
 }
 """
+# The same with the normal itself divided.
+IN_PLACE = PLAIN.replace("vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));", "n /= abs(n.x) + abs(n.y) + abs(n.z);")
+IN_PLACE = IN_PLACE.replace("vec2 s = vec2(p.x", "vec2 p = n.xy;\n    vec2 s = vec2(p.x")
 # The fold by mix and step.
 STEPS = """vec2 mine_encode(vec3 n) {
     vec3 a = abs(n);
@@ -76,6 +79,7 @@ vec3 mine_decode(vec3 e) {
 TEXTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
     {
         "octahedral": (PLAIN, "c", ""),
+        "divided in place": (IN_PLACE, "c", ""),
         "by mix and step": (STEPS, "c", ""),
         "in [0, 1]": (PLAIN, "c * 0.5 + 0.5", "e = e * 2.0 - 1.0;"),
         "turned by 45 degrees": (TURNED, "c", ""),
@@ -83,7 +87,7 @@ TEXTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
         "cube": (CUBE, "c", ""),
     }
 )
-OCTAHEDRAL = tuple(TEXTS)[:4]
+OCTAHEDRAL = tuple(TEXTS)[:5]
 
 
 class Mistake(NamedTuple):

@@ -7,9 +7,9 @@ With DOMAIN it is looked at closely: what its author says that it is made for, o
 Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
 what comes back, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`, a list of what is likely
-wrong, and `is_unit`, where its codes fill [0, 1]. Closely also `like`, the encodings of the catalogue that both its
-functions are, and `bad`, directions that come back elsewhere. Of a translation also `by`, the language whose compiler
-reads it right, and `notes`, lines. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
+wrong, `hole`, a direction outside of the domain where it is not finite, and `is_unit`, where its codes fill [0, 1].
+Closely also `like`, the encodings of the catalogue that both its functions are, and `bad`, directions that come back
+elsewhere. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -37,12 +37,11 @@ from ...ground.machine import children
 from ...ground.output.errors import MissingError, UsageError
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.words import is_translated, twin_of
-from .doctor import folds
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import Domain, guessed
 from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit
 from .doctor.likeness import likeness
-from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
+from .doctor.probe import VIEW, Probe, Trip, probe_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import of_hlsl
@@ -87,8 +86,10 @@ def _is_unit(probe: Probe) -> bool:
     """Whether the codes of all directions fill [0, 1], or those of the directions that come back."""
     n = directions()
     codes = probe.encode(n)
-    if is_unit(codes):
-        return True
+    kept = np.isfinite(codes).all(axis=1)
+    n, codes = n[kept], codes[kept]
+    if not len(n) or is_unit(codes):
+        return bool(len(n))
     # As an unsigned storage clips them.
     back = probe.decode(np.clip(codes, 0, 1))
     trip = Trip(n, np.broadcast_to(np.array(VIEW, np.float32), n.shape), codes, back)
@@ -123,16 +124,13 @@ def _endless(gl: Device, encoding: Encoding) -> dict[str, Any]:
 
 
 def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
-    trip = trip_of(probe, directions())
-    for what, found in (("encode", trip.codes), ("decode", trip.decoded)):
-        bad = ~np.isfinite(found).all(axis=1)
-        if bad.any():
-            broken = f"{what} of {trip.n[bad][0].tolist()} is {found[bad][0].tolist()}, no number"
-            return {"broken": broken, "wrong": folds.mistakes(probe)}
     found = diagnosed(probe, gl, domain.replace(ANY, ""))
+    if found.broken:
+        return {"broken": found.broken, "wrong": found.wrong}
+    hole = {"hole": found.hole} if found.hole else {}
     half = {"half": [found.domain.axis, found.domain.side]} if found.domain.is_turned else {}
     closely = _closely(probe, gl, found.domain) if domain else {}
-    return {"domain": found.domain.name, "wrong": found.wrong} | half | closely
+    return {"domain": found.domain.name, "wrong": found.wrong} | half | hole | closely
 
 
 def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:

@@ -47,7 +47,7 @@ TIME_LIMIT = 60.0
 ANY = "any"
 FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
-UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
+UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
 def encodings_named(names: str) -> list[Encoding]:
@@ -113,7 +113,7 @@ def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
         _check(path, found.glsl)
         encoding = found.encoding(path)
         # That codes are in [0, 1] is said by doctor, and in rows by a column.
-        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes) if line != UNIT]
+        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
         said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
         return encoding, said
     except (UsageError, MissingError) as error:
@@ -356,11 +356,23 @@ class Looks:
     @property
     def notes(self) -> list[str]:
         """What was guessed of it."""
-        domain = self.domain
-        turned = "; tables turn it, so that this is their z >= 0" if domain.is_turned else ""
-        made_for = [f"taken to be made for {domain.made_for} alone: no others come back{turned}"]
-        notes = [*self.said, *self.glsl.get("notes", []), *([UNIT] if self.is_unit else [])]
-        return [*notes, *(made_for if domain.made_for and not self.is_asked else [])]
+        notes = [*self.said, *self.glsl.get("notes", []), *([self.unit_note] if self.is_unit else [])]
+        return [*notes, *self._of_domain()]
+
+    @property
+    def unit_note(self) -> str:
+        """That codes lie in [0, 1], and of which normals."""
+        made_for = self.domain.made_for
+        return UNIT.format(f"the codes of {made_for}" if made_for else "its codes")
+
+    def _of_domain(self) -> Iterator[str]:
+        """Why it is taken to be made for other normals than all, and where it is not finite."""
+        domain, hole = self.domain, self.glsl.get("hole")
+        if self.is_asked and hole:
+            yield f"it is meant for {domain.made_for}; elsewhere {hole}"
+        elif domain.made_for and not self.is_asked:
+            turned = "; tables turn it, so that this is their z >= 0" if domain.is_turned else ""
+            yield f"taken to be made for {domain.made_for} alone: {hole or 'no others come back'}{turned}"
 
 
 def _look(path: Path, domain: str = "") -> Looks:

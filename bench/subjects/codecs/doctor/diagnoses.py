@@ -6,7 +6,7 @@ Each diagnosis is a line with its figure and a direction that shows it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from .....gbuffer.gl.device import Device
 from ....ground.directions import circles, directions
 from . import exact, folds, nearly
 from .between import MOST, SAME_DEG, axes_of, step_between
-from .domains import HALVES, HEMISPHERE, SPHERE, Domain, asked, guessed
+from .domains import EXACT_DEG, HALVES, HEMISPHERE, SPHERE, Domain, asked, finite, guessed
 from .halves import Sides, lost, unread, unused
 from .likeness import likeness
 from .probe import Probe, Trip, trip_of
@@ -25,8 +25,6 @@ NEARLY_DEG = 10.0
 OF_A_STEP_DEG = 600.0
 # By what the angles of one half are larger than those of the other where an encoding is made for that one alone.
 FAR_BETTER = 2.0
-# Below this a pair is as exact as float32.
-EXACT_DEG = 5e-5
 
 
 @dataclass(frozen=True)
@@ -36,15 +34,20 @@ class Diagnosis:
     Attributes:
         domain: what it is made for.
         wrong: what is likely wrong, lines.
+        broken: a direction of the domain where a function is not finite, so that nothing can be measured; else empty.
+        hole: a direction outside of the domain where a function is not finite; else empty.
     """
 
     domain: Domain
     wrong: list[str]
+    broken: str = ""
+    hole: str = ""
 
 
 def bad(probe: Probe, domain: Domain) -> np.ndarray:
     """The directions of a domain that come back elsewhere, (count, 3): what a picture of the sphere is marked with."""
     held = domain.held(trip_of(probe, np.concatenate([directions(), circles()])))
+    held = held.of(held.is_finite)
     return held.n[held.angles() > exact.unusual(held)]
 
 
@@ -52,18 +55,41 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
     """What is likely wrong.
 
     Args:
-        probe: the two functions, finite for every direction that is tried.
+        probe: the two functions.
         name: the domain that the user says it is made for; empty to find out.
     """
     trip = trip_of(probe, directions())
+    whole, kept = finite(trip), trip.of(trip.is_finite)
+    meant = asked(name, kept, whole) if name else None
+    if not whole or meant not in (None, *whole):
+        broken = meant.held(trip).hole if meant else trip.hole
+        return Diagnosis(meant or SPHERE, folds.mistakes(probe), broken)
+    found = _diagnosed(kept, probe, gl, meant)
+    if found.domain in whole:
+        return replace(found, hole=trip.hole)
+    if found.wrong:
+        return replace(found, broken=found.domain.held(trip).hole)
+    # All that is finite comes back. Where that is nearly the sphere, its author may rely on the rest as well.
+    is_a_fault = trip.is_finite.mean() > MOST
+    wrong = [f"{trip.hole}; all other directions come back"] if is_a_fault else []
+    return Diagnosis(whole[0], wrong, hole=trip.hole)
+
+
+def _diagnosed(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
+    """What is likely wrong, of directions that are finite.
+
+    Args:
+        meant: the domain that the user says it is made for; None to find out.
+    """
     within = _within(trip)
-    domain = asked(name, trip) if name else guessed(trip, within)
-    if not name and (wider := _nearly_back(trip, domain)) and (found := list(nearly.mistakes(wider.held(trip), probe))):
+    domain = meant or guessed(trip, within)
+    wider = None if meant else _nearly_back(trip, domain)
+    if wider and (found := list(nearly.mistakes(wider.held(trip), probe))):
         return _nearly(trip, wider, found)
-    if domain.name == HEMISPHERE and not name and (half := list(_half(trip, probe, domain))):
+    if domain.name == HEMISPHERE and not meant and (half := list(_half(trip, probe, domain))):
         return Diagnosis(SPHERE, [*half, *_of_held(domain.held(trip), probe)])
     if domain.name and not _is_lost(trip, domain, within):
-        return Diagnosis(domain, _of_pair(trip, probe, domain, is_meant=bool(name)))
+        return Diagnosis(domain, _of_pair(trip, probe, domain, is_meant=bool(meant)))
     return _of_none(trip, probe, gl, domain)
 
 

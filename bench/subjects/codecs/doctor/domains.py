@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -79,6 +80,8 @@ HALVES = tuple(Domain(HEMISPHERE, axis, side) for axis in (2, 1, 0) for side in 
 IN_TURN = (SPHERE, HALVES[0], VIEWED, *HALVES[1:])
 # Nearly all.
 MOST = 0.95
+# A half comes back as well as another one up to this factor; below this angle, in degrees, all are as exact as float32.
+AS_WELL, EXACT_DEG = 1.1, 5e-5
 
 
 def guessed(trip: Trip, within: float) -> Domain:
@@ -87,9 +90,20 @@ def guessed(trip: Trip, within: float) -> Domain:
     return next((one for one in IN_TURN if is_same[one.holds(trip)].mean() > MOST), NONE)
 
 
-def asked(name: str, trip: Trip) -> Domain:
-    """The domain of a name that a user gives: of a hemisphere the half that comes back best."""
+def finite(trip: Trip) -> list[Domain]:
+    """The domains where every direction that is tried is finite; empty where none is."""
+    return [one for one in IN_TURN if trip.is_finite[one.holds(trip)].all()]
+
+
+def asked(name: str, trip: Trip, among: Collection[Domain] = IN_TURN) -> Domain:
+    """The domain of a name that a user gives: of a hemisphere the first half that comes back as well as any.
+
+    Args:
+        among: the domains where the code is finite. A half is one of these if there is one.
+    """
     if name != HEMISPHERE:
         return SPHERE if name == SPHERE.name else VIEWED
     angles = trip.angles()
-    return min(HALVES, key=lambda half: float(np.mean(angles[half.holds(trip)])))
+    halves = [half for half in HALVES if half in among] or HALVES
+    means = [float(np.mean(angles[half.holds(trip)])) for half in halves]
+    return next(half for half, mean in zip(halves, means, strict=True) if mean <= min(means) * AS_WELL + EXACT_DEG)

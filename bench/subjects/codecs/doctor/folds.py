@@ -44,11 +44,18 @@ def _fold(p: np.ndarray, bare: Numbers = ()) -> np.ndarray:
     return (1 - np.where(np.isin(np.arange(2), bare), swapped, np.abs(swapped))) * _signs(p)
 
 
-def _encoder(fold: Fold = _fold, bare: Numbers = ()) -> Side:
+def _encoder(fold: Fold = _fold, bare: Numbers = (), in_place: bool = False) -> Side:
+    """An encoder.
+
+    Args:
+        in_place: whether m itself is divided, so that a negative sum changes the sign of the z that asks for the fold.
+    """
+
     def encode(m: np.ndarray) -> np.ndarray:
         with np.errstate(divide="ignore", invalid="ignore"):
-            p = m[:, :2] / _sum(m, bare)
-        return np.where(m[:, 2:] < 0, fold(p), p)
+            divided = m / _sum(m, bare)
+        p = divided[:, :2]
+        return np.where((divided if in_place else m)[:, 2:] < 0, fold(p), p)
 
     return encode
 
@@ -86,7 +93,9 @@ ENCODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
         "its fold is missing": [_encoder(lambda p: p)],
         "its fold has .xy where .yx belongs": [_encoder(lambda p: (1 - np.abs(p)) * _signs(p))],
         "abs() is missing in its fold": [_encoder(fold) for fold in BARE_FOLDS],
-        "abs() is missing in |x| + |y| + |z|": [_encoder(_fold, bare) for bare in SOME_OF_THREE],
+        "abs() is missing in |x| + |y| + |z|": [
+            _encoder(_fold, bare, in_place) for bare in SOME_OF_THREE for in_place in (False, True)
+        ],
         "its fold has no sign": [_encoder(lambda p: 1 - np.abs(p[:, ::-1]))],
     }
 )

@@ -112,7 +112,9 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
     given = [at, *((at + shift).astype(np.float32) for shift in shifts)]
     back = [unit(one) for one in np.split(probe.decode(np.concatenate(given)), len(given))]
     gaps = [(given[1 + 2 * i] - given[2 + 2 * i])[:, i : i + 1] for i in range(size)]
-    slope = np.stack([(back[1 + 2 * i] - back[2 + 2 * i]) / gaps[i] for i in range(size)], axis=2)
+    # Beside a code beyond float32's digits lies the code itself.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = np.stack([(back[1 + 2 * i] - back[2 + 2 * i]) / gaps[i] for i in range(size)], axis=2)
     flat = ~(np.isfinite(slope).all(axis=(1, 2)))
     slope[flat] = 0.0
     made = np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=1e-3), n - back[0])

@@ -65,6 +65,20 @@ class Trip:
         """Some of them."""
         return Trip(self.n[which], self.view[which], self.codes[which], self.decoded[which])
 
+    @property
+    def is_finite(self) -> np.ndarray:
+        """Which directions have a finite code that decodes to finite numbers, bool of shape (count,)."""
+        return np.isfinite(self.codes).all(axis=1) & np.isfinite(self.decoded).all(axis=1)
+
+    @property
+    def hole(self) -> str:
+        """The first direction where a function is not finite, in words; empty where there is none."""
+        for what, found in (("encode", self.codes), ("decode", self.decoded)):
+            at = np.flatnonzero(~np.isfinite(found).all(axis=1))
+            if len(at):
+                return f"{what} of {vector(self.n[at[0]])} is {vector(found[at[0]])}, no number"
+        return ""
+
     def angles(self) -> np.ndarray:
         """How far each comes back, in degrees."""
         return angles_deg(self.n, self.decoded)

@@ -178,6 +178,73 @@ def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
     assert status == 1 and "directions with z <= 0 come back with z reversed" in out
 
 
+# Published codes for a half that are not finite at some direction of the other one: encode and decode, as `DESIGNS`.
+OPEN = {
+    "hemi-octahedral": (
+        "vec2(m.x + m.y, m.x - m.y) / (abs(m.x) + abs(m.y) + m.z)",
+        "normalize(vec3(e.x + e.y, e.x - e.y, 2.0 - abs(e.x + e.y) - abs(e.x - e.y)))",
+    ),
+    "hemi-octahedral, guarded by max()": (
+        "vec2(m.x + m.y, m.x - m.y) / (abs(m.x) + abs(m.y) + max(m.z, 0.0)) * 0.5 + 0.5",
+        "normalize(vec3(e.x + e.y - 1.0, e.x - e.y, 1.0 - abs(e.x + e.y - 1.0) - abs(e.x - e.y)))",
+    ),
+    "stereographic": (
+        "m.xy / (m.z + 1.0) / 1.7777 * 0.5 + 0.5",
+        "vec3(2.0 * (e * 2.0 - 1.0) * 1.7777, 2.0) / (1.0 + dot(e * 2.0 - 1.0, e * 2.0 - 1.0) * 3.16020729) "
+        "- vec3(0.0, 0.0, 1.0)",
+    ),
+    "undefined below": ("m.xy * (m.z < 0.0 ? sqrt(m.z) : 1.0)", "vec3(e, sqrt(max(0.0, 1.0 - dot(e, e))))"),
+}
+
+
+@pytest.mark.parametrize("half", HALVES)
+@pytest.mark.parametrize("what", OPEN)
+def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
+    monkeypatch.setitem(DESIGNS, what, OPEN[what])
+    (tmp_path / "dir.glsl").write_text(design(what, half))
+    for domain in ("", "hemisphere"):
+        found = first_look(tmp_path / "dir.glsl", domain)
+        axis, side = found.get("half", (2, 1))
+        assert found["wrong"] == [] and found["domain"] == "hemisphere" and "no number" in found["hole"], found
+        assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
+    assert "no number" in first_look(tmp_path / "dir.glsl", "sphere")["broken"]
+
+
+def test_a_code_that_is_finite_on_its_half_alone_is_measured_there(run, tmp_path, monkeypatch):
+    monkeypatch.setitem(DESIGNS, "open", OPEN["hemi-octahedral"])
+    (tmp_path / "dir.glsl").write_text(design("open", "z >= 0"))
+    words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "4096", "--backend", "glsl")
+    status, out, err = run("quality", "--encoding", "dir.glsl,hemi_octahedral", *words, "--format", "json")
+    means = [row["angle_mean_deg"] for row in json.loads(out)]
+    assert status == 0 and means == pytest.approx([0.239, 0.239], abs=0.005)
+    assert "dir.glsl: taken to be made for normals with z >= 0 alone: encode of (-0.707, 0, -0.707) is (" in err
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "hemisphere", "--format", "json")
+    assert status == 0 and "it is meant for normals with z >= 0; elsewhere encode of (-0.707, 0, -0.707)" in out
+
+
+SPHEREMAP = """vec2 dir_encode(vec3 n) { return n.xy / sqrt(8.0 * n.z + 8.0) + 0.5; }
+vec3 dir_decode(vec2 e) {
+    vec2 g = e * 4.0 - 2.0;
+    float f = dot(g, g);
+    return vec3(g * sqrt(max(0.0, 1.0 - f / 4.0)), 1.0 - f / 2.0);
+}
+"""
+
+
+def test_a_hole_in_a_code_for_the_sphere_is_a_finding_unless_it_is_meant_for_less(run, tmp_path):
+    """It is measured where it is finite: z >= 0, or what faces the viewer."""
+    (tmp_path / "dir.glsl").write_text(SPHEREMAP)
+    status, out, _ = run("doctor", "dir.glsl", "--format", "json")
+    first = json.loads(out)[0]
+    assert status == 1 and first["domain"] == "hemisphere"
+    assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), no number; all other directions come back"
+    for domain in ("hemisphere", "view"):
+        status, out, _ = run("doctor", "dir.glsl", "--domain", domain, "--format", "json")
+        assert status == 0 and {row["domain"] for row in json.loads(out)} == {domain}, out
+    status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
+    assert status == 1 and "no number" in json.loads(out)[0]["finding"]
+
+
 def test_directions_that_are_lost_are_counted(run, tmp_path):
     """Most of a half comes back as it was: how many do not, and how far at most, not what the median direction does."""
     text = NO_FOLD.replace("return n.xy; }", "return n.z >= 0.0 ? n.xy : fold(n.xy); }")

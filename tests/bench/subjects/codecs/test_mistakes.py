@@ -21,6 +21,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 BITS = (8, 10, 16)
 # Of one text and one number of bits in every run; all of them by night.
 QUICK = [(text, mistake, 8) for text in list(TEXTS)[:1] for mistake in MISTAKES]
+QUICK += [("divided in place", "abs missing in the sum", 8), ("divided in place", "normalise missing", 8)]
 QUICK += [(text, "wrong range", 10) for text in TEXTS] + [(text, "cut off", 16) for text in TEXTS]
 ALL = [(text, mistake, bits) for text in TEXTS for mistake in MISTAKES for bits in BITS]
 # What two mistakes share: a fold and an unfold, and two ways to the same error.
