@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
+import textwrap
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,9 +14,10 @@ import numpy as np
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import Storage
+from ...reports import tables
 from ...reports.charts import charts
 from ..ground.output.errors import UsageError, pick_one, tell
-from ..ground.output.writing import check_plot, save_plot, write
+from ..ground.output.writing import check_plot, check_writable, save_plot, say, whole_file, write
 from ..subjects.codecs.names import storages_named
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
 from ..subjects.normals.normal_sets import NORMAL_SETS
@@ -21,6 +25,8 @@ from ..tables.quality.measure import Case, measure
 from ..tables.quality.sphere_maps import sphere_map
 
 STORAGE = "rgba8"
+RIGHT = "nothing is likely wrong"
+FOR_PEOPLE = ("table", "markdown")
 DOMAINS = ("sphere", "hemisphere", "view")
 # Normals that it is compared with the catalogue's on, and by how much it may be worse.
 COUNT, WORSE = 1 << 16, 1.05
@@ -36,7 +42,7 @@ def examine_encoding(
     storage: str | None = None,
     domain: str | None = None,
 ) -> int:
-    """Write a row for each finding, and the picture if one is asked for.
+    """Write a verdict, findings and notes, and the picture if one is asked for.
 
     Args:
         storage: the name of the one that it is measured in; None for STORAGE.
@@ -60,11 +66,46 @@ def examine_encoding(
     # What is wasted is meant where the domain is; it is said all the same.
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if domain else ([*found.wrong, *worse], found.notes)
     about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found)}
-    write([about | {"finding": line} for line in [*wrong, *notes] or ["nothing is likely wrong"]], format, output)
+    said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
+    if format in FOR_PEOPLE:
+        _write_text(_text(about, wrong, notes, format), output)
+    else:
+        write([about | {"finding": line, "kind": kind} for line, kind in said], format, output)
     if plot and found.is_measurable:
         save_plot(plot, _picture(codec, found))
         tell(f"the error over the sphere is in {plot}")
     return int(bool(wrong))
+
+
+def _lines(kind: str, lines: Sequence[str]) -> list[tuple[str, str]]:
+    return [(line, kind) for line in lines]
+
+
+def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], format: str) -> str:
+    """The verdict in a line, findings below it, and notes by themselves."""
+    verdict = f"{len(wrong)} finding{'s' * (len(wrong) > 1)}" if wrong else RIGHT
+    parts = [verdict, f"file {about['file']}, encoding {about['encoding']}, domain {about['domain']}"]
+    parts += [_list(wrong, format)] if wrong else []
+    parts += ["notes:", _list(notes, format)] if notes else []
+    return "\n\n".join(parts) + "\n"
+
+
+def _list(lines: Sequence[str], format: str) -> str:
+    if format == "markdown":
+        return "\n".join(f"- {tables.markdown_sentence(line)}" for line in lines)
+    width = shutil.get_terminal_size((120, 40)).columns
+    filled = (textwrap.fill(tables.visible(line), width, initial_indent="- ", subsequent_indent="  ") for line in lines)
+    return "\n".join(filled)
+
+
+def _write_text(text: str, output: Path | None) -> None:
+    """Text to a file, or to standard output. Raises UsageError where it cannot be written."""
+    if output is None:
+        say(text)
+        return
+    check_writable(output)
+    with whole_file(output) as partial:
+        partial.write_text(text, encoding="utf-8")
 
 
 def _storage(name: str) -> Storage:

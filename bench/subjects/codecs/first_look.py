@@ -9,7 +9,8 @@ compiler says; `broken`, where it is not finite or does not end; `missing`, that
 what comes back, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`, a list of what is likely
 wrong, `hole`, a direction outside of the domain where it is not finite, and `is_unit`, where its codes fill [0, 1].
 Closely also `like`, the encodings of the catalogue that both its functions are, and `bad`, directions that come back
-elsewhere. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin: `error`, what it raises; `apart`, where it contradicts the GLSL.
+elsewhere. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
+`error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations

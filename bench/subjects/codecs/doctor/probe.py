@@ -68,7 +68,7 @@ class Trip:
     @property
     def is_finite(self) -> np.ndarray:
         """Which directions have a finite code that decodes to finite numbers, bool of shape (count,)."""
-        return np.isfinite(self.codes).all(axis=1) & np.isfinite(self.decoded).all(axis=1)
+        return np.asarray(np.isfinite(self.codes).all(axis=1) & np.isfinite(self.decoded).all(axis=1))
 
     @property
     def hole(self) -> str:

@@ -1,5 +1,6 @@
 """What is likely wrong with a user's encoder is named; of a right one nothing is said but what it is made for."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -280,6 +281,27 @@ def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
     path.write_text(FLAT)
     status, out, err = run("doctor", str(path))
     assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
+
+
+@pytest.mark.usefixtures("gl")
+def test_doctor_says_its_verdict_first_and_notes_apart(run, tmp_path):
+    """A note, such as a guess about the range of codes, is not a finding."""
+    path = tmp_path / "mine.glsl"
+    path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"))
+    status, out, _ = run("doctor", str(path))
+    verdict, about, notes, note = out.rstrip("\n").split("\n\n")
+    assert (status, verdict, notes) == (0, "nothing is likely wrong", "notes:")
+    assert about == "file mine.glsl, encoding mine, domain sphere" and note.startswith("- its codes are in [0, 1]")
+    rows = json.loads(run("doctor", str(path), "--format", "json")[1])
+    assert [row["kind"] for row in rows] == ["verdict", "note"] and rows[0]["finding"] == "nothing is likely wrong"
+    path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;", "normalize(n.yxz) * 1.5"))
+    status, out, _ = run("doctor", str(path))
+    verdict, about, findings, notes, note = out.rstrip("\n").split("\n\n")
+    assert (status, verdict, notes) == (1, "2 findings", "notes:") and findings.count("\n- ") == 1, out
+    rows = json.loads(run("doctor", str(path), "--format", "json")[1])
+    assert [row["kind"] for row in rows] == ["finding", "finding", "note"]
+    written = tmp_path / "said.md"
+    assert run("doctor", str(path), "-o", str(written))[0] == 1 and written.read_text().startswith("2 findings\n\n")
 
 
 @pytest.mark.usefixtures("gl")
