@@ -13,7 +13,7 @@ import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.storages.storage import Storage
+from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts import charts
 from ..ground.output.errors import UsageError, pick_one, tell
@@ -63,8 +63,11 @@ def examine_encoding(
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
     worse = _compared(found, codec) if found.is_measurable and not codec.misfit else []
-    # What is wasted is meant where the domain is; it is said all the same.
-    wrong, notes = ([*found.wrong], [*worse, *found.notes]) if domain else ([*found.wrong, *worse], found.notes)
+    rounded = _rounded_for(found, codec) if worse else ""
+    worse = [f"{line}; {rounded}" if rounded else line for line in worse]
+    # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
+    is_meant = bool(domain or rounded)
+    wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
     about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found)}
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
@@ -131,6 +134,16 @@ def _compared(found: Examined, codec: Codec) -> list[str]:
         return []
     how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
     return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}"]
+
+
+def _rounded_for(found: Examined, codec: Codec) -> str:
+    """To which steps the encoder rounds by itself, where the storage has others; else empty."""
+    lattice, size = found.lattice, codec.encoding.components
+    if lattice is None or lattice.is_of(codec.storage, size):
+        return ""
+    fitting = [one for one in STORAGES.values() if one.channels >= size and lattice.is_of(one, size)]
+    named = min(fitting, key=lambda one: one.channels, default=None)
+    return f"encode rounds to 1/{lattice.steps} itself" + (f": try --storage {named.name}" if named else "")
 
 
 def _means(codec: Codec) -> tuple[float, float]:

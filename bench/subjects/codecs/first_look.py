@@ -8,8 +8,9 @@ Prints a line of JSON of the GLSL, and another of the Python twin where there is
 compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
 what comes back, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`, a list of what is likely
 wrong, `hole`, a direction outside of the domain where it is not finite, and `is_unit`, where its codes fill [0, 1].
-Closely also `like`, the encodings of the catalogue that both its functions are, and `bad`, directions that come back
-elsewhere. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
+Closely also `like`, the encodings of the catalogue that both its functions are, `bad`, directions that come back
+elsewhere, `spared`, lines on ranges that may be unused, and `lattice`, to which bits it rounds by itself and whether in
+[0, 1]. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
 `error`, what it raises; `apart`, where it contradicts the GLSL.
 """
 
@@ -40,9 +41,10 @@ from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.words import is_translated, twin_of
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import Domain, guessed
-from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit
+from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit, spared
 from .doctor.likeness import likeness
-from .doctor.probe import VIEW, Probe, Trip, probe_of
+from .doctor.nearly import lattice_of
+from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import of_hlsl
@@ -135,7 +137,15 @@ def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
 
 
 def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
-    return {"like": likeness(gl, probe, domain).shared(domain.name), "bad": bad(probe, domain)[:MOST_BAD].tolist()}
+    found = trip_of(probe, directions())
+    found = found.of(found.is_finite)
+    lattice = lattice_of(found.codes)
+    return {
+        "like": likeness(gl, probe, domain).shared(domain.name),
+        "bad": bad(probe, domain)[:MOST_BAD].tolist(),
+        "spared": list(spared(found, probe)),
+        **({"lattice": [lattice.bits, lattice.is_unit]} if lattice else {}),
+    }
 
 
 def twin_look(path: Path) -> dict[str, Any]:

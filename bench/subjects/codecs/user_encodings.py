@@ -33,6 +33,7 @@ from ...shaders.languages.translated import glsl_file, translated
 from ...shaders.languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
 from . import tuned_names
 from .doctor.domains import SPHERE, Domain
+from .doctor.nearly import Lattice
 from .signatures import check_given, encode_of
 
 # Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
@@ -131,6 +132,7 @@ class Examined(NamedTuple):
         is_measurable: whether it can be measured.
         like: the name of the encoding of the catalogue that it is, whatever its axes; empty where it is none.
         bad: directions that come back elsewhere, in its own axes.
+        lattice: the steps that it rounds codes to by itself; None where it does not.
     """
 
     encoding: Encoding
@@ -140,6 +142,7 @@ class Examined(NamedTuple):
     is_measurable: bool
     like: str
     bad: list[list[float]]
+    lattice: Lattice | None
 
 
 def examined(path: Path, domain: str = ANY) -> Examined:
@@ -166,9 +169,11 @@ def examined(path: Path, domain: str = ANY) -> Examined:
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
     encoding = found.encoding(path)
-    notes = [*found.notes, *([TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else [])]
+    taken = [TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else []
+    notes = [*found.notes, *found.glsl.get("spared", []), *taken]
     wrong = [*broken, *found.wrong, *of_twin]
-    close = found.glsl.get("like", ""), found.glsl.get("bad", [])
+    lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
+    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice
     return Examined(encoding, found.domain, wrong, notes, not broken, *close)
 
 

@@ -85,7 +85,7 @@ def _diagnosed(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Di
     domain = meant or guessed(trip, within)
     wider = None if meant else _nearly_back(trip, domain)
     if wider and (found := list(nearly.mistakes(wider.held(trip), probe))):
-        return _nearly(trip, wider, found)
+        return _nearly(trip, probe, wider, found)
     if domain.name == HEMISPHERE and not meant and (half := list(_half(trip, probe, domain))):
         return Diagnosis(SPHERE, [*half, *_of_held(domain.held(trip), probe)])
     if domain.name and not _is_lost(trip, domain, within):
@@ -99,9 +99,9 @@ def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
     return wider if wider.name and wider != domain else None
 
 
-def _nearly(trip: Trip, domain: Domain, found: list[str]) -> Diagnosis:
+def _nearly(trip: Trip, probe: Probe, domain: Domain, found: list[str]) -> Diagnosis:
     """Of a domain that comes back nearly, and why."""
-    return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain)])
+    return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
 def _within(trip: Trip) -> float:
@@ -121,7 +121,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
     Args:
         is_meant: whether its author says that it is made for that; what it wastes is then meant as well.
     """
-    held, ranges = domain.held(trip), list(exact.ranges(trip, domain))
+    held, ranges = domain.held(trip), list(exact.ranges(trip, domain, probe))
     wasted = [] if is_meant else [*unread(probe, trip.codes), *(() if ranges else unused(held, probe))]
     return [*_of_held(held, probe), *wasted, *ranges]
 
@@ -161,9 +161,9 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
     """Of functions that are no pair, or not one on the domain that a user gives."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
     if given.name and (found := list(nearly.mistakes(given.held(trip), probe))):
-        return _nearly(trip, given, found)
+        return _nearly(trip, probe, given, found)
     likely = nearby if nearby.name else _likely(trip)
-    held, ranges = likely.held(trip), list(exact.ranges(trip, likely))
+    held, ranges = likely.held(trip), list(exact.ranges(trip, likely, probe))
     # What is clipped comes back elsewhere, whatever else is right.
     is_clipped = any(exact.CLIPPED in said for said in ranges)
     why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]

@@ -31,19 +31,27 @@ POLE_SHARE, POLE_DEG = 0.5, 0.06
 UNUSUAL = 30.0
 # How far beside a direction that comes back elsewhere others are tried, and how many of them.
 BESIDE, TRIES = 1e-4, 4
-CLIPPED = "storages clip what is beyond [-1, 1]"
+CLIPPED = "storages clip what is beyond"
+# A number of at most so many values tells them apart however much of its range it uses.
+FEW_VALUES = 16
 
 
 def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
-    """Whether every number of some codes lies in [0, 1] and, unless it is always the same, fills a share of it.
+    """Whether every number of some codes lies in [0, 1] and, unless it has few values, fills a share of it.
 
     Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
     """
     low, high = codes.min(axis=0), codes.max(axis=0)
     beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
     is_in = (beyond.mean(axis=0) < NEXT_TO_A_POLE) & (low > -FARTHER) & (high < 1 + FARTHER)
-    fills = (high - low > share) | (high == low)
-    return bool(is_in.all() and fills.all() and (high > low).any())
+    fills = high - low > share
+    return bool(is_in.all() and fills.any() and all(fills[at] or len(values(codes, at)) for at in range(len(fills))))
+
+
+def values(codes: np.ndarray, number: int) -> np.ndarray:
+    """The values of a number that has few, such as the face of a cube, ascending; empty where it has more."""
+    found = np.unique(np.round(codes[:, number], 4))
+    return found if len(found) <= FEW_VALUES else found[:0]
 
 
 def lost(trip: Trip, within: float = SAME_DEG) -> str:
@@ -116,7 +124,7 @@ def lengths(trip: Trip) -> Iterator[str]:
         yield f"{said}: {trip.example(at)}"
 
 
-def ranges(trip: Trip, domain: Domain) -> Iterator[str]:
+def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
     """Numbers that use less than a storage has, of all directions, or more, of those that the encoding is made for."""
     held = domain.held(trip)
     clipped = np.clip(trip.codes, -1, 1)
@@ -124,12 +132,23 @@ def ranges(trip: Trip, domain: Domain) -> Iterator[str]:
     size = trip.codes.shape[1]
     constant = [at for at in range(size) if high[at] - low[at] < 1e-4]
     for at in constant:
-        yield f"number {at + 1} of the code carries nothing: it is always {low[at]:.3g}"
+        yield f"number {at + 1} of the code carries nothing: it is always {probe.own(low[at]):.3g}"
     others = [at for at in range(size) if at not in constant]
     for at in others:
         if (np.abs(held.codes[:, at]) > 1 + BEYOND).mean() > FEW:
             worst = int(np.argmax(np.abs(held.codes[:, at])))
-            reach = f"number {at + 1} of the code is {held.codes[worst, at]:.4g} for {vector(held.n[worst])}"
-            yield f"{reach}: {CLIPPED}"
-        elif (used := (high[at] - low[at]) / 2) < USED:
-            yield f"number {at + 1} of the code is {low[at]:.3g} to {high[at]:.3g}: {100 * (1 - used):.0f} % is unused"
+            reached = probe.own(float(held.codes[worst, at]))
+            reach = f"number {at + 1} of the code is {reached:.4g} for {vector(held.n[worst])}"
+            yield f"{reach}: {CLIPPED} {probe.range}"
+        elif (used := (high[at] - low[at]) / 2) < USED and not len(values(trip.codes, at)):
+            between = f"{probe.own(low[at]):.3g} to {probe.own(high[at]):.3g}"
+            yield f"number {at + 1} of the code is {between}: {100 * (1 - used):.0f} % is unused"
+
+
+def spared(trip: Trip, probe: Probe) -> Iterator[str]:
+    """Numbers of few values that do not reach both ends of their range, which loses nothing unless bits are short."""
+    for at in range(probe.size):
+        found = values(trip.codes, at)
+        if len(found) > 1 and (found[-1] - found[0]) / 2 < USED:
+            some = f"{len(found)} values from {probe.own(found[0]):.3g} to {probe.own(found[-1]):.3g}"
+            yield f"number {at + 1} of the code has {some}; the rest of {probe.range} is unused"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .....encodings.storages.storage import Storage
 from ....ground.angles import angles_deg
 from ....ground.directions import unit
 from .probe import Probe, Trip
@@ -60,6 +61,11 @@ class Lattice:
     @property
     def steps(self) -> int:
         return 2 ** (self.bits - (not self.is_unit)) - 1
+
+    def is_of(self, storage: Storage, size: int) -> bool:
+        """Whether the first channels of a storage have these steps, as many as a code has numbers."""
+        scales = {storage.scale(at) for at in range(min(size, storage.channels))}
+        return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
     def whole(self, codes: np.ndarray) -> np.ndarray:
         """Codes in steps."""

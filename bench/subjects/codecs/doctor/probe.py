@@ -28,11 +28,22 @@ class Probe:
         encode: directions of shape (count, 3) to codes of shape (count, size).
         decode: codes to what comes back, as long as it is.
         size: how many numbers a code has.
+        is_unit: whether the user's own numbers are in [0, 1]: each is c / 2 + 1 / 2 of the c that a code has here.
     """
 
     encode: Callable[[np.ndarray], np.ndarray]
     decode: Callable[[np.ndarray], np.ndarray]
     size: int
+    is_unit: bool = False
+
+    @property
+    def range(self) -> str:
+        """What the user's own numbers lie in."""
+        return "[0, 1]" if self.is_unit else "[-1, 1]"
+
+    def own(self, number: float) -> float:
+        """A number of a code as the user's own code has it."""
+        return number * 0.5 + 0.5 if self.is_unit else number
 
 
 def of_unit(probe: Probe) -> Probe:
@@ -49,7 +60,7 @@ def probe_of(gl: Device, encoding: Encoding) -> Probe:
         view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(wide), 1))
         return exact_values(gl, encoding, wide, view, wide)
 
-    return Probe(lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size)
+    return Probe(lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size, encoding.is_unit)
 
 
 @dataclass(frozen=True)

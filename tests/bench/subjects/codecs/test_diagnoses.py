@@ -283,6 +283,59 @@ def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
     assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
 
 
+# A number for the face of a cube, which needs few values: its encode of face f, and its decode of number e.z.
+FACES = """vec3 mine_encode(vec3 n) {
+    vec3 a = abs(n);
+    bool is_z = a.z >= a.x && a.z >= a.y, is_y = a.y >= a.x;
+    vec3 t = is_z ? n : is_y ? n.zxy : n.yzx;
+    float f = 2.0 * (is_z ? 2.0 : is_y ? 1.0 : 0.0) + (t.z < 0.0 ? 1.0 : 0.0);
+    return vec3(t.xy / abs(t.z) * 0.5 + 0.5, ENCODE);
+}
+vec3 mine_decode(vec3 e) {
+    float f = floor(DECODE + 0.5), axis = floor(0.5 * f);
+    vec3 n = normalize(vec3(e.xy * 2.0 - 1.0, 1.0 - 2.0 * (f - 2.0 * axis)));
+    return axis == 2.0 ? n : axis == 1.0 ? n.yzx : n.zxy;
+}
+"""
+
+
+def faces(encode: str, decode: str) -> str:
+    return FACES.replace("ENCODE", encode).replace("DECODE", decode)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("steps, reach", [(8.0, 0.625), (16.0, 0.312)])
+def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, reach):
+    """A note says what is free, in the numbers of the user's own range."""
+    path = tmp_path / "mine.glsl"
+    path.write_text(faces(f"f / {steps}", f"e.z * {steps}"))
+    assert looked_at(tmp_path, path.read_text())["wrong"] == []
+    status, out, _ = run("doctor", str(path), "--format", "json")
+    notes = [row["finding"] for row in json.loads(out) if row["kind"] == "note"]
+    said = f"number 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
+    assert status == 0 and notes[1] == said
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_wrong_number_of_few_values_blames_no_other_number(tmp_path):
+    found = looked_at(tmp_path, faces("f / 6.0", "e.z * 5.0"))
+    assert found["is_unit"] and len(found["wrong"]) == 1 and "are not a pair" in found["wrong"][0]
+
+
+@pytest.mark.usefixtures("gl")
+def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
+    """What it loses in a storage of other steps is a note, with the storage that has its steps."""
+    path = tmp_path / "mine.glsl"
+    path.write_text(octahedral("floor(p * 127.0 + 0.5) / 127.0"))
+    status, out, _ = run("doctor", str(path), "--format", "json")
+    verdict, note = json.loads(out)
+    assert status == 0 and (verdict["kind"], note["kind"]) == ("verdict", "note")
+    assert note["finding"].startswith("in rgba8 this is octahedral, 46 % worse: ")
+    assert note["finding"].endswith("; encode rounds to 1/127 itself: try --storage rg8_snorm")
+    status, out, _ = run("doctor", str(path), "--storage", "rg8_snorm", "--format", "json")
+    assert status == 0 and len(json.loads(out)) == 1
+
+
 @pytest.mark.usefixtures("gl")
 def test_doctor_says_its_verdict_first_and_notes_apart(run, tmp_path):
     """A note, such as a guess about the range of codes, is not a finding."""
