@@ -68,12 +68,14 @@ def examine_encoding(
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found)}
+    about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found), "functions": found.functions}
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
         _write_text(_text(about, wrong, notes, format), output)
     else:
-        write([about | {"finding": line, "kind": kind} for line, kind in said], format, output)
+        functions = about.pop("functions")
+        rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in said]
+        write(rows, format, output)
     if plot and found.is_measurable:
         save_plot(plot, _picture(codec, found))
         tell(f"the error over the sphere is in {plot}")
@@ -87,7 +89,7 @@ def _lines(kind: str, lines: Sequence[str]) -> list[tuple[str, str]]:
 def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], format: str) -> str:
     """The verdict in a line, findings below it, and notes by themselves."""
     verdict = f"{len(wrong)} finding{'s' * (len(wrong) > 1)}" if wrong else RIGHT
-    parts = [verdict, f"file {about['file']}, encoding {about['encoding']}, domain {about['domain']}"]
+    parts = [verdict, ", ".join(f"{what} {value}" for what, value in about.items())]
     parts += [_list(wrong, format)] if wrong else []
     parts += ["notes:", _list(notes, format)] if notes else []
     return "\n\n".join(parts) + "\n"

@@ -24,8 +24,9 @@ from .plain import NotPlainError, plain
 from .programs import TranslationError, has_halves
 from .source import Source
 from .tools import ToolError
+from .words import TRANSLATED
 
-READ_BY = "it is read by {}'s compiler, as its own does not read it"
+READ_BY = "it is read by {}'s compiler, as the compiler of {} does not read it"
 IN_32_BITS = "half and min16float are computed in 32 bits; --arithmetic half computes in 16"
 
 
@@ -53,7 +54,7 @@ def _by_whoever_reads_it(path: Path, asked: tuple[str, str] | None, folder: Path
             found = _translated(path, asked, folder, other)
         except (TranslationError, NoPairError, NotPlainError, ToolError, MissingError):
             raise error from None
-        return found | {"notes": [*found["notes"], READ_BY.format(other)]}
+        return found | {"notes": [*found["notes"], READ_BY.format(other, TRANSLATED[path.suffix.lower()])]}
 
 
 def _translated(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:

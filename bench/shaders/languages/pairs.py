@@ -19,6 +19,9 @@ NORMAL = 3
 # UnpackNormalOctRectEncode of Unity's HDRP decodes.
 DECODES, ENCODES = ("unpack", "decode", "decompress"), ("pack", "encode", "compress")
 
+# In the name of a function that takes or gives a normal, in lower case.
+NORMALS = ("norm", "nrm", "oct", "unitvec", "direction")
+
 BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
 
 
@@ -142,9 +145,11 @@ def pair_of(found: Sequence[Function], asked: tuple[str, str] | None = None, fil
     pairs = [pair for pair in _fitting(found) if asked in (None, (pair.encode.name, pair.decode.name))]
     if asked:
         return _asked(found, asked, pairs)
-    best = _by_name(pairs) or _by_size(pairs)
+    best = sorted(_by_name(pairs) or _by_size(pairs), key=lambda pair: not speaks_of_normals(pair))
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
+    if names and (meant := _by_parameter(found, best)):
+        raise NoPairError(f"{BY_PARAMETER.format(meant)}, or name the two that are meant, such as {file}:{names[0]}")
     if len(names) == 1:
         return best[0]
     if names:
@@ -178,6 +183,24 @@ def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
     named = [pair for pair in pairs if role(pair.encode.name) == "encode" and role(pair.decode.name) == "decode"]
     same = [pair for pair in named if stem(pair.encode.name) == stem(pair.decode.name)]
     return same or named
+
+
+def _by_parameter(found: Sequence[Function], best: Sequence[Pair]) -> str:
+    """The function that is the partner by its name of one in the best pairs, but returns nothing; else empty.
+
+    What returns a code in its place is likely a helper of it.
+    """
+    if any(stem(pair.encode.name) == stem(pair.decode.name) for pair in best):
+        return ""
+    sides = {(role(one.name), stem(one.name)) for pair in best for one in (pair.encode, pair.decode)}
+    other = {"encode": "decode", "decode": "encode"}
+    voids = (one.name for one in found if one.gives_by_parameter)
+    return next((name for name in voids if (other.get(role(name)), stem(name)) in sides), "")
+
+
+def speaks_of_normals(pair: Pair) -> bool:
+    """Whether the names of a pair say that it is of normals, and not of colours or motion."""
+    return any(word in pair.named.lower() for word in NORMALS)
 
 
 def _by_size(pairs: Sequence[Pair]) -> list[Pair]:

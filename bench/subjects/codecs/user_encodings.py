@@ -133,6 +133,7 @@ class Examined(NamedTuple):
         like: the name of the encoding of the catalogue that it is, whatever its axes; empty where it is none.
         bad: directions that come back elsewhere, in its own axes.
         lattice: the steps that it rounds codes to by itself; None where it does not.
+        functions: its encoder and its decoder, ENCODE:DECODE.
     """
 
     encoding: Encoding
@@ -143,6 +144,7 @@ class Examined(NamedTuple):
     like: str
     bad: list[list[float]]
     lattice: Lattice | None
+    functions: str
 
 
 def examined(path: Path, domain: str = ANY) -> Examined:
@@ -160,6 +162,8 @@ def examined(path: Path, domain: str = ANY) -> Examined:
     if known and not path.exists():
         command = f"normalbench quality --encoding {known}"
         raise UsageError(f"{path} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
+    if path.is_file() and not names_an_encoder(str(path)):
+        raise UsageError(f"{path}: its name does not end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     found = _look(path, domain)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
@@ -173,8 +177,16 @@ def examined(path: Path, domain: str = ANY) -> Examined:
     notes = [*found.notes, *found.glsl.get("spared", []), *taken]
     wrong = [*broken, *found.wrong, *of_twin]
     lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
-    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice
+    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, _functions_in(path)
     return Examined(encoding, found.domain, wrong, notes, not broken, *close)
+
+
+def _functions_in(path: Path) -> str:
+    """The two functions of a file that are examined."""
+    if is_translated(path):
+        return ":".join(name for name, _ in translated(path).functions)
+    name, *_ = encode_of(path, read_shader(path))
+    return f"{name}_encode:{name}_decode"
 
 
 def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -> Encoding:

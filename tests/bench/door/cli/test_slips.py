@@ -110,6 +110,10 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     ),
     "a shader that is not there": ((*ROW, "--encoding", "missing.glsl"), "missing.glsl: there is no such file"),
     "a shader that is not text": ((*ROW, "--encoding", "bytes.glsl"), "bytes.glsl: it is not text in UTF-8"),
+    "doctor for a text": (
+        ("doctor", "words.txt"),
+        "words.txt: its name does not end in .glsl, .hlsl, .hlsli, .fx, .slang or .wgsl",
+    ),
     "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),
     "a capture of another kind": (("quality", "--normals", "frame.fbx1"), "a file that ends in .exr"),
@@ -171,6 +175,7 @@ FILES = {
     **dict.fromkeys(("mine.metal", "mine.wgsl"), HLSL),
     **dict.fromkeys(("bytes.glsl", "bytes.toml", "bytes.txt"), b"\xff\xfe\x00abc"),
     "hlsl.glsl": "float2 h_encode(float3 n, float3 v) { return n.xy; }",
+    "words.txt": "the uniform frames",
     "four.glsl": "vec4 f_encode(vec3 n, vec3 v) { return vec4(n, 1.0); }",
     "short.glsl": "vec2 s_encode(vec3 n) { return n.xy; }",
     "decode.glsl": "vec2 d_encode(vec3 n, vec3 view) { return n.xy; } vec3 d_decode(vec3 e) { return e; }",

@@ -43,6 +43,10 @@ def pair(text: str, asked=None) -> str:
             f"float2 mine_encode(float3 n) {OF} float3 mine_decode(float2 e) {OF} float2 OctWrap(float2 v) {OF}",
             "mine_encode:mine_decode",
         ),
+        (
+            f"float2 EncodeNormal(float3 n) {OF} {BACK} void PackNormal(float3 n, out float2 e) {OF}",
+            "EncodeNormal:DecodeNormal",
+        ),
     ],
 )
 def test_the_pair_of_a_file_is_found(text, named):
@@ -59,6 +63,26 @@ def test_the_pair_of_a_file_is_found(text, named):
             f"void EncodeNormal(float3 n, out float2 e) {OF} {BACK}",
             None,
             "EncodeNormal returns nothing; write a function",
+        ),
+        (
+            # A helper that returns the code is not the partner of the decoder by its name.
+            f"float2 octEncodeImpl(float3 n) {OF} void PackNormal(in float3 n, out float2 e) {OF} "
+            f"float3 UnpackNormal(float2 e) {OF}",
+            None,
+            "PackNormal returns nothing; write a function that returns what it gives through its parameter, or name "
+            "the two that are meant, such as mine.hlsl:octEncodeImpl:UnpackNormal",
+        ),
+        (
+            f"float2 PackNormal(float3 n) {OF} void UnpackNormal(float2 e, out float3 n) {OF} "
+            f"float3 octDecodeImpl(float2 e) {OF}",
+            None,
+            "UnpackNormal returns nothing; write a function",
+        ),
+        (
+            f"float3 EncodeColor(float3 c) {OF} float3 DecodeColor(float3 c) {OF} float2 EncodeMotion(float3 v) {OF}"
+            f"float3 DecodeMotion(float2 v) {OF} float2 EncodeOct(float3 n) {OF} float3 DecodeOct(float2 e) {OF}",
+            None,
+            "several encoders; name one: mine.hlsl:EncodeOct:DecodeOct, mine.hlsl:EncodeColor:DecodeColor",
         ),
         (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal gives a uint, but a code is two or three numbers"),
         (
