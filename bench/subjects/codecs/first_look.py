@@ -21,6 +21,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -144,7 +145,7 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
         "like": likeness(gl, probe, domain).shared(domain.name),
         "bad": bad(probe, domain)[:MOST_BAD].tolist(),
         "spared": list(spared(found, probe)),
-        **({"lattice": [lattice.bits, lattice.is_unit]} if lattice else {}),
+        **({"lattice": list(astuple(lattice))} if lattice else {}),
     }
 
 

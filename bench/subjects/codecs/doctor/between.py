@@ -22,6 +22,8 @@ SAME_DEG = 1.0
 # How many of the directions are tried: the last ones, which are random.
 TRIED = 512
 MOST = 0.95
+# Between two changes of a step; and how far beyond [-1, 1] codes may reach that a storage holds.
+THEN, BEYOND = ", then ", 0.01
 
 Change = Callable[[np.ndarray], np.ndarray]
 
@@ -44,7 +46,13 @@ def _same(codes: np.ndarray) -> np.ndarray:
 
 
 NOTHING = Step("", _same)
-RANGES = (NOTHING, Step("c * 0.5 + 0.5", lambda c: c * 0.5 + 0.5), Step("c * 2 - 1", lambda c: c * 2 - 1))
+RANGES = (
+    NOTHING,
+    Step("c * 0.5 + 0.5", lambda c: c * 0.5 + 0.5),
+    Step("c * 2 - 1", lambda c: c * 2 - 1),
+    Step("c + 0.5", lambda c: c + 0.5),
+    Step("c - 0.5", lambda c: c - 0.5),
+)
 
 
 def _turned(codes: np.ndarray) -> np.ndarray:
@@ -96,7 +104,7 @@ def steps(size: int) -> tuple[Step, ...]:
     """What is tried of codes of so many numbers, the plainest first, nothing left out."""
     kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
     made = [_one_after_another(parts) for parts in itertools.product(*kinds)]
-    return tuple(sorted(made, key=lambda step: (step.said.count(", then "), len(step.said))))[1:]
+    return tuple(sorted(made, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]
 
 
 def _one_after_another(parts: Sequence[Step]) -> Step:
@@ -105,7 +113,7 @@ def _one_after_another(parts: Sequence[Step]) -> Step:
             codes = part.change(codes)
         return codes
 
-    return Step(", then ".join(part.said for part in parts if part.said), change)
+    return Step(THEN.join(part.said for part in parts if part.said), change)
 
 
 def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> np.ndarray:
@@ -115,15 +123,24 @@ def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> n
 
 
 def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
-    """The plainest step that makes a pair, and of which directions; None where none does."""
+    """The plainest step that makes a pair, and of which directions; None where none does.
+
+    A decoder that normalises takes codes of several ranges: the widest one that a storage holds is named.
+    """
     few = trip.of(np.arange(len(trip.n) - TRIED, len(trip.n)))
-    tried = steps(probe.size)
+    tried, found = steps(probe.size), []
     for step, decoded in zip(tried, decoded_after(probe, few.codes, tried), strict=True):
         with np.errstate(invalid="ignore"):
             domain = guessed(Trip(few.n, few.view, few.codes, decoded), SAME_DEG)
         if domain.name:
-            return step, domain
-    return None
+            found.append((step, domain))
+    return min(found, key=lambda one: _unlikely(one[0], few.codes), default=None)
+
+
+def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
+    """How many changes a step has, whether its codes reach beyond [-1, 1], and how little of it they use."""
+    changed = step.change(codes)
+    return step.said.count(THEN), bool(np.abs(changed).max() > 1 + BEYOND), -round(float(np.ptp(changed)), 1)
 
 
 def axes_of(trip: Trip) -> str:

@@ -25,6 +25,7 @@ NEARLY_DEG = 10.0
 OF_A_STEP_DEG = 600.0
 # By what the angles of one half are larger than those of the other where an encoding is made for that one alone.
 FAR_BETTER = 2.0
+NO_PAIR = "encode and decode are not a pair"
 
 
 @dataclass(frozen=True)
@@ -166,8 +167,34 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
     held, ranges = likely.held(trip), list(exact.ranges(trip, likely, probe))
     # What is clipped comes back elsewhere, whatever else is right.
     is_clipped = any(exact.CLIPPED in said for said in ranges)
-    why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
-    return Diagnosis(given if given.name else SPHERE, [*why, *unread(probe, trip.codes), *exact.lengths(held), *ranges])
+    scaled = _scaled(trip, held, probe) if is_clipped and not _is_back_unclipped(held, probe) else ""
+    if scaled:
+        ranges, why = [], [f"{_apart(held, likely)}; {scaled}"]
+    else:
+        why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
+    # What a wrong code decodes to may have any length.
+    lengths = [] if any(NO_PAIR in said for said in why) else exact.lengths(held)
+    return Diagnosis(given if given.name else SPHERE, [*why, *unread(probe, trip.codes), *lengths, *ranges])
+
+
+def _is_back_unclipped(trip: Trip, probe: Probe) -> bool:
+    """Whether codes come back that reach beyond what a storage holds."""
+    whole = replace(trip, decoded=probe.decode(trip.codes))
+    return bool(np.median(whole.angles()) < SAME_DEG)
+
+
+def _scaled(trip: Trip, held: Trip, probe: Probe) -> str:
+    """The scale between the two that makes a pair, if of a half alone; empty where none does."""
+    begin = nearly.start(held, probe)
+    decoded = probe.decode(begin.of(trip.codes).astype(np.float32))
+    domain = guessed(replace(trip, decoded=decoded), NEARLY_DEG)
+    found = list(nearly.mistakes(domain.held(trip) if domain.name else held, probe, begin))
+    return found[0] if found else ""
+
+
+def _apart(held: Trip, likely: Domain) -> str:
+    """How far the two are from a pair."""
+    return f"{NO_PAIR}: {held.angles().mean():.3g} degrees apart on average{_where(likely)} without any storage"
 
 
 def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
@@ -178,9 +205,7 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
         if axes := axes_of(half.held(trip)):
             held = half.held(trip)
             return f"directions with {half.text} come back with {axes}{_or_numbers(trip, probe)}: {held.worst}"
-    apart = f"{held.angles().mean():.3g} degrees apart on average{_where(likely)} without any storage"
-    said = f"encode and decode are not a pair: {apart}"
-    return f"{said}; {_what_fits(trip, probe, gl, likely) or held.worst}"
+    return f"{_apart(held, likely)}; {_what_fits(trip, probe, gl, likely) or held.worst}"
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
@@ -200,9 +225,8 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
     if between := step_between(trip, probe):
         step, domain = between
         return f"{step.said} between the two makes one{_where(domain)}"
-    held = likely.held(trip)
-    if scaled := list(nearly.mistakes(held, probe, nearly.start(held, probe))):
-        return scaled[0]
+    if scaled := _scaled(trip, likely.held(trip), probe):
+        return scaled
     like = likeness(gl, probe, likely)
     if like.encoder and like.decoder and not like.shared():
         return f"encode is that of {like.encoder[0]}, decode that of {like.decoder[0]}"

@@ -28,6 +28,8 @@ FITTINGS, KEPT, LEAST_COUNT, LEAST_SPREAD = 3, 0.9, 16, 0.1
 ALIKE = 0.02
 # Of a shift: how much those of numbers may differ that are one, and of half a step, how near it must be to it.
 ALIKE_SHIFTS, NEAR_A_HALF = 0.1, 0.02
+# How near to 0, to -1 or to 0.5 is the point about which codes are scaled.
+NEAR_A_POINT = 0.05
 # Scales this near are not told apart; and how near to a fraction, of its distance from 1, a scale is it.
 UNTOLD, OF_A_FRACTION = 1e-7, 0.003
 # By how much a mistake that is named makes the error smaller at least.
@@ -53,14 +55,16 @@ class Lattice:
 
     Attributes:
         is_unit: whether (c + 1) / 2 is a multiple, as UNORM has it; else c, as SNORM has it.
+        is_one_more: whether there is one step more than the bits have: 256 in place of 255.
     """
 
     bits: int
     is_unit: bool
+    is_one_more: bool = False
 
     @property
     def steps(self) -> int:
-        return 2 ** (self.bits - (not self.is_unit)) - 1
+        return 2 ** (self.bits - (not self.is_unit)) - (not self.is_one_more)
 
     def is_of(self, storage: Storage, size: int) -> bool:
         """Whether the first channels of a storage have these steps, as many as a code has numbers."""
@@ -80,30 +84,46 @@ class Lattice:
 def lattice_of(codes: np.ndarray) -> Lattice | None:
     """The coarsest steps that all codes lie on; None where they lie on none."""
     for bits in BITS:
-        for is_unit in (True, False):
-            found = Lattice(bits, is_unit)
+        for found in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
             whole = found.whole(codes.astype(np.float64))
             if (np.abs(whole - np.rint(whole)) < WHOLE).mean() > 0.999 and len(np.unique(np.rint(whole))) > 8:
                 return found
     return None
 
 
-def start(trip: Trip, probe: Probe) -> float:
-    """The scale of codes at which most comes back best, of a few."""
-    tried = [float(scale) for scale in np.geomspace(1 / FARTHEST, FARTHEST, SCALES)]
+@dataclass(frozen=True)
+class Start:
+    """Where the search for a scale begins: codes times `scale`, about a point of each number."""
+
+    scale: float = 1.0
+    about: float = 0.0
+
+    @property
+    def shift(self) -> float:
+        """What is added to scale times a number."""
+        return self.about * (1 - self.scale)
+
+    def of(self, codes: np.ndarray) -> np.ndarray:
+        """Codes at which it begins."""
+        return codes * self.scale + self.shift
+
+
+UNCHANGED = Start()
+
+
+def start(trip: Trip, probe: Probe) -> Start:
+    """The scale of codes at which most comes back best, of a few, about 0 and about the middle of [0, 1]."""
+    scales = np.geomspace(1 / FARTHEST, FARTHEST, SCALES)
+    tried = [Start(float(scale), about) for about in (0.0, 0.5) for scale in scales]
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
-    given = np.concatenate([few.codes * np.float32(scale) for scale in tried])
+    given = np.concatenate([one.of(few.codes).astype(np.float32) for one in tried])
     back = np.split(probe.decode(given), len(tried))
     return min(zip(tried, back, strict=True), key=lambda one: float(np.median(angles_deg(few.n, one[1]))))[0]
 
 
-def wanted(trip: Trip, probe: Probe, scale: float = 1.0) -> np.ndarray:
-    """The codes that the decoder wants, of shape (count, size); NaN where Newton's method leads to none.
-
-    Args:
-        scale: times the encoder's codes is where it begins.
-    """
-    codes = trip.codes.astype(np.float64) * scale
+def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
+    """The codes that the decoder wants, of shape (count, size); NaN where Newton's method leads to none."""
+    codes = begin.of(trip.codes.astype(np.float64))
     for _ in range(ROUNDS):
         codes = codes + _towards(trip.n, codes, probe)
     return codes
@@ -128,10 +148,11 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
     return made - (codes - at)
 
 
-def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, scale: float) -> Fit:
+def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
     """A line through most of the wanted numbers, by least squares on what lies nearest, again and again."""
     x, y = given[:, at], wanted_codes[:, at]
-    kept, shift = np.isfinite(y) & (np.abs(y - scale * x) < 0.5), 0.0
+    scale, shift = begin.scale, begin.shift
+    kept = np.isfinite(y) & (np.abs(y - begin.of(x)) < 0.5)
     for _ in range(FITTINGS):
         if kept.sum() < LEAST_COUNT or np.ptp(x[kept]) < LEAST_SPREAD:
             return Fit(at + 1, 1.0, 0.0)
@@ -141,35 +162,35 @@ def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, scale: float) -> 
     return Fit(at + 1, float(scale), float(shift))
 
 
-def mistakes(trip: Trip, probe: Probe, scale: float = 1.0) -> Iterator[str]:
+def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str]:
     """What the numbers of codes are scaled or shifted by between the two, or how they are cut off.
 
     Args:
-        scale: about what codes must be multiplied by.
+        begin: about what codes must be changed by.
     """
     lattice = lattice_of(trip.codes)
-    x, y = trip.codes.astype(np.float64), wanted(trip, probe, scale)
+    x, y = trip.codes.astype(np.float64), wanted(trip, probe, begin)
     moving = [at for at in range(probe.size) if np.nanmax(np.abs(y[:, at] - x[:, at]), initial=0.0) > 0]
     if not moving:
         return
     if lattice:
         yield from _of_lattice(x[:, moving], y[:, moving], lattice)
         return
-    fits, better = [_fit(at, x, y, scale) for at in moving], trip.codes.copy()
+    fits, better = [_fit(at, x, y, begin) for at in moving], trip.codes.copy()
     for at, fit in zip(moving, fits, strict=True):
         better[:, at] = x[:, at] * fit.scale + fit.shift
     after = Trip(trip.n, trip.view, better, probe.decode(better)).angles()
     if FEWER * np.median(after) < np.median(trip.angles()):
-        yield from _said(fits, trip)
+        yield from _said(fits, trip, probe)
 
 
-def _said(fits: list[Fit], trip: Trip) -> Iterator[str]:
+def _said(fits: list[Fit], trip: Trip, probe: Probe) -> Iterator[str]:
     shown = f"up to {np.quantile(trip.angles(), 0.99):.3g} degrees off without any storage"
     scale = np.array([1 / fit.scale for fit in fits])
     # Where c is 0, and where it is at its ends: a shift in [0, 1] is one of the scale, too.
     shift = np.array([-fit.shift / fit.scale for fit in fits])
     if not _is_shift(scale, shift):
-        yield f"encode gives {_scale_said(fits, scale, shift)} the code that decode takes: {shown}"
+        yield f"encode gives {_scale_said(fits, scale, shift, probe)}: {shown}"
     elif bits := _half_step(float(shift.mean())):
         size = "large" if shift.mean() > 0 else "small"
         yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added to what is rounded later?"
@@ -189,16 +210,35 @@ def _half_step(shift: float) -> int:
     return next((bits for bits, share in halves if abs(share - 1) < NEAR_A_HALF), 0)
 
 
-def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray) -> str:
+def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Probe) -> str:
     """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
-    if np.ptp(scale) <= ALIKE * np.abs(scale - 1).max():
-        return f"{_fraction(float(scale.mean()))} times"
+    if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
+        one = float(scale.mean())
+        return f"{_fraction(one)} times the code that decode takes{_about(one, float(shift.mean()), probe)}"
     off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
     said = [
         f"{scale[at]:.3g} times number {fits[at].number}{_shift_said(scale[at], shift[at])}"
         for at in np.flatnonzero(off)
     ]
-    return f"{' and '.join(said)} of"
+    return f"{' and '.join(said)} of the code that decode takes"
+
+
+def _about(scale: float, shift: float, probe: Probe) -> str:
+    """What stays where it is when codes are scaled, if that is not 0: 0.5, or else a shift in the user's own range."""
+    own = (1 - scale + shift) / 2 if probe.is_unit else shift
+    stays = own / (1 - scale)
+    # Codes in [0, 1] that have become [-1, 1] by the user's own doing are scaled about -1.
+    if abs(stays) < NEAR_A_POINT or (abs(stays + 1) < NEAR_A_POINT and not probe.is_unit):
+        return ""
+    if abs(stays - 0.5) < NEAR_A_POINT:
+        return ", around 0.5"
+    return f", {'plus' if own > 0 else 'minus'} {_of_steps(abs(own))}"
+
+
+def _of_steps(shift: float) -> str:
+    """A shift as one step of some bits, where it is one: 1/255."""
+    steps = next((2**bits - 1 for bits in BITS if abs(shift * (2**bits - 1) - 1) < NEAR_A_HALF), 0)
+    return f"1/{steps}" if steps else f"{shift:.3g}"
 
 
 def _shift_said(scale: float, shift: float) -> str:

@@ -37,6 +37,20 @@ def with_code(code: str, text: str = RIGHT) -> str:
     return text.replace("return CODE;", f"return {code};").replace("CODE", "c")
 
 
+# J. Mittring's spheremap in [0, 1]: what the encoder's square root is of, and a third of the direction that comes back.
+MAPPED = """vec2 mine_encode(vec3 n) { return n.xy / sqrt(max(ROOT, 1e-6)) + 0.5; }
+vec3 mine_decode(vec2 e) {
+    vec2 g = e * 4.0 - 2.0;
+    float f = dot(g, g);
+    return vec3(g * SIDE, 1.0 - f / 2.0);
+}
+"""
+
+
+def mapped(root: str = "n.z * 8.0 + 8.0", side: str = "sqrt(max(1.0 - f / 4.0, 0.0))") -> str:
+    return MAPPED.replace("ROOT", root).replace("SIDE", side)
+
+
 # What stands between the encoder and the decoder, and what is said of it.
 PAIRS = {
     "half of the range": (with_code("c * 0.5 + 0.5"), "c * 2 - 1 between the two makes one"),
@@ -58,6 +72,33 @@ PAIRS = {
     "a range and swapped": (
         with_code("c.yx * 0.5 + 0.5"),
         "c * 2 - 1, then its numbers swapped, c.yx between the two makes one",
+    ),
+    "twice a half map": (
+        HEMI.replace("BEFORE", "").replace(") * 0.5", ")"),
+        "encode gives 2 times the code that decode takes: up to",
+    ),
+    "4 for 8 in a root": (
+        mapped("n.z * 4.0 + 4.0"),
+        "are not a pair: 46.7 degrees apart on average without any storage; "
+        "encode gives 1.4142 times the code that decode takes, around 0.5: up to",
+    ),
+    "half of [0, 1]": (
+        "vec3 mine_encode(vec3 n) { return n * 0.5; }\nvec3 mine_decode(vec3 e) { return normalize(e * 2.0 - 1.0); }\n",
+        "c + 0.5 between the two makes one",
+    ),
+    "a scale and a shift": (
+        RIGHT.replace("CODE", "(c * 127.0 + 128.0) / 255.0").replace("vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"),
+        "encode gives 254/255 times the code that decode takes, plus 1/255: up to",
+    ),
+    "a scale alone": (
+        RIGHT.replace("CODE", "(c * 0.5 + 0.5) * (254.0 / 255.0)").replace("vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"),
+        "encode gives 254/255 times the code that decode takes: up to",
+    ),
+    "256 for 255": (
+        RIGHT.replace("CODE", "floor((c * 0.5 + 0.5) * 255.0 + 0.5) / 256.0").replace(
+            "vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"
+        ),
+        "encode gives 255/256 times the code that decode takes: it rounds to 255 steps",
     ),
     "another decoder of the catalogue": (
         with_code("c").split("vec3 mine_decode")[0] + decoder("spheremap"),
@@ -83,6 +124,15 @@ def test_what_makes_a_pair_is_named(tmp_path, what):
     text, said = PAIRS[what]
     found = findings(tmp_path, text)
     assert found and said in found[0], found
+
+
+@pytest.mark.parametrize("text", [mapped("n.z * 4.0 + 4.0"), mapped(side="(1.0 - f / 4.0)")])
+def test_what_a_wrong_code_decodes_to_lacks_no_normalize(tmp_path, text):
+    """Its length is wrong as well, but normalize() would leave its direction wrong."""
+    (said,) = findings(tmp_path, text)
+    assert "are not a pair" in said
+    # The right one loses the pole where all directions meet, and nothing else.
+    assert findings(tmp_path, mapped()) == ["a pole is lost: (0, 0, -1) becomes (0, 0, 1)"]
 
 
 def test_the_other_ones_fold_is_named(tmp_path):
