@@ -25,7 +25,7 @@ NEARLY_DEG = 10.0
 OF_A_STEP_DEG = 600.0
 # By what the angles of one half are larger than those of the other where an encoding is made for that one alone.
 FAR_BETTER = 2.0
-NO_PAIR = "encode and decode are not a pair"
+NO_PAIR, MAKES_ONE = "encode and decode are not a pair", "between the two makes one"
 
 
 @dataclass(frozen=True)
@@ -172,8 +172,10 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
         ranges, why = [], [f"{_apart(held, likely)}; {scaled}"]
     else:
         why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
-    # What a wrong code decodes to may have any length.
+    # What a wrong code decodes to may have any length, and what stands between the two changes the range.
     lengths = [] if any(NO_PAIR in said for said in why) else exact.lengths(held)
+    if any(MAKES_ONE in said for said in why):
+        ranges = [said for said in ranges if exact.UNUSED not in said]
     return Diagnosis(given if given.name else SPHERE, [*why, *unread(probe, trip.codes), *lengths, *ranges])
 
 
@@ -224,7 +226,7 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
         return mistakes[0]
     if between := step_between(trip, probe):
         step, domain = between
-        return f"{step.said} between the two makes one{_where(domain)}"
+        return f"{step.said} {MAKES_ONE}{_where(domain)}"
     if scaled := _scaled(trip, likely.held(trip), probe):
         return scaled
     like = likeness(gl, probe, likely)

@@ -31,7 +31,7 @@ POLE_SHARE, POLE_DEG = 0.5, 0.06
 UNUSUAL = 30.0
 # How far beside a direction that comes back elsewhere others are tried, and how many of them.
 BESIDE, TRIES = 1e-4, 4
-CLIPPED = "storages clip what is beyond"
+CLIPPED, UNUSED = "storages clip what is beyond", "% is unused"
 # A number of at most so many values tells them apart however much of its range it uses.
 FEW_VALUES = 16
 
@@ -142,7 +142,7 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
             yield f"{reach}: {CLIPPED} {probe.range}"
         elif (used := (high[at] - low[at]) / 2) < USED and not len(values(trip.codes, at)):
             between = f"{probe.own(low[at]):.3g} to {probe.own(high[at]):.3g}"
-            yield f"number {at + 1} of the code is {between}: {100 * (1 - used):.0f} % is unused"
+            yield f"number {at + 1} of the code is {between}: {100 * (1 - used):.0f} {UNUSED}"
 
 
 def spared(trip: Trip, probe: Probe) -> Iterator[str]:

@@ -126,6 +126,11 @@ def test_what_makes_a_pair_is_named(tmp_path, what):
     assert found and said in found[0], found
 
 
+def test_a_step_between_the_two_is_all_that_is_said(tmp_path):
+    """Half of the range is unused before it, and nothing after it."""
+    assert len(findings(tmp_path, PAIRS["half of [0, 1]"][0])) == 1
+
+
 @pytest.mark.parametrize("text", [mapped("n.z * 4.0 + 4.0"), mapped(side="(1.0 - f / 4.0)")])
 def test_what_a_wrong_code_decodes_to_lacks_no_normalize(tmp_path, text):
     """Its length is wrong as well, but normalize() would leave its direction wrong."""
