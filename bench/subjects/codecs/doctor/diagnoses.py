@@ -68,7 +68,7 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
     found = _diagnosed(kept, probe, gl, meant)
     if found.domain in whole:
         return replace(found, hole=trip.hole)
-    if found.wrong:
+    if found.wrong or found.domain != SPHERE:
         return replace(found, broken=found.domain.held(trip).hole)
     # All that is finite comes back. Where that is nearly the sphere, its author may rely on the rest as well.
     is_a_fault = trip.is_finite.mean() > MOST

@@ -222,6 +222,14 @@ def test_a_code_that_is_finite_on_its_half_alone_is_measured_there(run, tmp_path
     assert status == 0 and "it is meant for normals with z >= 0; elsewhere encode of (-0.707, 0, -0.707)" in out
 
 
+def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
+    """A root of a rounding below 0 on the rim: NaN stays a finding of z >= 0."""
+    text = "vec2 dir_encode(vec3 n) { return n.xy * 0.5 + 0.5; }\n"
+    text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"
+    (tmp_path / "dir.glsl").write_text(text)
+    assert "no number" in first_look(tmp_path / "dir.glsl")["broken"]
+
+
 SPHEREMAP = """vec2 dir_encode(vec3 n) { return n.xy / sqrt(8.0 * n.z + 8.0) + 0.5; }
 vec3 dir_decode(vec2 e) {
     vec2 g = e * 4.0 - 2.0;
