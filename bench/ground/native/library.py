@@ -51,11 +51,11 @@ def compiler() -> str:
         return ""
 
 
-def source(name: str, function: str, given: Sequence[str], **numbers: int) -> str:
-    """A file of this folder as C source that `library` can compile.
+def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> str:
+    """A file as C source that `library` can compile.
 
     Args:
-        name: the file's.
+        file: its C, below what this adds.
         function: what it calls, as `c_function` writes it.
         given: the types of what the function takes of the array `given`.
         numbers: further macros.
@@ -67,7 +67,7 @@ def source(name: str, function: str, given: Sequence[str], **numbers: int) -> st
         *(f"#include <{header}>" for header in HEADERS),
         *(f"#define {name} {what}" for name, what in known.items()),
     ]
-    return "\n".join((*lines, VIEWED, function, Path(__file__).with_name(name).read_text(encoding="utf-8")))
+    return "\n".join((*lines, VIEWED, function, file.read_text(encoding="utf-8")))
 
 
 def library(text: str, *functions: str) -> ctypes.CDLL:

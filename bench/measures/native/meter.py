@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import jax.numpy as jnp
@@ -17,6 +18,7 @@ from ..metrics.histogram import BINS, bin_of, bins_of, lower_edge
 from ..metrics.meter import Load, errors, is_smaller, worst_of
 from ..metrics.totals import Figures, Part, Worst
 
+HERE = Path(__file__).parent
 FLOAT = np.dtype(np.float32)
 FLOATS = Vec3(FLOAT, FLOAT, FLOAT)
 # Normals that are measured at once.
@@ -67,7 +69,7 @@ def _row() -> ctypes.CDLL:
         return squared, article, angle, *(jnp.asarray(one, jnp.int32) for one in (invalid, bins_of(angle, True)))
 
     function = c_function("errors_of", errors_of, FLOATS, FLOATS)
-    made = library(source("row.c", function, (), bins=BINS, block=BLOCK), "row", "moments", "in_bin")
+    made = library(source(HERE / "row.c", function, (), bins=BINS, block=BLOCK), "row", "moments", "in_bin")
     made.in_bin.restype = ctypes.c_size_t
     return made
 
@@ -87,7 +89,7 @@ class NativeMeter:
         types = [type(one)(*[FLOAT] * len(one)) for one in given]
         self._given = np.array([number for one in given for number in one], np.float64)
         function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
-        text = source("decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
+        text = source(HERE / "decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
         self._library = library(text, "decode")
         decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
         self._codec, self._row = ctypes.byref(_Codec(decode, address(self._given))), _row()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ....encodings.vec import Vec3
 from ...ground.native.elementwise import c_function, c_type
 from ...ground.native.library import address, library, source
 
+SOURCE = Path(__file__).with_suffix(".c")
 LANE = np.dtype(np.uint32)
 
 
@@ -26,7 +28,7 @@ class Fill:
 
     def __init__(self, made: Callable[..., Vec3], types: Sequence[np.dtype]):
         function = c_function("made", made, LANE, *types)
-        self._library = library(source("fill.c", function, [*map(c_type, types)]), "fill")
+        self._library = library(source(SOURCE, function, [*map(c_type, types)]), "fill")
 
     def __call__(self, count: int, *given: int) -> Vec3:
         """The normals of numbers 0 to count - 1."""

@@ -10,6 +10,7 @@ import pytest
 
 from normalbench.bench.ground.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
 from normalbench.bench.ground.native.library import address, library, source
+from normalbench.bench.subjects.normals import fill
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
 
@@ -34,7 +35,7 @@ WORDS = np.array([0, 1, 2, 3, 31, 255, 2**16 + 1, 2**31 - 1, 2**31, 2**32 - 1, 0
 def by_c(function, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     kind = jax.eval_shape(function, a, b).dtype
     written = c_function("function", function, a.dtype, b.dtype) + LOOP
-    text = source("fill.c", written, [], FROM=c_type(a.dtype), TO=c_type(kind))
+    text = source(fill.SOURCE, written, [], FROM=c_type(a.dtype), TO=c_type(kind))
     made = library(text.partition("\nvoid fill")[0], "each")
     found = np.empty(len(a), kind)
     made.each(ctypes.c_size_t(len(a)), *map(address, (a, b, found)))
