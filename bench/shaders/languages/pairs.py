@@ -149,7 +149,7 @@ def pair_of(found: Sequence[Function], asked: tuple[str, str] | None = None, fil
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
     if names and (meant := _by_parameter(found, best)):
-        raise NoPairError(f"{BY_PARAMETER.format(meant)}, or name the two that are meant, such as {file}:{names[0]}")
+        raise NoPairError(BY_PARAMETER.format(meant))
     if len(names) == 1:
         return best[0]
     if names:
