@@ -124,8 +124,8 @@ class Program:
             lambda d: f"{self.one('min', 'max')}({v('I', d)}, {v('I', d)})",
             self.shifted,
         ]
-        # GLSL leaves the remainders of negative numbers open.
-        inner = "abs({})" if self.language == "glsl" else "({})"
+        # WGSL alone defines the remainders of negative numbers whose signs differ.
+        inner = "({})" if self.language == "wgsl" else "abs({})"
         found.append(lambda d: f"({inner.format(v('I', d))} {self.one('%', '/')} {self.rng.integers(2, 7)})")
         return found
 

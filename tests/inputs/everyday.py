@@ -103,6 +103,15 @@ GLSL: Mapping[str, str] = MappingProxyType(
         "longitude at the poles": "vec2 mine_encode(vec3 n) { return vec2(atan(n.y, n.x) / 3.1415926536, n.z); }\n"
         "vec3 mine_decode(vec2 e) { float a = e.x * 3.1415926536, s = sqrt(max(1.0 - e.y * e.y, 0.0));"
         "return vec3(cos(a) * s, sin(a) * s, e.y); }",
+        "constant vectors compared": _encode(
+            "const vec2 w = vec2(2.0, 0.5); bvec2 t = lessThan(abs(vec2(1.5, -1.0)), w); a *= t.x ? 0.5 : 1.0;"
+            "a += 0.1 * vec2(t.y ? 1.0 : 0.5, any(lessThan(vec2(1.0, 3.0), w)) ? 0.5 : 0.25);"
+        ),
+        "less and greater in one place": _encode(
+            "bool b = a.x < n.y && n.z > (n.x > 0.1 ? 0.2 : a.y); a *= b ? 0.5 : 0.75;"
+            "a += 0.1 * mine_f(a.x < n.x, a.y > (b ? n.y : n.z));",
+            "vec2 mine_f(bool x, bool y) { return vec2(x ? 0.5 : 1.0, y ? 0.25 : 0.75); }",
+        ),
         "usual functions": _encode(
             "a = smoothstep(-1.0, 1.0, a) * 2.0 - 1.0; a += reflect(a, vec2(0.6, 0.8)) * 0.1 * distance(a, n.xy);"
             "a *= degrees(radians(0.5)); a -= 0.1 * sign(vec2(ivec2(sign(n.xy))));"

@@ -6,8 +6,22 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .parser import COMPARES
-from .tree import Binary, Call, Choice, Construct, Declare, Elements, Expression, Literal, Name, Program, Table, size_of
-from .writer import FIELDS, INDENT, PRIMARY, Writer, words
+from .tree import (
+    Binary,
+    Call,
+    Choice,
+    Construct,
+    Declare,
+    Elements,
+    Expression,
+    Literal,
+    Name,
+    Program,
+    Table,
+    inside,
+    size_of,
+)
+from .writer import FIELDS, INDENT, PRIMARY, UNARY, Writer, is_less, words
 
 KINDS: Mapping[str, str] = MappingProxyType(
     {
@@ -17,6 +31,9 @@ KINDS: Mapping[str, str] = MappingProxyType(
     }
     | {f"mat{size}": f"float{size}x{size}" for size in (2, 3, 4)}
 )
+
+
+TRUTHS = frozenset(("&&", "||"))
 
 
 class HlslWriter(Writer):
@@ -48,11 +65,15 @@ class HlslWriter(Writer):
         "groupshared if else for while do switch case break continue return void float int uint bool true false "
         "associatedtype property where each expand internal This get set init is as none"
     )
+    has_templates = True
     # A choice by components that is longer than this is a function of its own: it would be written for each of them.
     most_letters = 120
 
     def _program(self, program: Program) -> str:
         self._choices: dict[str, tuple[str, str]] = {}
+        declared = (node for function in program.functions for node in inside(function.body))
+        constants = [*program.constants, *(one for one in declared if isinstance(one, Declare) and one.is_constant)]
+        self._constants = {constant.name for constant in constants}
         text = super()._program(program)
         return "".join(f"{made}\n\n" for _, made in self._choices.values()) + text
 
@@ -72,13 +93,29 @@ class HlslWriter(Writer):
     def _binary(self, value: Binary) -> tuple[str, int]:
         if value.operator == "*" and "mat" in value.left.kind + value.right.kind:
             return f"mul({self._text(value.right)}, {self._text(value.left)})", PRIMARY
+        # glslang makes one truth value of two constant vectors.
+        if value.operator in COMPARES and size_of(value.kind) > 1 and self._is_constant(value):
+            parts = ", ".join(self._component(value, field) for field in FIELDS[: size_of(value.kind)])
+            return f"{self._kind(value.kind)}({parts})", PRIMARY
         return super()._binary(value)
+
+    def _is_constant(self, value: Expression) -> bool:
+        nodes = list(inside(value))
+        names = {node.name for node in nodes if isinstance(node, Name)}
+        return names <= self._constants and not any(isinstance(node, Call) and node.is_own for node in nodes)
+
+    def _operand(self, parent: Binary, child: Expression, least: int) -> str:
+        """An operand: Slang takes `a < b && c > (d)` for a generic function of b && c."""
+        return super()._operand(parent, child, UNARY if parent.operator in TRUTHS and is_less(child) else least)
 
     def _choice(self, value: Choice) -> tuple[str, int]:
         """Of vectors one component after the other: HLSL 2021 has no `?:` of vectors, earlier ones have no select."""
         size = size_of(value.condition.kind)
         if size == 1:
-            return super()._choice(value)
+            text, level = super()._choice(value)
+            condition = self._text(value.condition)
+            is_unclear = is_less(value.condition) and ">" in text
+            return f"({condition}){text.removeprefix(condition)}" if is_unclear else text, level
         whole = value.condition, value.chosen, value.other
         parts = [tuple(self._component(one, field) for one in whole) for field in FIELDS[:size]]
         text = ", ".join(map("{0[0]} ? {0[1]} : {0[2]}".format, parts))

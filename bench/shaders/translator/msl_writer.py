@@ -85,7 +85,7 @@ class MslWriter(Writer):
     def _choice(self, value: Choice) -> tuple[str, int]:
         if size_of(value.condition.kind) == 1:
             return super()._choice(value)
-        return f"select({', '.join(map(self._text, (value.other, value.chosen, value.condition)))})", PRIMARY
+        return f"select({self._arguments((value.other, value.chosen, value.condition))})", PRIMARY
 
     def _fetch(self, value: Call) -> str:
         table, place, _ = map(self._text, value.arguments)

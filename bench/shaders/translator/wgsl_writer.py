@@ -39,6 +39,8 @@ RESERVED = words(
 class WgslWriter(Writer):
     """WGSL; `group` is where tables are bound."""
 
+    has_templates = True
+
     kinds: Mapping[str, str] = MappingProxyType(
         {
             "float": "f32",
@@ -139,7 +141,7 @@ class WgslWriter(Writer):
 
     def _choice(self, value: Choice) -> tuple[str, int]:
         parts = (value.other, value.chosen, value.condition)
-        return f"select({', '.join(map(self._text, parts))})", PRIMARY
+        return f"select({self._arguments(parts)})", PRIMARY
 
     def _fetch(self, value: Call) -> str:
         return f"textureLoad({', '.join(map(self._text, value.arguments))})"

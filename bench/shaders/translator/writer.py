@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
 from .parser import BINDING, COMPARISONS, SHIFTS
@@ -69,6 +69,7 @@ class Writer:
         splats: whether a function of vectors takes no scalar in place of one.
         has_rich_parameters: whether functions take and give arrays, and change what they are given.
         assigns_to_parts: whether several components of a vector are assigned to at once.
+        has_templates: whether `a < b, c > (d)` may be read as a template and a call.
         kinds: types' names where they are not GLSL's.
         functions: built-in functions' names where they are not GLSL's.
         reserved: words that no variable may be called.
@@ -78,6 +79,7 @@ class Writer:
     functions: Mapping[str, str] = {}
     reserved: frozenset[str] = frozenset()
     float_suffix = ""
+    has_templates = False
     head = ""
     has_tables = True
     splats = False
@@ -326,13 +328,20 @@ class Writer:
         if self.splats and value.name in MIXING and not value.is_own:
             value = Call(value.kind, value.name, [_splat(a, value.kind) for a in value.arguments])
         name = value.name if value.is_own else self.functions.get(value.name, value.name)
-        return f"{name}({', '.join(map(self._text, value.arguments))})"
+        return f"{name}({self._arguments(value.arguments)})"
+
+    def _arguments(self, values: Sequence[Expression]) -> str:
+        """What a function is given. f(a < b, c > (d)) may be read as a template's name and a call."""
+        return ", ".join([*map(self._before_others, values[:-1]), *map(self._text, values[-1:])])
+
+    def _before_others(self, value: Expression) -> str:
+        return self._text(value, UNARY if self.has_templates and is_less(value) else 0)
 
     def _fetch(self, value: Call) -> str:
         return f"texelFetch({', '.join(map(self._text, value.arguments))})"
 
     def _construct(self, value: Construct) -> str:
-        return f"{self._kind(value.kind)}({', '.join(map(self._text, value.arguments))})"
+        return f"{self._kind(value.kind)}({self._arguments(value.arguments)})"
 
     def _elements(self, value: Elements) -> str:
         kind, _, count = value.kind.partition("[")
@@ -363,6 +372,11 @@ def _is_unclear(parent: Binary, child: Binary) -> bool:
     """Whether languages or readers differ in which of two operations binds more tightly."""
     compares = parent.operator in ("&&", "||") and child.operator not in MIXED
     return (parent.operator in MIXED or child.operator in MIXED) and not compares
+
+
+def is_less(value: Expression) -> bool:
+    """Whether a value begins as the name of a template does."""
+    return isinstance(value, Binary) and value.operator == "<"
 
 
 def words(text: str) -> frozenset[str]:
