@@ -235,6 +235,25 @@ def _is_anothers(module: list[str], own: str) -> bool:
     return len(module) > 3 and module[2] != own and module[3] in ("work", "pictures")
 
 
+# Turns that a reader of a message, a help text or a definition stumbles over.
+BANNED = re.compile(r"\bso (?:many|few)\b|\bof which (?:every|some)\b|^And \w|\bbeside\b(?!:)|\bis said to\b", re.I)
+
+
+def _texts(path: Path) -> set[str]:
+    """The sentences of a file, less its docstrings; of the command line these as well, which are help."""
+    tree = ast.parse(path.read_text())
+    found = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docstrings = {ast.get_docstring(node, clean=False) for node in ast.walk(tree) if isinstance(node, documented)}
+    return {text for text in found if " " in text} - (set() if path.parent == BENCH / "door" / "cli" else docstrings)
+
+
+def test_what_users_read_has_no_banned_turn():
+    texts = {(path.name, text) for path in SOURCES for text in _texts(path)}
+    wrong = sorted(f"{name}: {text[:100]!r}" for name, text in texts if BANNED.search(text))
+    assert not wrong, wrong
+
+
 def test_what_the_set_up_imports_is_there():
     """A script that asks for a name of an older version installs everything anew, and says that it is missing."""
     asked = [

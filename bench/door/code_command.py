@@ -100,7 +100,7 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
         if row["verdict"] == NOT_RUN:
             tell(f"{codec.name} in {language}: {row['says']}")
         if code.interface.tables and output is None:
-            raise UsageError(f"{codec.encoding.name} has look-up tables beside its code: name a folder with -o")
+            raise UsageError(f"{codec.encoding.name} comes with look-up tables: name a folder with -o")
         _save(code, head(code, codec, _command(codec, language, prefix), row["says"], said()), output)
     return status
 

@@ -58,7 +58,7 @@ ENCODING = LightEncoding(
     citation="B. Karis, RGBM color encoding, 2009; J. Ols, Prelighting & Log-Lights, 2009",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(3, 2),
-    ulps_reason="a reciprocal and three products; a multiplier beside a tie may be the next",
+    ulps_reason="a reciprocal and three products; a multiplier next to a tie may be the next",
     constants={"RGBM_RANGE": RANGE, "RGBM_STEPS": STEPS, "RGBM_SLACK": SLACK},
     ranged=ranged,
 )

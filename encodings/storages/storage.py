@@ -200,7 +200,7 @@ def storage_of(name: str) -> Storage | None:
         return STORAGES.get(name)
     made = across("snorm" if match[3] else "unorm", tuple(map(int, match[2][1:].split("_"))))
     if made.name != name:
-        raise ValueError(f"{name}: so many bits lie in {made.name}")
+        raise ValueError(f"{name}: these bits are called {made.name}")
     return made
 
 

@@ -20,7 +20,7 @@ MATERIAL = f"{ALBEDO}; rgba8: specular.r specular.g specular.b power"
 # What a normal that stands with its roughness is measured beside.
 COLOURS = f"{ALBEDO}; {SPECULAR}"
 # An engine keeps other things beside its normal than this renderer's materials need.
-ENGINE = " (its normal; what lies beside it is this renderer's)"
+ENGINE = " (its normal; the rest is this renderer's)"
 NRD = "NVIDIA-RTX/NRD, Shaders/NRD.hlsli (a822d87)"
 
 

@@ -56,7 +56,7 @@ def pick(
 
     Args:
         storage: Storages, comma-separated, or all; `normalbench list` shows them.
-        bytes: Every storage of so many bytes a texel, comma-separated, in place of --storage.
+        bytes: Bytes of a texel, comma-separated: all storages of that size, not --storage.
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. Default: those of --domain.
@@ -177,8 +177,8 @@ def render(
         pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
         layout: Layouts: names or TOML files.
         encoding: Encodings or files to put into each layout, comma-separated, or all.
-        storage: And their storages. Default: rgba8.
-        rounding: And how those round. Default: nearest.
+        storage: Storages of the codes, or all. Default: rgba8.
+        rounding: Roundings, or all. Default: nearest.
         light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
@@ -228,7 +228,7 @@ def mix(
 ) -> Rows:
     """What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.
 
-    Each codec is said to be filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs that are not.
+    The verdict of each codec: filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs that are not.
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
@@ -400,8 +400,8 @@ def effects(
         effect: Effects to measure, each alone, with settings: gtao:size=half; comma-separated, or all.
         pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
         encoding: Encodings or files, each in an exact layout; comma-separated, or all.
-        storage: And their storages.
-        rounding: And how those round.
+        storage: Storages of the codes, comma-separated, or all; `normalbench list` shows them.
+        rounding: Roundings: nearest, truncate, truncate_half; or all.
         depth: Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: linear/packed16,window/depth24,window/depth32f.
         layout: Layouts: names or TOML files.
         scene: Scenes or mesh files. Default: what shows the effect.

@@ -288,7 +288,7 @@ def report(
     ] = False,
     pictures: Annotated[
         PicturePlace,
-        typer.Option("--pictures", help="In the page, as many as keep it small; or all of them, in files beside it."),
+        typer.Option("--pictures", help="inside: as many as keep the page small; beside: all, in files next to it."),
     ] = PicturePlace.inside,
     output: Annotated[
         Path | None,
@@ -299,7 +299,7 @@ def report(
 
     Several runs on one page: what differs, on which machines, and every figure side by side.
 
-    The charts lie beside the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
+    The charts lie next to the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
     """
     from ...show.report import report_command
 

@@ -33,9 +33,9 @@ LONGEST = 60
 OF_DEVICE = ("device", "browser", "made", "program", "sources", "renderer", "vendor")
 # The columns of the index that no table has.
 INDEXED = {
-    "agree": "Codecs of which every code equals the run's.",
-    "differ": "Codecs of which some code does not.",
-    "further": "Codecs of which some code is further than one step from the run's.",
+    "agree": "Codecs with every code equal to the run's.",
+    "differ": "Codecs with a code that is not the run's.",
+    "further": "Codecs with a code more than one step from the run's.",
     "least_same_percent": "The least share of codes that equal the run's, of all codecs. Unit: %.",
     "differs_most": "The codec with that share.",
     "fastest": "The codec with the least time to encode and decode.",

@@ -41,7 +41,7 @@ def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[s
     try:
         normals = Normals(max(count // (FAST_BLOCK * CORES), 1) * FAST_BLOCK * CORES)
     except MemoryError as error:
-        raise MissingError(f"--count {count}: this machine has not the memory for so many normals") from error
+        raise MissingError(f"--count {count}: this machine lacks the memory for that many normals") from error
     with normals:
         works = {size: normals.work(lambda given, _: given, size) for size in sorted({_size(case) for case in asked})}
         made: dict[Case, Work | str] = {}

@@ -84,8 +84,8 @@ COLUMNS = (
     _count(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs beside. TeraScale: bundles. Broadcom: instructions. Empty for "
-        "Intel, NVIDIA and Qualcomm.",
+        "transcendental one issues once and runs in another unit. TeraScale: bundles. Broadcom: instructions. Empty "
+        "for Intel, NVIDIA and Qualcomm.",
     ),
     _count(
         "executed_slots",
@@ -108,8 +108,8 @@ COLUMNS = (
     ),
     _count(
         "transcendental",
-        "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit beside. Intel: `math`, "
-        "which also divides integers. NVIDIA: `MUFU`. TeraScale, Broadcom: instructions that hold one.",
+        "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit of their own. Intel: "
+        "`math`, which also divides integers. NVIDIA: `MUFU`. TeraScale, Broadcom: instructions that hold one.",
     ),
     _count("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
     _count(

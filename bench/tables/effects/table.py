@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Images, Layouts, Lights, Objects, Option, Pipelines, Repeats, Seed, Size
+from ...ground.options.option import Images, Layouts, Lights, Names, Objects, Option, Pipelines, Repeats, Seed, Size
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -41,8 +41,11 @@ class EffectsOptions:
         str | None,
         Option("--encoding", "Encodings or files, each in an exact layout; comma-separated, or all.", True, True),
     ] = None
-    storage: Annotated[str, Option("--storage", "And their storages.", in_run=True)] = "rgba8"
-    rounding: Annotated[str, Option("--rounding", "And how those round.", in_run=True)] = "nearest"
+    storage: Annotated[str, Option("--storage", f"Storages of the codes, {Names}.", in_run=True)] = "rgba8"
+    rounding: Annotated[
+        str,
+        Option("--rounding", "Roundings: nearest, truncate, truncate_half; or all.", in_run=True),
+    ] = "nearest"
     depth: Annotated[
         str | None,
         Option("--depth", f"Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: {DEPTHS}."),

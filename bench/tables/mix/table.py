@@ -220,7 +220,7 @@ TABLE = Table(
     name="mix",
     package=__package__ or "",
     help="What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.\n\n"
-    "Each codec is said to be filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` "
+    "The verdict of each codec: filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` "
     "leaves out codecs that are not.",
     example="normalbench mix --encoding octahedral,xyz --storage rgba8 --angle 5",
     options=MixOptions,

@@ -40,7 +40,8 @@ class PickOptions(Reading):
 
     storage: StorageNames = "rg8,rgb10a2"
     bytes: Annotated[
-        str | None, Option("--bytes", "Every storage of so many bytes a texel, comma-separated, in place of --storage.")
+        str | None,
+        Option("--bytes", "Bytes of a texel, comma-separated: all storages of that size, not --storage."),
     ] = None
     encoding: Encodings = "all"
     against: Annotated[

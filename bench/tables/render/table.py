@@ -41,8 +41,13 @@ class RenderOptions:
         str | None,
         Option("--encoding", "Encodings or files to put into each layout, comma-separated, or all.", True, True),
     ] = None
-    storage: Annotated[str | None, Option("--storage", "And their storages. Default: rgba8.", in_run=True)] = None
-    rounding: Annotated[str | None, Option("--rounding", "And how those round. Default: nearest.", in_run=True)] = None
+    storage: Annotated[
+        str | None, Option("--storage", "Storages of the codes, or all. Default: rgba8.", in_run=True)
+    ] = None
+    rounding: Annotated[
+        str | None,
+        Option("--rounding", "Roundings, or all. Default: nearest.", in_run=True),
+    ] = None
     light_buffer: LightBuffers = "rgba32f"
     light_targets: LightTargets = "2"
     scene: Scenes = "gloss"

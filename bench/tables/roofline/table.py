@@ -66,7 +66,7 @@ COLUMNS = (
     Column("megabytes", "Megabytes that are written and read in a frame.", better="less", drops=8),
     Column("memory_us", "How long the bytes take.", unit="us", better="less", drops=4),
     Column("alu_us", "How long the instructions take.", unit="us", better="less", drops=4),
-    Column("frame_us", "The longer of the two: they run beside each other.", unit="us", better="less"),
+    Column("frame_us", "The longer of the two: they run at the same time.", unit="us", better="less"),
     Column("bound", "Which of the two is longer: memory or alu.", HOW),
     Column("rank", "The place by frame_us among the codes on this GPU, size and reads; equal ones share it.", HOW),
     Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),

@@ -56,9 +56,9 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
     shown = address if len(address) <= 60 else f"{address[:57]}..."
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", address) or address.startswith("//"):
         raise SceneFileError(
-            f"{path}: {place}: {shown!r} is elsewhere, and nothing is fetched; save it beside the file"
+            f"{path}: {place}: {shown!r} is elsewhere, and nothing is fetched; save it next to the file"
         )
-    outside = SceneFileError(f"{path}: {place}: {shown!r} leaves the file's folder; save it beside the file")
+    outside = SceneFileError(f"{path}: {place}: {shown!r} leaves the file's folder; save it next to the file")
     words = re.split(r"[/\\]", unquote(address))
     if ".." in words or not words[0] or "\0" in address:
         raise outside

@@ -327,7 +327,7 @@ def one_direction(tmp_path):
         (["stereographic", "--table", "x.npy"], "no look-up"),
         (["stereographic", "--seed", "-1"], "--seed -1"),
         (["stereographic", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),
-        (["stereographic", "--storage", "rg8_9_9"], "so many bits lie in rgb8_9_9"),
+        (["stereographic", "--storage", "rg8_9_9"], "these bits are called rgb8_9_9"),
     ],
 )
 def test_what_cannot_be_tuned_is_one_line(run, arguments, said):

@@ -94,8 +94,8 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 def _where(gone: Trip, is_fold: bool) -> str:
     """What single directions have in common; those of an octahedral fold are where a number to be folded is 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
-        return "sign() is 0 where a number is 0: only directions with a 0 in them are lost, not those beside them"
-    return "only directions with equal numbers or a 0 in them are lost, not those beside them: a comparison or sign()"
+        return "sign() is 0 where a number is 0: only directions with a 0 in them are lost, not those next to them"
+    return "only directions with equal numbers or a 0 in them are lost, not those next to them: a comparison or sign()"
 
 
 def poles(trip: Trip) -> Iterator[str]:

@@ -310,7 +310,7 @@ def test_check_says_of_every_language_how_many_texels_differ(run):
         (["octahedral/rgb8_12_12+xyz"], "chain"),
         (["octahedral:arithmetic=half"], "half arithmetic"),
         (["xyz", "--storage", "rg8"], "3 components"),
-        (["spherical_lut", "--storage", "rg8"], "look-up tables beside its code"),
+        (["spherical_lut", "--storage", "rg8"], "comes with look-up tables: name a folder"),
         (["xyz,octahedral", "--prefix", "same", "-o", "made"], "would collide"),
         (["xyz", "--prefix", "1x"], "a letter first"),
         (["xyz", "--prefix", "a b"], "single underscores"),
