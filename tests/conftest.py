@@ -182,7 +182,7 @@ def results(tmp_path_factory):
     with (shared / "results.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not said.exists():
-            command = [sys.executable, "-m", "normalbench.bench", *SMALL_RUN, "-o", str(folder)]
+            command = [sys.executable, "-m", "normalbench", *SMALL_RUN, "-o", str(folder)]
             done = subprocess.run(command, capture_output=True, text=True)
             assert done.returncode == 0, done.stderr
             said.write_text(json.dumps([done.stdout, done.stderr]))

@@ -274,7 +274,7 @@ def a_copy_of_the_rooms(folder: Path) -> Path:
 
 
 def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "normalbench.bench", *arguments]
+    command = [sys.executable, "-m", "normalbench", *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 

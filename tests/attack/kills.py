@@ -40,7 +40,7 @@ WITH_TIMES = {".json", ".csv", ".parquet", ".html", ".jsonl", ".svg"}
 def started(folder: Path, arguments: list[str]) -> subprocess.Popen[str]:
     # With a trace of what crashes.
     environment = os.environ | {"PYTHONFAULTHANDLER": "1"}
-    command = [sys.executable, "-m", "normalbench.bench", "run", "-o", str(folder), *arguments]
+    command = [sys.executable, "-m", "normalbench", "run", "-o", str(folder), *arguments]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
 
 

@@ -374,7 +374,7 @@ def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
 def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_path):
     """At 8 and 10 bits at least 99.9 % of the codes are equal and none is further than a step; by SwiftShader, which
     rounds every sum and root as IEEE 754 says, all of them are."""
-    command = (sys.executable, "-m", "normalbench.bench", "run", "--tables", "quality", "--encoding", "all")
+    command = (sys.executable, "-m", "normalbench", "run", "--tables", "quality", "--encoding", "all")
     sets = (
         "--storage",
         "rgba8,rgb10a2,rg8,rg16f,rgba16f",

@@ -258,7 +258,7 @@ def test_sources_are_known_by_their_content():
 
 
 def begun(folder: Path, *arguments: str) -> subprocess.Popen:
-    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth", "-o", str(folder), *arguments]
+    command = [sys.executable, "-m", "normalbench", "run", "--tables", "depth", "-o", str(folder), *arguments]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 

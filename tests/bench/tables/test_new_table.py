@@ -77,7 +77,7 @@ def copy(tmp_path_factory):
 
 
 def command(copy: Path, *arguments: str) -> subprocess.CompletedProcess:
-    words = [sys.executable, "-m", "normalbench.bench", *arguments]
+    words = [sys.executable, "-m", "normalbench", *arguments]
     return subprocess.run(words, cwd=copy, capture_output=True, text=True)
 
 

@@ -30,7 +30,7 @@ QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normal
 
 
 def in_a_process(*arguments: str, **environment: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "normalbench.bench", *arguments]
+    command = [sys.executable, "-m", "normalbench", *arguments]
     return subprocess.run(command, capture_output=True, text=True, env=os.environ | environment)
 
 
@@ -282,7 +282,7 @@ def test_a_link_that_leads_to_no_folder_is_one_line(run, tmp_path, monkeypatch, 
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM])
 def test_an_ended_run_keeps_its_rows_and_says_how_to_go_on(tmp_path, ended):
     folder = tmp_path / "results"
-    command = [sys.executable, "-m", "normalbench.bench", "run", "--tables", "depth,quality", "-o", str(folder)]
+    command = [sys.executable, "-m", "normalbench", "run", "--tables", "depth,quality", "-o", str(folder)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + 60
         while not (folder / "rows.jsonl").exists() or (folder / "rows.jsonl").read_bytes().count(b"\n") < 3:
@@ -304,7 +304,7 @@ def test_output_that_cannot_be_written_is_one_line():
     if not Path("/dev/full").is_char_device():
         pytest.skip("no /dev/full here")
     with Path("/dev/full").open("w") as full:
-        command = [sys.executable, "-m", "normalbench.bench", "list"]
+        command = [sys.executable, "-m", "normalbench", "list"]
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode == 2 and done.stderr == "normalbench: cannot write: No space left on device\n"
 
@@ -321,7 +321,7 @@ def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkey
 
 
 def test_a_reader_that_has_seen_enough_is_no_error():
-    command = f"{sys.executable} -m normalbench.bench list | true; exit ${{PIPESTATUS[0]}}"
+    command = f"{sys.executable} -m normalbench list | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == ""
 

@@ -113,7 +113,7 @@ def is_there(process: int) -> bool:
 def test_no_process_outlives_a_run(tmp_path, ended):
     """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
     words = ("run", "--tables", "effects,depth", "-o", "ended")
-    command = [sys.executable, "-m", "normalbench.bench", *words]
+    command = [sys.executable, "-m", "normalbench", *words]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         rows, until = tmp_path / "ended/rows.jsonl", time.monotonic() + 120
         while not (rows.exists() and b'"table": "depth"' in rows.read_bytes()):
@@ -168,7 +168,7 @@ def measured(folder: Path, *more: str, **variables: str) -> str:
     """What a process says of one code whose caches lie in a folder."""
     words = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     own = {name: value for name, value in environment().items() if not name.startswith("JAX_")}
-    command = [sys.executable, "-m", "normalbench.bench", *words, *more, "--format", "json"]
+    command = [sys.executable, "-m", "normalbench", *words, *more, "--format", "json"]
     done = subprocess.run(
         command, env=own | {"XDG_CACHE_HOME": str(folder)} | variables, capture_output=True, text=True
     )

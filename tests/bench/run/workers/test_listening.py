@@ -17,7 +17,7 @@ from manual import PAGES, ROOT
 from normalbench.bench.run.workers.scheduler import HOST
 from normalbench.bench.run.workers.worker import interface_towards
 
-NORMALBENCH = [sys.executable, "-m", "normalbench.bench"]
+NORMALBENCH = [sys.executable, "-m", "normalbench"]
 # Long enough for ten looks at its sockets while the workers are there.
 LONG = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "2^20")
 # 127.0.0.1, ::1 and the former as IPv6, as the kernel writes them: words of 32 bits in the machine's own order.
@@ -165,7 +165,7 @@ def test_the_manuals_commands_measure_over_tls(started, tmp_path):
         shlex.split(line.replace("10.0.0.5", HOST).replace("8786", port).replace("8787", str(free_port())))
         for line in block("commands")
     ]
-    scheduler, worker, asks = [[sys.executable, "-m", MODULES[words[0]], *words[1:]] for words in commands]
+    scheduler, worker, asks = [[sys.executable, "-m", *words] for words in commands]
     looked_at(started(scheduler, **there), fewest=2, looks=1)
     looked_at(started(worker, **there), fewest=2, looks=1)
     rows = subprocess.run([*asks, "--backend", "jax", "--format", "csv"], capture_output=True, text=True, **there)
@@ -175,6 +175,3 @@ def test_the_manuals_commands_measure_over_tls(started, tmp_path):
     assert stranger.returncode == 2 and "no certificates" in stranger.stderr
     plain = subprocess.run([*asks[:-1], f"tcp://{HOST}:{port}"], capture_output=True, text=True, **there)
     assert plain.returncode == 2 and len(plain.stderr.splitlines()) == 1 and "REQUIRE_ENCRYPTION is set" in plain.stderr
-
-
-MODULES = {"dask": "dask", "normalbench": "normalbench.bench"}

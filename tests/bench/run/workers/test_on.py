@@ -68,7 +68,7 @@ def test_the_worker_command_refuses_a_bad_address(run):
 
 def test_the_start_imports_neither_dask_nor_jax():
     done = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "normalbench.bench", "quality", "--help"],
+        [sys.executable, "-X", "importtime", "-m", "normalbench", "quality", "--help"],
         capture_output=True,
         text=True,
     )
@@ -131,7 +131,7 @@ MANY = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphe
 
 
 def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "normalbench.bench", *MANY, *words, "-o", str(folder / "rows.json")]
+    command = [sys.executable, "-m", "normalbench", *MANY, *words, "-o", str(folder / "rows.json")]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
 

@@ -267,7 +267,7 @@ def test_tables_of_an_import_that_was_killed_are_written_by_the_next(run, tmp_pa
 def test_a_killed_import_keeps_all_or_nothing(tmp_path, folder):
     """Ended by SIGKILL at five moments."""
     before, path = content_of(folder), made.write(tmp_path / "a.json")
-    words = [sys.executable, "-m", "normalbench.bench", "import", str(path), "-o", str(folder)]
+    words = [sys.executable, "-m", "normalbench", "import", str(path), "-o", str(folder)]
     for at in range(0, 20, 4):
         for name, data in before.items():
             (folder / name).write_bytes(data)

@@ -97,7 +97,7 @@ sys.exit(os.waitstatus_to_exitcode(status))
 
 def measured(folder: Path, *names: str) -> tuple[list[dict], str]:
     """The rows of files by name, and what was said; in a process whose memory is watched."""
-    command = [sys.executable, "-m", "normalbench.bench", "quality", "--encoding", ",".join(names), "--format", "json"]
+    command = [sys.executable, "-m", "normalbench", "quality", "--encoding", ",".join(names), "--format", "json"]
     command += ["--normals", "hemisphere", "--count", "4096", "--storage", "rgba8"]
     peak = folder / "peak"
     watched = [sys.executable, "-c", WATCHED, str(peak), *command]
