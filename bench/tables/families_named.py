@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..ground.options.gpu_families import CHOICES
+from ..ground.options import gpu_families
 from ..ground.output.errors import UsageError, pick
 from .roofline.rates import GPUS
 
@@ -16,4 +16,4 @@ def families_named(names: str) -> list[str]:
     words = [word.strip() for word in names.split(",")]
     if gpu := next((word for word in words if word.lower() in GPUS), None):
         raise UsageError(f"{gpu} is a GPU and not a family; its family is {GPUS[gpu.lower()].family}")
-    return list(dict.fromkeys(name for several in pick("family", names, CHOICES) for name in several))
+    return list(dict.fromkeys(name for several in pick("family", names, gpu_families.CHOICES) for name in several))

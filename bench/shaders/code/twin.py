@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import jax
-import jax.numpy as jnp
-
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec3
@@ -22,6 +19,10 @@ def has_twin(encoding: Encoding) -> bool:
     # Tracing takes a tenth of a second, and those of the catalogue all have one.
     if is_in_catalogue(encoding):
         return True
+    # It takes a second to import, which whoever measures nothing need not wait for.
+    import jax
+    import jax.numpy as jnp
+
     n = Vec3(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 3)
     try:
         jax.eval_shape(encoding.encode, n, n)

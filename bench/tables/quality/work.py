@@ -64,8 +64,10 @@ def cases(options: QualityOptions) -> list[measure.Case]:
         leave_out(line)
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
     said = [word.strip() for word in options.normals.split(",")]
-    names = dict.fromkeys(name for codec in codecs for name in _set_names(said, codec))
-    normal_sets = normal_sets_named(",".join(names), count, options.seed, options.reading, needs_rays)
+    names = options.normals
+    if DOMAIN in said:
+        names = ",".join(dict.fromkeys(name for codec in codecs for name in _set_names(said, codec)))
+    normal_sets = normal_sets_named(names, count, options.seed, options.reading, needs_rays)
     made = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
     return [case for case in made if _is_asked(case, said)]
 

@@ -261,9 +261,7 @@ HOWS = ("never", "worse", "change")
 def in_a_copy(folder: Path, name: str) -> None:
     words = ["run", "--tables", "quality", "--encoding", "stereographic,octahedral,xyz", "--storage", "rg8,rgba8"]
     words += ["--normals", "hemisphere", "--count", "4096", "-o", name]
-    done = subprocess.run(
-        [sys.executable, "-m", "normalbench", *words], cwd=folder, capture_output=True, text=True
-    )
+    done = subprocess.run([sys.executable, "-m", "normalbench", *words], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 

@@ -152,7 +152,7 @@ def test_an_effect_lights_the_image_of_other_tables(run):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (("--effect", "lvp"), "unknown effect 'lvp'; known: all, "),
+        (("--effect", "lvp"), "unknown effect 'lvp'; did you mean lpv? known: all, "),
         (("--effect", "lpv:steps=2"), "effect lpv has no setting 'steps'; known: iterations"),
         (("--effect", "lpv:iterations=9"), "effect lpv: iterations=9 is not a whole number from 0 to 8"),
         (

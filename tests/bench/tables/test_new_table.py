@@ -14,7 +14,7 @@ TABLE = """
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...options.option import Option, Seed
+from ...ground.options.option import Option, Seed
 from ..table import Column, Role, Section, Table
 
 

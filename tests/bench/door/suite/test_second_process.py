@@ -62,7 +62,7 @@ def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
 def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
     """A second process that dies costs time and no rows; what it said last is told."""
     cores(2)
-    monkeypatch.setattr(second, "CHILD", [sys.executable, "-c", "raise SystemExit('broken')"])
+    monkeypatch.setattr(second, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
     assert status == 0 and read_run(tmp_path / "run").finished, err
     assert set(read_run(tmp_path / "run").tables) == {"mix", "effects", "quality"}
@@ -89,7 +89,7 @@ def test_an_error_there_is_an_error_here(run, tmp_path, cores, monkeypatch):
     """One line, the same exit status, and what was measured is kept."""
     cores(2)
     line = json.dumps({"error": "cannot write x.npz: No space left on device", "status": 2})
-    monkeypatch.setattr(second, "CHILD", [sys.executable, "-c", f"print({line!r})"])
+    monkeypatch.setattr(second, "python", lambda _: [sys.executable, "-c", f"print({line!r})"])
     status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
     assert status == 2 and err == "normalbench: cannot write x.npz: No space left on device\n"
     assert set(read_run(tmp_path / "run").tables) == {"effects"}

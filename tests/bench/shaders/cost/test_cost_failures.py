@@ -423,7 +423,7 @@ def test_the_help_of_run_names_cost():
     "words, said",
     [
         (["--encoding", "nope"], "unknown encoding 'nope'"),
-        (["--family", "gcn"], "unknown family 'gcn'; known: all, polaris10"),
+        (["--family", "gcn"], "unknown family 'gcn'; did you mean vega10? known: all, polaris10"),
         (["--stage", "vertex"], "unknown stage 'vertex'"),
         (["--operation", "sign"], "unknown operation 'sign'"),
         (["--storage", "13:13"], "unknown storage '13:13'"),

@@ -73,7 +73,7 @@ def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
     status, out, _ = run("render", "--encoding", path, *render)
     assert status == 0 and json.loads(out)[0]["encoding"] == f"mine.{ending}"
     status, out, _ = run("doctor", path, "--format", "json")
-    assert status == 0 and "made for normals with z >= 0 alone" in json.loads(out)[0]["finding"]
+    assert status == 0 and "made for normals with z >= 0 alone" in out
 
 
 @pytest.mark.slow
@@ -151,7 +151,7 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
     assert first == pytest.approx(second, rel=1e-6)
     assert [row["code_range"] for row in rows] == [None, "[0, 1]"] and "[0, 1]" not in err
     _, out, _ = run("doctor", other, "--format", "json")
-    assert "its codes are in [0, 1]; every storage holds them as they are" in out
+    assert "are in [0, 1]; every storage holds them as they are" in out
 
 
 def test_the_way_to_a_signed_number_and_back_moves_no_integer():
