@@ -17,7 +17,7 @@ from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts import charts
 from ..ground.output.errors import UsageError, pick_one, tell
-from ..ground.output.writing import check_plot, check_writable, save_plot, say, whole_file, write
+from ..ground.output.writing import check_plot, save_plot, write, write_text
 from ..subjects.codecs.names import storages_named
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
 from ..subjects.normals.normal_sets import NORMAL_SETS
@@ -71,7 +71,7 @@ def examine_encoding(
     about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found), "functions": found.functions}
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
-        _write_text(_text(about, wrong, notes, format), output)
+        write_text(lambda: _text(about, wrong, notes, format), output)
     else:
         functions = about.pop("functions")
         rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in said]
@@ -101,16 +101,6 @@ def _list(lines: Sequence[str], format: str) -> str:
     width = shutil.get_terminal_size((120, 40)).columns
     filled = (textwrap.fill(tables.visible(line), width, initial_indent="- ", subsequent_indent="  ") for line in lines)
     return "\n".join(filled)
-
-
-def _write_text(text: str, output: Path | None) -> None:
-    """Text to a file, or to standard output. Raises UsageError where it cannot be written."""
-    if output is None:
-        say(text)
-        return
-    check_writable(output)
-    with whole_file(output) as partial:
-        partial.write_text(text, encoding="utf-8")
 
 
 def _storage(name: str) -> Storage:

@@ -20,6 +20,7 @@ from .comparison import (
     known_figures,
     named_rows,
     presence,
+    rows_of,
 )
 from .runs import Done
 
@@ -75,7 +76,7 @@ def _subject(table: str, keys: Mapping[str, object]) -> str:
 
 def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
     """In how many of `count` rows an encoding changed, and the figures of its worst row."""
-    rows = _rows(changes)
+    rows = rows_of(changes)
     verdicts = Counter(map(_verdict, rows))
     first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
     said = [f"{first} in {_of(verdicts[first], count)}", *(f"{verdict} in {verdicts[verdict]}" for verdict in others)]
@@ -133,7 +134,7 @@ def _by_table(change: Row) -> tuple:
 
 def _line(group: Sequence[Row]) -> Row:
     """Of several changes the worst row, named by what they have in common, with the figure of it that people know."""
-    rows = _rows(group)
+    rows = rows_of(group)
     worst = headline(rows[0])
     shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
     names = {change["row"] for change in group}
@@ -145,20 +146,12 @@ def _line(group: Sequence[Row]) -> Row:
 
 def total(changes: Sequence[Row]) -> str:
     """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
-    rows = _rows(changes)
+    rows = rows_of(changes)
     counts = Counter(map(_verdict, rows))
     said = ", ".join(f"{_several(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
     is_any_small = any(counts[verdict] for verdict in SLIGHTLY.values())
     note = f" (slightly: by less than {LITTLE})" if is_any_small else ""
     return f"{_several(len(rows), 'row')}, {_several(_figures(changes), 'figure')}: {said}{note}"
-
-
-def _rows(changes: Sequence[Row]) -> list[list[Row]]:
-    """The changes of each row."""
-    rows: dict[tuple, list[Row]] = {}
-    for change in changes:
-        rows.setdefault(by_row(change), []).append(change)
-    return list(rows.values())
 
 
 def _verdict(row: Sequence[Row]) -> str:

@@ -52,11 +52,16 @@ def in_order(changes: Sequence[Row]) -> list[Row]:
     A row that lost a figure comes first, then grown errors, the largest first, other figures that are worse, rows that
     are gone, what is better, what is new, and last what changed by little.
     """
+    ranked = sorted(rows_of(changes), key=lambda row: _rank(headline(row)))
+    return [change for row in ranked for change in sorted(row, key=_rank)]
+
+
+def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
+    """The changes of each row."""
     rows: dict[tuple, list[Row]] = {}
     for change in changes:
         rows.setdefault(by_row(change), []).append(change)
-    ranked = sorted(rows.values(), key=lambda row: _rank(headline(row)))
-    return [change for row in ranked for change in sorted(row, key=_rank)]
+    return list(rows.values())
 
 
 def by_row(change: Row) -> tuple:

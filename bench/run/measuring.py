@@ -75,16 +75,16 @@ class Here:
     """Steps are measured in this process, in their order."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
+        said = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
-            yield step, [_with_settings(row) for row in rows]
+            yield step, [_with_settings(row, said) for row in rows]
 
     def lacking(self, table: str) -> Sequence[str]:  # noqa: ARG002 # as of every Place
         return ()
 
 
-def _with_settings(row: Row) -> Row:
+def _with_settings(row: Row, said: str) -> Row:
     """A row whose device has what is set from outside, if anything is."""
-    said = ", ".join(f"{name}={value}" for name, value in settings().items())
     return row | {"device": f"{row['device']}, {said}"} if said and row.get("device") else row
 
 

@@ -6,7 +6,7 @@ import json
 import math
 import pickle
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -34,7 +34,7 @@ from ..ground.options.gpu_families import FAMILIES, usual_stage
 from ..ground.output import cache
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.sources import sources
-from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file
+from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file, write_text
 from ..keep import side_by_side
 from ..keep.runs import Done, Row, read_run
 from ..measures.live import checks
@@ -74,7 +74,7 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
     if len(folders) > 1:
         _report_several(folders, done, as_markdown, pictures_beside, output)
     elif as_markdown:
-        _write_text(lambda: markdown.markdown(gathered(folders[0], done[0])), output)
+        write_text(lambda: markdown.markdown(gathered(folders[0], done[0])), output)
     else:
         charts = f"{output.stem}-{CHARTS}" if output else CHARTS
         say(f"{write_report(folders[0], done[0], output or folders[0] / PAGE, charts, pictures_beside)}\n")
@@ -97,7 +97,7 @@ def _report_several(
     names = side_by_side.labels([str(plain_text(folder.resolve().name)) for folder in folders])
     runs = dict(zip(names, map(_cleaned, done), strict=True))
     if as_markdown:
-        _write_text(lambda: several.markdown(names, list(side_by_side.sheets(runs))), output)
+        write_text(lambda: several.markdown(names, list(side_by_side.sheets(runs))), output)
         return
     target = output or Path(SEVERAL)
     check_writable(target)
@@ -111,17 +111,6 @@ def _cleaned(done: Done) -> Done:
     """A run of plain text and numbers, whatever its files hold."""
     steps = [{"table": plain_text(step["table"]), "key": {}, "rows": _clean(step["rows"])} for step in done.steps]
     return Done(plain_text(done.facts), steps, done.damage)
-
-
-def _write_text(make: Callable[[], str], output: Path | None) -> None:
-    if output:
-        check_writable(output)
-    text = make()
-    if not output:
-        say(text)
-        return
-    with whole_file(output) as partial:
-        partial.write_text(text, encoding="utf-8")
 
 
 def write_report(

@@ -7,7 +7,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -165,6 +165,21 @@ def say(text: str) -> None:
 def abandon_output() -> None:
     """Whatever is still to come goes nowhere; Python flushes once more at exit, and would complain."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def write_text(make: Callable[[], str], output: Path | None) -> None:
+    """Text to a file, or to standard output; it is made once it is known that the file can be written.
+
+    Raises UsageError.
+    """
+    if output:
+        check_writable(output)
+    text = make()
+    if not output:
+        say(text)
+        return
+    with whole_file(output) as partial:
+        partial.write_text(text, encoding="utf-8")
 
 
 def write(

@@ -63,19 +63,24 @@ WOBBLES = "A code in view space wobbles when the camera turns; one in world spac
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
-    """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences."""
+    """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences, and
+    last what does not qualify."""
+    return [*told(group), *left_out(group)]
+
+
+def told(group: Sequence[Row]) -> list[str]:
+    """The same without what does not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
     where = f"{group[0]['asked']}, {_on(group[0])}"
     if best is None:
-        return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group), *left_out(group)]
+        return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group)]
     others = [*_not_held(best), *(_elsewhere(row, best) for row in _much_better(group, best))]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
     made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
     made += list(filter(None, [_images(best), _mixing(best)]))
     made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
     made += rungs(group, best)
-    made += [_against(row, best) for row in group if row["against"] and row is not best]
-    return [*made, *left_out(group)]
+    return made + [_against(row, best) for row in group if row["against"] and row is not best]
 
 
 def _on(row: Row) -> str:

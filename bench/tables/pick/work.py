@@ -29,7 +29,7 @@ from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, groups, largest
-from .sentences import left_out, sentences
+from .sentences import left_out, told
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_INSTRUCTIONS = 10**6
@@ -212,10 +212,9 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
-        aside = tuple(left_out(group))
-        said = tuple(line for line in sentences(group) if line not in aside)
+        about = {"said": tuple(told(group)), "aside": tuple(left_out(group))}
         keys = {"storage": asked, "normals": normals, "scene": scene.split(",")[0]}
-        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
+        yield Sheet(title if front else "", front, TABLE.drops(front), keys=keys, **about)
 
 
 def _short(row: Row) -> Row:
