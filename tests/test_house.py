@@ -221,6 +221,29 @@ def test_each_storey_of_bench_imports_those_below_it_alone():
     assert not wrong, wrong
 
 
+POSIX = BENCH / "ground" / "machine" / "posix"
+# Modules, functions, signals, files and variables that other systems lack. mallopt and its like are looked up by name,
+# and not missed.
+ONLY_POSIX = re.compile(
+    r"^\s*(?:import|from) (?:fcntl|resource|pwd|grp|termios|pty|tty)\b"
+    r"|\bos\.(?:fork|forkpty|killpg|setsid|setpgid|getpgid|getpgrp|pidfd_open|waitpid|wait4|waitstatus_\w+|mkfifo"
+    r"|getuid|geteuid|getgid|getegid|posix_\w+)\b"
+    r"|\bsignal\.(?!SIGINT\b|SIGTERM\b|SIG_)(?:SIG\w+|Signals\b|alarm|setitimer|pthread_\w+)"
+    r"|\b(?:AF_UNIX|SOCK_SEQPACKET|send_fds|recv_fds|start_new_session|preexec_fn|process_group)\b"
+    r"|[\"']/(?:proc|dev|sys)/(?!null\b)|\bLD_(?:PRELOAD|LIBRARY_PATH)\b",
+    re.M,
+)
+
+
+def test_what_only_posix_has_stands_in_one_room():
+    """Other systems are put there."""
+    found = [(path, ONLY_POSIX.search(path.read_text())) for path in SOURCES if POSIX not in path.parents]
+    wrong = [f"{path.relative_to(ROOT)}: {match[0].strip()}" for path, match in found if match]
+    assert not wrong, wrong
+    unneeded = [path.name for path in POSIX.glob("[a-z]*.py") if not ONLY_POSIX.search(path.read_text())]
+    assert not unneeded, f"{unneeded} have nothing that only POSIX has"
+
+
 def test_a_table_imports_no_other_ones_work_or_pictures():
     """What two tables share stands beside them, or is one's way to measure."""
     wrong = []

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -26,6 +25,7 @@ from ..ground.machine.memory import (
     keep_what_is_imported,
     look_for_garbage_seldom,
 )
+from ..ground.machine.posix.processes import end_group
 from ..ground.output.errors import MissingError, UsageError, told
 from ..keep.plain import key_text, plain
 from ..keep.runs import read_run
@@ -104,7 +104,7 @@ def _import_what_is_needed() -> None:
 def _end_with_the_first() -> None:
     """End this process and what it started once nobody writes to it any more."""
     sys.stdin.read()
-    os.killpg(0, signal.SIGKILL)
+    end_group(0)
 
 
 def _own_output() -> IO[str]:

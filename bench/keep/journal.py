@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import json
 import os
 from collections.abc import Iterator, Sequence
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_bytes
+from ..ground.machine.posix.locks import lock
 from ..ground.output.errors import UsageError
 
 Line = dict[str, Any]
@@ -63,7 +63,7 @@ class Journal:
         try:
             file = partial.open("w+b", buffering=0)
             # Another process must not take the new file for one that nobody writes.
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(file)
             while data:
                 data = data[file.write(data) :]
             os.fsync(file.fileno())
@@ -101,7 +101,7 @@ def journal(path: Path) -> Iterator[Journal]:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     with file:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(file)
         except OSError as error:
             raise UsageError(f"another process writes {path}; wait for it, or name another place") from error
         kept = Journal(path, file)

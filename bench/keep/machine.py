@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import platform
 from importlib.metadata import version
-from pathlib import Path
 
 import jax
 
 from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
+from ..ground.machine.posix.system_files import processor_lines
 from ..ground.machine.settings import settings
 from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..ground.output.errors import MissingError
@@ -28,12 +28,8 @@ PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matp
 
 def processor() -> str:
     """The processor's name."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-        return names[0] if names else platform.processor()
-    except OSError:
-        return platform.processor() or platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in processor_lines() if line.startswith("model name")]
+    return next(iter(names), platform.processor() or platform.machine())
 
 
 def machine() -> dict[str, str]:

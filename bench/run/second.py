@@ -7,8 +7,6 @@ starts it with `second_process`, and names the program that it runs. What it mea
 from __future__ import annotations
 
 import json
-import os
-import signal
 import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -18,6 +16,7 @@ from typing import IO, Any
 
 from ..ground.machine.children import environment, python
 from ..ground.machine.cores import cores
+from ..ground.machine.posix.processes import OWN_GROUP, end_group
 from ..ground.output.errors import MissingError, UsageError, tell, told
 from ..keep.plain import key_text
 from ..keep.runs import Run
@@ -84,8 +83,7 @@ class Second:
 
     def end(self) -> None:
         """End the process, and what it started; rows that it has sent are kept."""
-        with suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)
+        end_group(self._process.pid)
         if self._run:
             self._reader.join()
 
@@ -133,9 +131,8 @@ def second_process(program: str) -> Iterator[Second]:
 
 
 def _started(command: list[str], errors: IO[str]) -> subprocess.Popen[str]:
-    # In a session of its own: what interrupts this process does not reach it twice.
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": errors}
-    return subprocess.Popen(command, text=True, env=environment(), start_new_session=True, **pipes)
+    return subprocess.Popen(command, text=True, env=environment(), **OWN_GROUP, **pipes)
 
 
 def _tell_all(errors: IO[str]) -> None:

@@ -23,6 +23,7 @@ from typer.exceptions import Abort, TyperException
 
 from ....encodings.codecs.files import CatalogueError
 from ....reports.charts.plots import PlotError
+from ...ground.machine.posix import alarm
 from ...ground.options.code import CodeOptions
 from ...ground.output.errors import MissingError, UsageError, tell, told
 from ...ground.output.progress import ending
@@ -317,12 +318,10 @@ def _end(number: int, frame: FrameType | None) -> None:
     """Raise what ends the program, once no module is being imported and no call of moderngl is under way: libraries in
     C++ would not survive it there."""
     if _is_delicate(frame):
-        signal.signal(signal.SIGALRM, lambda _, later: _end(number, later))
-        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+        alarm.call_later(AGAIN_S, lambda later: _end(number, later))
         return
     # What was put off before would end the program a second time, while it tidies up.
-    signal.setitimer(signal.ITIMER_REAL, 0)
-    signal.signal(signal.SIGALRM, lambda *_: None)
+    alarm.call_none()
     by = SystemExit(TERMINATED) if number == signal.SIGTERM else KeyboardInterrupt()
     ending.append(by)
     sys.unraisablehook = _say_unless_ending
@@ -424,7 +423,8 @@ def program() -> NoReturn:
     except SystemExit as end:
         status = end.code
     # What is left is to tidy up, which takes less time than it takes to say that it was interrupted.
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
+    alarm.call_none()
+    for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     if not ending:
         atexit._run_exitfuncs()

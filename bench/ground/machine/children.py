@@ -6,13 +6,14 @@ Nothing of the current folder is imported in them. Those that run users' code li
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO
+
+from .posix.processes import OWN_GROUP, end_group, limit, signal_name
 
 # Of a process that runs users' code: bytes of memory, seconds of processor time, bytes of a file.
 MEMORY, SECONDS, FILE = 1536 << 20, 10, 16 << 20
@@ -33,26 +34,7 @@ def environment() -> dict[str, str]:
 
 def limit_this_process() -> None:
     """Memory, processor time and files; what goes beyond ends this process and no other."""
-    import resource
-
-    limit_to({resource.RLIMIT_CPU: SECONDS, resource.RLIMIT_FSIZE: FILE, resource.RLIMIT_CORE: 0})
-    limit_memory(MEMORY)
-
-
-def limit_memory(most: int) -> None:
-    """This process's data, in bytes."""
-    import resource
-
-    limit_to({resource.RLIMIT_DATA: most})
-
-
-def limit_to(limits: Mapping[int, int]) -> None:
-    """This process's resources, by their numbers; never more than they were."""
-    import resource
-
-    for limit, most in limits.items():
-        hard = resource.getrlimit(limit)[1]
-        resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+    limit(SECONDS, FILE, MEMORY)
 
 
 def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
@@ -65,14 +47,15 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
     """
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environment(), start_new_session=True
+            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environment(), **OWN_GROUP
         )
         try:
             status = process.wait(seconds)
         except subprocess.TimeoutExpired:
             status = None
         finally:
-            _end(process)
+            # Those of its group as well that are left.
+            end_group(process.pid)
             process.wait()
         said = [text_of(file) for file in (out, err)]
     if status is None:
@@ -83,8 +66,8 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
     """How a process that limits itself ended, and the last that it said."""
     limits = f"it may use {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
-    if done.returncode < 0:
-        return f"killed the process ({signal.Signals(-done.returncode).name}); {limits}"
+    if name := signal_name(done.returncode):
+        return f"killed the process ({name}); {limits}"
     last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
     return f"ended the process with status {done.returncode}" + (f": {last[0][:200]}" if last else "")
 
@@ -93,11 +76,3 @@ def text_of(file: IO[bytes]) -> str:
     """What was written to a file of a process."""
     file.seek(0)
     return file.read().decode(errors="replace")
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """The process and those of its group that are left."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        return

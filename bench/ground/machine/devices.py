@@ -12,8 +12,7 @@ import jax
 from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
-
-CPU = Path("/proc/cpuinfo")
+from .posix.system_files import processor_lines
 
 
 def require_jax() -> None:
@@ -53,14 +52,8 @@ def programs_folder() -> Path:
 
 def processor_kind() -> list[str]:
     """What tells a kind of processor from others that need other programs."""
-    try:
-        lines = CPU.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        lines = []
-    return [
-        platform.machine(),
-        *sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}),
-    ]
+    facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
+    return [platform.machine(), *sorted(facts)]
 
 
 def found_device() -> tuple[Device | None, str]:

@@ -35,8 +35,9 @@ def prepare() -> None:
 def _home_for_the_unknown() -> Path:
     """A folder that this user alone can have written into; another one for each process where there is none."""
     from ..output.cache import PRIVATE, is_closed
+    from .posix.processes import owner
 
-    home = Path(tempfile.gettempdir()) / f"normalbench-home-{os.geteuid()}"
+    home = Path(tempfile.gettempdir()) / f"normalbench-home-{owner()}"
     try:
         home.mkdir(PRIVATE, exist_ok=True)
         found = home.lstat()

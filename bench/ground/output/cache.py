@@ -19,6 +19,7 @@ from errno import EACCES
 from pathlib import Path
 from typing import Any
 
+from ..machine.posix.processes import owner
 from .errors import MissingError
 
 # The cache is for its user alone.
@@ -106,7 +107,7 @@ def is_closed(found: os.stat_result) -> bool:
 
 
 def _is_own(found: os.stat_result) -> bool:
-    return found.st_uid == os.geteuid()
+    return found.st_uid == owner()
 
 
 @functools.cache

@@ -7,11 +7,11 @@ import socket
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from ...ground.machine.devices import found_device
+from ...ground.machine.posix.system_files import boot
 from ...ground.machine.vulkan import adapters
 from ...ground.native import library
 from ...ground.output.sources import sources
@@ -20,8 +20,6 @@ from ...tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 
 # What figures depend on: workers have the versions of the process that asks.
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex", "flip-evaluator")
-# The same for all containers of a machine, which share its cores.
-BOOT = Path("/proc/sys/kernel/random/boot_id")
 
 About = dict[str, Any]
 
@@ -50,10 +48,8 @@ def _version(package: str) -> str:
 
 
 def _host() -> str:
-    try:
-        return BOOT.read_text(encoding="ascii").strip()
-    except OSError:
-        return socket.gethostname()
+    # Containers of one machine share its cores, whatever they are called.
+    return boot() or socket.gethostname()
 
 
 def _gl() -> str:

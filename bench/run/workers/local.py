@@ -7,6 +7,7 @@ import tempfile
 from typing import IO
 
 from ...ground.machine.children import environment, python
+from ...ground.machine.posix.processes import OWN_GROUP
 from ...ground.output.errors import UsageError, tell
 from .worker import ENCRYPTED
 
@@ -20,7 +21,6 @@ class Process:
 
     def __init__(self, module: str, *words: str):
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 # as long as the process
-        # In a session of its own: an interruption of the command is not for it.
         self.popen = subprocess.Popen(
             python(f"{__package__}.{module}", *words),
             stdin=subprocess.PIPE,
@@ -28,7 +28,7 @@ class Process:
             stderr=self._errors,
             # Nothing of them leaves this machine, and certificates may name another one.
             env=environment() | {ENCRYPTED: "False"},
-            start_new_session=True,
+            **OWN_GROUP,
             text=True,
         )
 

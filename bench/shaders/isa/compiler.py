@@ -13,6 +13,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from ...ground.machine.posix import system_files
+
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 # Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.
 DRIVERS = ("libvulkan_", "libLLVM")
@@ -57,10 +59,7 @@ def loaded() -> dict[str, str]:
         DriverError: the loader takes no driver.
     """
     _instance(_vulkan())
-    maps = Path("/proc/self/maps")
-    lines = maps.read_text(encoding="utf-8").splitlines() if maps.exists() else []
-    paths = {line[line.index("/") :] for line in lines if "/" in line}
-    return {path: fingerprint(Path(path)) for path in paths if Path(path).name.startswith(DRIVERS)}
+    return {path: fingerprint(Path(path)) for path in system_files.loaded() if Path(path).name.startswith(DRIVERS)}
 
 
 def fingerprint(path: Path) -> str:

@@ -5,13 +5,13 @@ A library's name there says what it was built of and what it holds: another sour
 
 from __future__ import annotations
 
-import os
 import platform
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
+from ...ground.machine.posix.preload import preloaded
 from ...ground.output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")
@@ -51,12 +51,6 @@ def _folder() -> Path:
 def variables(words: str) -> dict[str, str]:
     """What has a process find the Intel GPU that the words describe. Raises NullDeviceError."""
     return preloaded(library()) | {SAID: words}
-
-
-def preloaded(path: Path) -> dict[str, str]:
-    """What has a process load a library before all others."""
-    others = filter(None, [os.environ.get("LD_PRELOAD", "")])
-    return {"LD_PRELOAD": os.pathsep.join([str(path), *others])}
 
 
 def _name(stem: str, path: Path) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import queue
-import signal
 import subprocess
 import tempfile
 import threading
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...ground.machine.children import python
+from ...ground.machine.posix.processes import signal_name
 from .driver_files import environment, is_gl
 
 CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.child")
@@ -113,6 +113,6 @@ def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
 
 def _why(status: int, errors: str) -> str:
     """How a child ended, and the last that it or its driver said."""
-    how = f"signal {signal.Signals(-status).name}" if status < 0 else f"status {status}"
+    how = f"signal {name}" if (name := signal_name(status)) else f"status {status}"
     last = [line.strip() for line in errors.splitlines() if line.strip()]
     return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

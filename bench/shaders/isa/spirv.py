@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
+from ...ground.machine.posix.processes import name_of
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
 
@@ -117,7 +118,7 @@ def _is_spirv(binary: bytes) -> bool:
 def _by_glslang(source: Source, stage: str) -> bytes:
     # A file without a name: nothing is left of it, however this process ends.
     with tempfile.TemporaryFile() as out:
-        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", f"/dev/fd/{out.fileno()}"]
+        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", name_of(out)]
         done = _run([COMPILER, *options], source.text.encode(), out.fileno())
         out.seek(0)
         binary = out.read()

@@ -7,7 +7,6 @@ measured, by OpenGL: a translation that compiles can still be wrong.
 from __future__ import annotations
 
 import shutil
-import signal
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ...ground.machine import children
+from ...ground.machine.posix.processes import DIVIDED_BY_ZERO, OWN_GROUP, signal_name
 from ...ground.output.errors import MissingError
 from . import slang, tools
 from .programs import TranslationError, macros, template
@@ -123,16 +123,16 @@ def _run(command: list[str], folder: Path, is_of_the_file: bool = False) -> None
         try:
             files = {"stdin": subprocess.DEVNULL, "stdout": said, "stderr": said}
             done = subprocess.run(
-                command, **files, cwd=folder, timeout=SECONDS, env=children.environment(), start_new_session=True
+                command, **files, cwd=folder, timeout=SECONDS, env=children.environment(), **OWN_GROUP
             )
         except subprocess.TimeoutExpired as error:
             raise NoSecondWayError(f"{Path(command[0]).name} did not end within {SECONDS:g} s") from error
         except OSError as error:
             raise NoSecondWayError(f"{Path(command[0]).name} cannot be run: {error.strerror}") from error
-        if done.returncode == -signal.SIGFPE:
+        if done.returncode == DIVIDED_BY_ZERO:
             raise UndefinedError("it divides a whole number by 0, of some normal")
         if done.returncode:
             lines = [line.strip() for line in children.text_of(said).splitlines() if line.strip()]
-            ended = signal.Signals(-done.returncode).name if done.returncode < 0 else f"status {done.returncode}"
+            ended = signal_name(done.returncode) or f"status {done.returncode}"
             why = lines[-1][:200] if lines else f"it ended with {ended}"
             raise NoSecondWayError(why, is_of_the_file and MISSING not in why)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import shutil
-import signal
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -13,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Any
 
+from ...ground.machine.posix.processes import signal_name
 from ...ground.output.errors import MissingError
 
 GLSLANG, SPIRV_CROSS, SLANG = "glslangValidator", "spirv-cross", "slangc"
@@ -97,8 +97,8 @@ def run_apart(tool: str, words: Sequence[str], folder: Path) -> tuple[int, str, 
             status = subprocess.run(command, **files, timeout=SECONDS, cwd=folder).returncode
         except subprocess.TimeoutExpired as error:
             raise ToolError(f"{tool} did not end within {SECONDS} s") from error
-        if status < 0:
-            raise ToolError(f"{tool} was ended by {signal.Signals(-status).name}: this is too much for it")
+        if name := signal_name(status):
+            raise ToolError(f"{tool} was ended by {name}: this is too much for it")
         return status, _text(out), _text(err)
 
 

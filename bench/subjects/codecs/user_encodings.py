@@ -20,8 +20,9 @@ from ....encodings.codecs.files import called
 from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
-from ...ground.machine import children, forks
+from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
+from ...ground.machine.posix import forks
 from ...ground.options.words import given_in
 from ...ground.output.errors import NO_TWIN, MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
 from ...ground.output.spelling import spelled

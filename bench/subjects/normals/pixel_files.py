@@ -10,7 +10,6 @@ import json
 import math
 import re
 import subprocess
-import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -22,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from ....gbuffer.scenes.files.source import SceneFileError, file_bytes
+from ...ground.machine.children import environment, python
 from ...ground.output.errors import UsageError
 from . import png
 
@@ -133,10 +133,9 @@ def _read_image(path: Path, choose: Choice) -> Pixels:
 
 def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
     """Runs `pixel_process.py`. Raises UsageError where it cannot read the file."""
-    script = Path(__file__).with_name("pixel_process.py")
-    command = [sys.executable, "-P", str(script), mode, kind, str(path.resolve()), str(out), *names]
+    command = [*python(f"{__package__}.pixel_process"), mode, kind, str(path.resolve()), str(out), *names]
     try:
-        done = subprocess.run(command, capture_output=True, timeout=SECONDS)
+        done = subprocess.run(command, capture_output=True, timeout=SECONDS, env=environment())
     except subprocess.TimeoutExpired as error:
         raise refused(path, f"not read within {SECONDS} seconds") from error
     if done.returncode:

@@ -1,10 +1,10 @@
 """Reads image files by OpenImageIO in a process of its own.
 
 A file may be made to crash the library, to fill the memory or never to end, and the library writes warnings of its own:
-all of that stays in here. Run as a script, not imported:
+all of that stays in here. As a program:
 
-    python pixel_process.py header KIND FILE OUT            # a JSON list of the parts
-    python pixel_process.py pixels KIND FILE OUT NAME ...   # an NPY file of the channels, in that order
+    python -m normalbench.bench.subjects.normals.pixel_process header KIND FILE OUT   # a JSON list of the parts
+    python -m normalbench.bench.subjects.normals.pixel_process pixels KIND FILE OUT NAME ...   # an NPY file of channels
 
 KIND is the library's name of the format. The status is 0, or one of FAILURES.
 """
@@ -12,7 +12,6 @@ KIND is the library's name of the format. The status is 0, or one of FAILURES.
 from __future__ import annotations
 
 import json
-import resource
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,6 +20,8 @@ from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
+
+from ...ground.machine.posix.processes import limit_addresses
 
 MAX_MEMORY = 2**33
 DAMAGED = 1
@@ -113,7 +114,7 @@ def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None
 def main() -> int:
     """Do what the arguments say."""
     mode, kind, path, out, *names = sys.argv[1:]
-    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
+    limit_addresses(MAX_MEMORY)
     # Each thread takes address space, and processes beside this one take the cores.
     oiio.attribute("threads", 1)
     try:

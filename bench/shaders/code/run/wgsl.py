@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,7 +13,9 @@ import numpy as np
 
 from .....encodings.codecs.files import file_text
 from .....gbuffer.gl.shader import ShaderError
-from ....ground.machine import children, forks
+from ....ground.machine import children
+from ....ground.machine.posix import forks
+from ....ground.machine.posix.processes import signal_name
 from ....ground.machine.vulkan import NO_DRIVER, adapters
 from ....ground.output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
@@ -117,7 +118,7 @@ def _try_apart(path: Path, text: str) -> None:
         except subprocess.TimeoutExpired as error:
             raise ShaderError(f"{path}: naga did not end within {SECONDS} s") from error
     if done.returncode:
-        how = signal.Signals(-done.returncode).name if done.returncode < 0 else children.how_it_ended(done)
+        how = signal_name(done.returncode) or children.how_it_ended(done)
         raise ShaderError(f"{path.name}: naga does not survive it ({how}); other back ends may")
 
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from ....ground.machine.posix.preload import preloaded
 from ....ground.output import cache as kept
 from .. import null_device
 
@@ -49,4 +50,4 @@ def descriptions_in(where: Path) -> list[Path]:
 
 def variables(words: str) -> dict[str, str]:
     """What has a driver compile for the GPU that the words describe. Raises NullDeviceError."""
-    return null_device.preloaded(null_device.library(SOURCE)) | {SAID: words}
+    return preloaded(null_device.library(SOURCE)) | {SAID: words}

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from ....ground.machine.posix.preload import preloaded
 from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_radeon.c")
@@ -35,5 +36,5 @@ def variables(words: str) -> dict[str, str]:
     The kernels are GLSL 4.30, which r600 has for the newer chips alone. Those before differ in what they lack: storage
     buffers and images, which a fragment kernel does without.
     """
-    told = null_device.preloaded(null_device.library(SOURCE)) | {SAID: words, "R600_DEBUG": "ps"}
+    told = preloaded(null_device.library(SOURCE)) | {SAID: words, "R600_DEBUG": "ps"}
     return told | {"MESA_GL_VERSION_OVERRIDE": "4.3", "MESA_GLSL_VERSION_OVERRIDE": "430"}

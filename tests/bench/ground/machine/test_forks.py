@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from normalbench.bench.ground.machine import forks
 from normalbench.bench.ground.machine.cores import on_all_cores
+from normalbench.bench.ground.machine.posix import forks
 
 MODULE = """
 import os, signal, subprocess, sys, time
@@ -99,7 +99,7 @@ def test_who_waits_in_another_thread_can_be_told_to_stop(ended):
 def test_it_ends_where_whoever_asked_is_killed(tmp_path):
     """Nobody is left to end it after its time."""
     line = f"open({str(tmp_path / 'number')!r}, 'w').write(str(os.getpid())); time.sleep(60)"
-    asking = f"from normalbench.bench.ground.machine import forks; forks.finished('tried', [{line!r}], 60)"
+    asking = f"from normalbench.bench.ground.machine.posix import forks; forks.finished('tried', [{line!r}], 60)"
     asks = subprocess.Popen([sys.executable, "-c", asking])
     until = time.monotonic() + 30
     while not (tmp_path / "number").is_file() or not (tmp_path / "number").read_text():

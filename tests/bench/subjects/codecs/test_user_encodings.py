@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.ground.directions import directions
-from normalbench.bench.ground.machine import forks
+from normalbench.bench.ground.machine.posix import forks
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.bench.subjects.codecs.first_look import first_look

@@ -3,7 +3,7 @@
 To import JAX takes longer than most of what is done in such a process. So one process imports once, runs nothing, and
 forks for each request. Linux only, where forking is safe; elsewhere each process imports for itself.
 
-    python -m normalbench.bench.ground.machine.forks DESCRIPTOR
+    python -m normalbench.bench.ground.machine.posix.forks DESCRIPTOR
 
 is that process: requests come through a socket.
 """
@@ -28,14 +28,16 @@ from pathlib import Path
 from threading import Lock
 from typing import IO, Any, NoReturn
 
-from . import children
+from .. import children
+from . import processes
+from .preload import LOADERS_VARIABLES
 
 # A process that nobody has asked for this long ends; the next request starts another one.
 IDLE_S, START_S = 60.0, 60.0
 LONGEST = 1 << 20
-KILLED = int(-signal.SIGKILL).to_bytes(4, "little", signed=True)
+KILLED = processes.KILLED.to_bytes(4, "little", signed=True)
 # What Python, JAX and the loader read once, when they start or are imported; other variables go with each request.
-READ_AT_THE_START = ("PYTHON", "JAX_", "XLA_", "LD_", "OMP_", "OPENBLAS_")
+READ_AT_THE_START = ("PYTHON", "JAX_", "XLA_", LOADERS_VARIABLES, "OMP_", "OPENBLAS_")
 
 
 def finished(module: str, words: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
@@ -74,8 +76,7 @@ def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], se
         finally:
             _under_way.discard(answer)
             # What it started as well, which may outlive it.
-            with suppress(ProcessLookupError):
-                os.killpg(process, signal.SIGKILL)
+            processes.end_group(process)
 
 
 # What other threads wait for.
@@ -90,7 +91,7 @@ def stop() -> None:
 
 
 def _command(descriptor: int) -> list[str]:
-    return children.python("normalbench.bench.ground.machine.forks", str(descriptor))
+    return children.python("normalbench.bench.ground.machine.posix.forks", str(descriptor))
 
 
 @dataclass
@@ -113,7 +114,7 @@ class _Forking:
                 stderr=subprocess.DEVNULL,
                 env=children.environment(),
                 pass_fds=[theirs.fileno()],
-                start_new_session=True,
+                **processes.OWN_GROUP,
             )
         self.started_with = _read_at_the_start()
         return self.link

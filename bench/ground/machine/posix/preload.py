@@ -1,0 +1,16 @@
+"""Libraries that a process loads before all others."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+# What the loader of libraries reads of a process's variables.
+LOADERS_VARIABLES = "LD_"
+PRELOAD = "LD_PRELOAD"
+
+
+def preloaded(path: Path) -> dict[str, str]:
+    """The variables that have a process load a library before those that this process was given."""
+    others = filter(None, [os.environ.get(PRELOAD, "")])
+    return {PRELOAD: os.pathsep.join([str(path), *others])}

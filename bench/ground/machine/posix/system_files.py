@@ -1,0 +1,32 @@
+"""What Linux says in files of this machine, and of this process; nothing where they are not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PROCESSOR = Path("/proc/cpuinfo")
+# The same for all containers of a machine.
+BOOT = Path("/proc/sys/kernel/random/boot_id")
+LOADED = Path("/proc/self/maps")
+
+
+def processor_lines() -> list[str]:
+    """What is said of each core, as `name : value`."""
+    return _lines(PROCESSOR)
+
+
+def boot() -> str:
+    """What differs from machine to machine, and from start to start of one."""
+    return next(iter(_lines(BOOT)), "").strip()
+
+
+def loaded() -> set[str]:
+    """The paths of the files that are mapped into this process, libraries among them."""
+    return {line[line.index("/") :] for line in _lines(LOADED) if "/" in line}
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
