@@ -69,6 +69,13 @@ def test_the_text_names_the_compilers_that_counted():
     assert {*named} == {*TABLES["normalbench cost nvidia"].read().drivers}
 
 
+def test_the_commands_below_the_headline_are_those_that_measure_it():
+    """Of `rg8`; the costs of both storages are counted by one command."""
+    shown = set(re.findall(r"^    normalbench (.* --encoding optimised_rings.*)$", PAGES[README], re.M))
+    measured = {row.partition(",warped_cube")[0] for row in TABLES["headline"].rows if "--storage rgb10a2" not in row}
+    assert shown == measured
+
+
 def test_the_articles_figures_are_those_it_printed():
     for (name, *_), psnr in kept_figures("normalbench run", "article_db").items():
         assert psnr == published.PSNR_DB.get(name)

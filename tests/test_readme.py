@@ -17,6 +17,7 @@ import devices
 import numpy as np
 import pytest
 import typer
+from contributing import a_copy_of_the_rooms, normalbench_in
 from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
@@ -259,40 +260,6 @@ def test_a_seed_is_a_random_seed():
     """Articles are named by author, title and year."""
     for path, text in PAGES.items():
         assert not re.search(r"\bseed \d", text), path.name
-
-
-def a_copy_of_the_rooms(folder: Path) -> Path:
-    """The package as a plain folder that Python finds from `folder` before the installed one."""
-    package = folder / "normalbench"
-    for room in ("encodings", "gbuffer", "bench", "reports"):
-        for source in (ROOT / room).rglob("*"):
-            if source.is_file() and "__pycache__" not in source.parts:
-                target = package / source.relative_to(ROOT)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_bytes(source.read_bytes())
-    return package
-
-
-def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "normalbench", *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
-
-
-@pytest.mark.slow
-def test_an_encoding_is_added_as_it_says(tmp_path):
-    """A copy of the tree, a pair of files, a line: the table has a new row in both languages."""
-    package = a_copy_of_the_rooms(tmp_path)
-    normals, catalogue = package / "encodings/normals", package / "encodings/catalogue.py"
-    for suffix in (".py", ".glsl"):
-        text = (normals / f"octahedral{suffix}").read_text()
-        renamed = text.replace("octahedral_", "mine_").replace('name="octahedral"', 'name="mine"')
-        (normals / f"mine{suffix}").write_text(renamed)
-    catalogue.write_text(catalogue.read_text().replace('    "octahedral",\n', '    "octahedral",\n    "mine",\n'))
-    done = normalbench_in(tmp_path, "quality", "--encoding", "mine", "--format", "csv")
-    assert done.returncode == 0, done.stderr
-    header, *rows = done.stdout.splitlines()
-    figures = [dict(zip(header.split(","), row.split(","), strict=False))["psnr_db"] for row in rows]
-    assert [float(f) for f in figures] == pytest.approx([49.85, 49.85], abs=0.01)
 
 
 @pytest.mark.slow

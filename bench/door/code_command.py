@@ -108,14 +108,12 @@ def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Pa
 def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
     """Why a language is not written; empty where it is.
 
-    All languages but Python are written from one tree. Where the tree has been seen to be wrong in one, it is wrong in
+    All languages are written from one tree. Where the tree has been seen to be wrong in one, it is wrong in
     all. What its own compiler does not run here, as Metal, is written where another language of the tree agrees.
     """
     if row["verdict"] == DIFFERS:
         return row["says"]
-    if not LANGUAGES[code.language].writer:
-        return ""
-    others = [(one.language, said) for one, said in made if one is not code and LANGUAGES[one.language].writer]
+    others = [(one.language, said) for one, said in made if one is not code]
     if row["verdict"] == NOT_RUN or code.language in WITNESSED:
         others = others or [_witness(code)]
     wrong = [language for language, said in others if said["verdict"] == DIFFERS]

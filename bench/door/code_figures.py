@@ -28,19 +28,6 @@ HOLDS: Mapping[str, str] = MappingProxyType(
         "view": "unit vectors that face the viewer; `view` is the view-space position, with the viewer at the origin",
     }
 )
-# What a file's reader must see to, by language.
-ADVICE: Mapping[str, str] = MappingProxyType(
-    {
-        "glsl": "For GLSL 4.3 and later, and for Vulkan.",
-        "essl": "For GLSL ES 3.1 and later.",
-        "hlsl": "For shader model 5 and later.",
-        "slang": "For Slang, which reads HLSL.",
-        "wgsl": "For WebGPU.",
-        "msl": "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise.",
-        "c": "For C99. Compile with -ffp-contract=off: fused products round otherwise.",
-        "python": "For NumPy 2 and later. Arrays have shape (..., 3).",
-    }
-)
 
 
 def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[str]) -> list[str]:
@@ -64,7 +51,7 @@ def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[s
     names = ", ".join(f"{code.prefix}_{name}" for name in ("encode", "pack", "unpack", "decode"))
     return [
         f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target {code.prefix}_to_target and "
-        f"{code.prefix}_from_target. {ADVICE[code.language]}",
+        f"{code.prefix}_from_target. {LANGUAGES[code.language].advice}",
         "",
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
         f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. Normals: {_held(encoding)}.",

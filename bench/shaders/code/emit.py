@@ -19,6 +19,7 @@ from ..translator.glsl_parser import read_glsl
 from ..translator.glsl_writer import EsslWriter, GlslWriter
 from ..translator.hlsl_writer import HlslWriter
 from ..translator.msl_writer import MslWriter
+from ..translator.numpy_writer import NumpyWriter
 from ..translator.reduce import reduced
 from ..translator.tree import Program, TranslationError
 from ..translator.wgsl_writer import WgslWriter
@@ -30,31 +31,43 @@ ROOT = Path(__file__).with_name("codec.glsl")
 
 @dataclass(frozen=True)
 class Language:
-    """A language that codes are written in.
+    """A language that codes are written in; the module of its name in `run` runs its files.
 
     Attributes:
         title: what a reader calls it.
         ending: of its files.
-        writer: what writes it from a tree; None for Python, whose files are made from the Python twin.
+        writer: what writes it from a tree.
+        advice: what a file's reader must see to.
         mark: what comments begin with.
+        has_preprocessor: whether a file can be included twice, and is to be taken once.
     """
 
     title: str
     ending: str
-    writer: type[Writer] | None
+    writer: type[Writer]
+    advice: str
     mark: str = "//"
+    has_preprocessor: bool = True
 
 
+ROUNDS = "Without -fno-fast-math the compiler rounds otherwise."
 LANGUAGES: Mapping[str, Language] = MappingProxyType(
     {
-        "hlsl": Language("HLSL", ".hlsl", HlslWriter),
-        "slang": Language("Slang", ".slang", HlslWriter),
-        "glsl": Language("GLSL", ".glsl", GlslWriter),
-        "essl": Language("GLSL ES", ".essl", EsslWriter),
-        "wgsl": Language("WGSL", ".wgsl", WgslWriter),
-        "msl": Language("Metal", ".metal", MslWriter),
-        "c": Language("C", ".h", CWriter),
-        "python": Language("Python, NumPy", ".py", None, "#"),
+        "hlsl": Language("HLSL", ".hlsl", HlslWriter, "For shader model 5 and later."),
+        "slang": Language("Slang", ".slang", HlslWriter, "For Slang, which reads HLSL."),
+        "glsl": Language("GLSL", ".glsl", GlslWriter, "For GLSL 4.3 and later, and for Vulkan."),
+        "essl": Language("GLSL ES", ".essl", EsslWriter, "For GLSL ES 3.1 and later."),
+        "wgsl": Language("WGSL", ".wgsl", WgslWriter, "For WebGPU.", has_preprocessor=False),
+        "msl": Language("Metal", ".metal", MslWriter, f"For Metal 2 and later. {ROUNDS}"),
+        "c": Language("C", ".h", CWriter, "For C99. Compile with -ffp-contract=off: fused products round otherwise."),
+        "python": Language(
+            "Python, NumPy",
+            ".py",
+            NumpyWriter,
+            "For NumPy 2 and later. Arrays have shape (..., 3).",
+            mark="#",
+            has_preprocessor=False,
+        ),
     }
 )
 

@@ -13,13 +13,11 @@ from ..languages.words import is_translated
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of
-from .numpy_source import numpy_source
 from .run.interface import Interface
 from .tables import table_files
-from .verify import interface_of, is_catalogues
+from .verify import interface_of
 
 WIDTH = 118
-GUARDED = ("hlsl", "slang", "glsl", "essl", "msl", "c")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +52,7 @@ class Code:
     @property
     def _guarded(self) -> str:
         """The text, which languages with a preprocessor take once however often it is included."""
-        if self.language not in GUARDED:
+        if not LANGUAGES[self.language].has_preprocessor:
             return self.body
         guard = f"{identifier(self.prefix).upper()}_INCLUDED"
         return f"#ifndef {guard}\n#define {guard}\n\n{self.body}\n#endif\n"
@@ -90,18 +88,10 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         interface = interface_of(codec, prefix, _takes_view(program, prefix))
         writer = LANGUAGES[language].writer
         sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
-        body = writer(prefix, sizes).program(program) if writer else _python(codec, prefix)
+        body = writer(prefix, sizes).program(program)
     except TranslationError as error:
         raise UsageError(_untranslatable(codec, str(error))) from error
     return Code(codec, language, prefix, body, interface)
-
-
-def _python(codec: Codec, prefix: str) -> str:
-    if not is_catalogues(codec.encoding):
-        raise UsageError(
-            f"{codec.encoding.title}: Python is written of the catalogue's encodings; C is written of yours"
-        )
-    return numpy_source(codec, prefix)
 
 
 def _untranslatable(codec: Codec, said: str) -> str:

@@ -139,7 +139,10 @@ class Writer:
         for name in (name for name in dict.fromkeys(own) if name in self._taken):
             self._renamed[name] = self._unused(f"{name}_")
         body = self._body(function)
-        return f"{self._comments(function, '')}{self._signature(function)} {{\n{body}}}"
+        return self._comments(function, "") + self._defined(self._signature(function), body)
+
+    def _defined(self, signature: str, body: str) -> str:
+        return f"{signature} {{\n{body}}}"
 
     def _body(self, function: Function) -> str:
         return self._statements(function.body, INDENT)
@@ -313,10 +316,7 @@ class Writer:
         return f"{left} {value.operator} {right}", level
 
     def _operand(self, parent: Binary, child: Expression, least: int) -> str:
-        """An operand; what mixes bits or truths is in parentheses, as readers and some languages want it."""
-        if isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child):
-            least = UNARY
-        return self._text(child, least)
+        return self._text(child, least_of(parent, child, least))
 
     def _choice(self, value: Choice) -> tuple[str, int]:
         condition, chosen = self._text(value.condition, CHOICE + 1), self._text(value.chosen, CHOICE + 1)
@@ -366,6 +366,13 @@ def _applied(kind: str, assigned: Assign) -> Expression:
 def _splat(value: Expression, kind: str) -> Expression:
     """A scalar as a vector of a kind; a vector as it is."""
     return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])
+
+
+def least_of(parent: Binary, child: Expression, least: int) -> int:
+    """How tightly an operand has to bind. What mixes bits or truths is in parentheses, as readers and some languages
+    want it."""
+    is_mixed = isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child)
+    return UNARY if is_mixed else least
 
 
 def _is_unclear(parent: Binary, child: Binary) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_readme import a_copy_of_the_rooms
+from contributing import a_copy_of_the_rooms
 
 from normalbench.bench.ground.machine.settings import settings
 from normalbench.bench.keep import compare_command

@@ -1,56 +1,52 @@
-"""Python with NumPy: the file is imported from its path."""
+"""Python with NumPy: the file is imported from its path, in a process of its own, which limits itself."""
 
 from __future__ import annotations
 
 import platform
-import sys
+import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError
-from .interface import FUNCTIONS, Interface, Ran, Run, Runner
+from ....ground.machine import children
+from .interface import Interface, Ran, Run, Runner
+from .sources import SECONDS, folder
 
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file as a module that nothing else can import. Raises ShaderError where it raises or lacks a function."""
-    module = _imported(path)
+    """The file as a module that nothing else can import. Running it raises ShaderError where it raises or lacks a
+    function."""
+    with folder() as place:
+
+        def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
+            np.savez(place / "given.npz", n=n, view=view, texels=texels)
+            facts = (interface.prefix, str(int(interface.takes_view)), str(interface.sign_bits))
+            _run(path, children.python(f"{__package__}.python_child", str(path.resolve()), str(place), *facts))
+            with np.load(place / "made.npz") as made:
+                return _ran(made, interface, len(n))
+
+        yield run
+
+
+def _run(path: Path, command: list[str]) -> None:
     try:
-        six = {name: getattr(module, f"{interface.prefix}_{name}") for name in FUNCTIONS}
-    except AttributeError as error:
-        raise ShaderError(f"{path}: {error}") from error
-
-    def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
-        rays = (view,) if interface.takes_view else ()
-        code = six["encode"](n, *rays)
-        sign = (code[..., -1],) if interface.sign_bits else ()
-        words = six["pack"](code)
-        unpacked = six["unpack"](words, *sign)
-        decoded, back = six["decode"](unpacked, *rays), six["from_target"](texels, *sign)
-        return Ran(code, words.reshape(len(n), interface.words), unpacked, decoded, six["to_target"](code), back)
-
-    yield run
+        done = children.finished(command, SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
+    if done.returncode:
+        raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
 
 
-def _imported(path: Path) -> Any:
-    spec = spec_from_file_location("normalbench_code", path)
-    if not spec or not spec.loader:
-        raise ShaderError(f"{path}: it is not a file of Python")
-    module = module_from_spec(spec)
-    # No folder of bytecode next to a user's file.
-    kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:  # whatever the file raises
-        raise ShaderError(f"{path}: {type(error).__name__}: {error}") from error
-    finally:
-        sys.dont_write_bytecode = kept
-    return module
+def _ran(made: np.lib.npyio.NpzFile, interface: Interface, count: int) -> Ran:
+    """What the functions gave. What does not depend on its normal, a function gives once."""
+    sizes = (interface.size, interface.words, interface.size, 3, 4, interface.size)
+    given = [made[name] for name in Ran._fields]
+    given[1] = given[1].reshape(*given[1].shape[: given[1].ndim - (interface.words > 1)], interface.words)
+    return Ran(*(np.broadcast_to(one, (count, size)) for one, size in zip(given, sizes, strict=True)))
 
 
 def how() -> str:

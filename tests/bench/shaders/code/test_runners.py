@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.code.run import LANGUAGES, c, interface, runner
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.run import c, interface, runner
 from normalbench.bench.shaders.code.run.interface import Interface, Ran
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.gl.shader import ShaderError

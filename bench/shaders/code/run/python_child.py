@@ -1,0 +1,52 @@
+"""The process that runs a file of NumPy:
+
+    python -m normalbench.bench.shaders.code.run.python_child FILE FOLDER PREFIX TAKES_VIEW SIGN_BITS
+
+It reads given.npz of the folder (n, view, texels) and writes made.npz, with the names of `interface.Ran`.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from ....ground.machine import children
+from .interface import FUNCTIONS, Ran
+
+
+def imported(path: Path) -> ModuleType:
+    """A file as a module. Raises whatever the file raises."""
+    spec = spec_from_file_location("normalbench_code", path)
+    if not spec or not spec.loader:
+        raise ImportError(f"{path.name} is not a file of Python")
+    module = module_from_spec(spec)
+    # No folder of bytecode next to a user's file.
+    sys.dont_write_bytecode = True
+    spec.loader.exec_module(module)
+    return module
+
+
+def main(words: list[str]) -> None:
+    """Run the six functions. Raises whatever they raise."""
+    children.limit_this_process()
+    path, folder, (prefix, takes_view, sign_bits) = Path(words[0]), Path(words[1]), words[2:]
+    module = imported(path)
+    six = {name: getattr(module, f"{prefix}_{name}") for name in FUNCTIONS}
+    with np.load(folder / "given.npz") as given:
+        n, view, texels = given["n"], given["view"], given["texels"]
+    rays = (view,) if int(takes_view) else ()
+    code = six["encode"](n, *rays)
+    sign = (code[..., -1],) if int(sign_bits) else ()
+    packed = six["pack"](code)
+    unpacked = six["unpack"](packed, *sign)
+    decoded, back = six["decode"](unpacked, *rays), six["from_target"](texels, *sign)
+    made = Ran(code, packed, unpacked, decoded, six["to_target"](code), back)
+    np.savez(folder / "made.npz", **made._asdict())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

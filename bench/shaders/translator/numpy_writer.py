@@ -1,0 +1,356 @@
+"""Python with NumPy, for all normals of an array at once.
+
+A vector is the last axis of an array. What a shader does for one normal under a condition is done for all, and kept for
+those that it holds for: `np.where(chosen, new, old)`. A loop goes on while it does for any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from .c_defined import counted
+from .numpy_helpers import HELPERS, NEEDS
+from .numpy_values import BINDING, TYPES, NumpyValues, broad, inner_shape, shape_text
+from .tree import (
+    Assign,
+    Binary,
+    Block,
+    Choice,
+    Declare,
+    Expression,
+    For,
+    Function,
+    If,
+    Index,
+    Leave,
+    Literal,
+    Name,
+    Program,
+    Return,
+    Statement,
+    Swizzle,
+    Table,
+    TranslationError,
+    While,
+    inside,
+    scalar_of,
+)
+from .writer import FIELDS, INDENT, words
+
+TRUE = Literal("bool", "true")
+
+
+@dataclass
+class _Loop:
+    """A loop that is being written.
+
+    Attributes:
+        looping: the variable that says for which normals it goes on.
+        going: the one that says for which of them this turn does; the same where nothing continues.
+    """
+
+    looping: str
+    going: str
+
+
+@dataclass
+class _State:
+    """Where in a function the writer is.
+
+    Attributes:
+        masks: of the conditions around, one in the other, the variable that says for which normals all of them hold;
+            empty for the function itself.
+        depth: of each variable, how many conditions it was declared within.
+        loops: those around.
+        live: the variable that says for which normals the function has not returned; empty where it has for none.
+        result: the variable of what it returns for the others.
+    """
+
+    masks: list[str] = field(default_factory=lambda: [""])
+    depth: dict[str, int] = field(default_factory=dict)
+    loops: list[_Loop] = field(default_factory=list)
+    live: str = ""
+    result: str = ""
+
+
+class NumpyWriter(NumpyValues):
+    """Python with NumPy 2."""
+
+    reserved = words(
+        "and as assert async await break class continue def del elif else except finally for from global if import in "
+        "is lambda nonlocal not or pass raise return try while with yield True False None match case type np Path "
+        "range print zip len enumerate"
+    )
+
+    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
+        super().__init__(prefix, sizes)
+        self._state = _State()
+
+    # The file.
+
+    def _program(self, program: Program) -> str:
+        self._taken |= {*HELPERS}
+        constants = [self._constant(each) for each in program.constants]
+        functions = [self._function(each) for each in program.functions]
+        tables = [self._table(each) for each in sorted(program.tables, key=lambda table: table.name)]
+        head = ["from pathlib import Path\n"] * bool(tables) + ["import numpy as np"]
+        for name in [*self._helpers]:
+            self._helpers |= {*NEEDS.get(name, ())}
+        helpers = [text for name, text in HELPERS.items() if name in self._helpers]
+        values = ["\n".join([*tables, *constants])] if tables or constants else []
+        return "\n\n\n".join(["\n".join(head), *helpers, *values, *functions]) + "\n"
+
+    def _table(self, table: Table) -> str:
+        return f'{self._own(table.name)} = np.load(Path(__file__).with_name("{table.name}.npy"))'
+
+    def _global(self, constant: Declare) -> str:
+        return f"{self._own(constant.name)} = {self._value_of(constant)}"
+
+    # Functions.
+
+    def _function(self, function: Function) -> str:
+        self._state = _State(depth={p.name: 0 for p in function.parameters})
+        return super()._function(function).rstrip("\n")
+
+    def _defined(self, signature: str, body: str) -> str:
+        return f"{signature}\n{body}"
+
+    def _signature(self, function: Function) -> str:
+        names = ", ".join(self._name(p.name) for p in function.parameters)
+        return f"def {self._own(function.name)}({names}):"
+
+    def _body(self, function: Function) -> str:
+        body = _with_choices(function.body)
+        public = [f"{INDENT}{line}\n" for line in self._opening(function)]
+        returns = list(_returns(body, is_in_loop=False))
+        if any(is_in_loop for _, is_in_loop in returns):
+            self._state.live, self._state.result = self._unused("live"), self._unused("result")
+            public += [f"{INDENT}{self._state.live} = np.bool_(True)\n"]
+            public += [f"{INDENT}{self._state.result} = {self._nothing(function.kind)}\n"]
+        text = "".join(public) + self._statements(body, INDENT)
+        if not isinstance(body[-1] if body else None, Return):
+            text += f"{INDENT}return {self._state.result or None}\n"
+        return text
+
+    def _opening(self, function: Function) -> Iterator[str]:
+        """What a function that others call begins with."""
+        if function.name not in self.public:
+            return
+        shapes = [f"{p.name}: {shape_text(p.kind)}" for p in function.parameters]
+        yield f'"""{shape_text(function.kind)}, of {"; ".join(shapes)}."""'
+        for p in function.parameters:
+            yield f"{self._name(p.name)} = np.asarray({self._name(p.name)}, {TYPES[scalar_of(p.kind)]})"
+
+    def _comments(self, statement: Statement, indent: str) -> str:
+        above = "".join(f"{indent}# {line}".rstrip() + "\n" for line in statement.above)
+        is_public = isinstance(statement, Function) and statement.name in self.public
+        return above + '@np.errstate(all="ignore")\n' * is_public
+
+    # Statements.
+
+    def _statement(self, statement: Statement, indent: str) -> str:
+        behind = f"  # {statement.behind}" if statement.behind else ""
+        above = self._comments(statement, indent)
+        match statement:
+            case Block(body):
+                return above + self._statements(body, indent)
+            case For() | While():
+                return above + self._loop(statement, indent)
+            case If():
+                return above + self._if(statement, indent)
+            case Return(value) if value is not None:
+                lines = self._return(value)
+            case Leave(word):
+                lines = self._leave(word)
+            case _:
+                lines = [self._plain(statement)]
+        lines[-1] += behind
+        return above + "".join(f"{indent}{line}\n" for line in lines)
+
+    def _plain(self, statement: Statement) -> str:
+        match statement:
+            case Declare():
+                self._state.depth[statement.name] = len(self._state.masks) - 1
+                return f"{self._name(statement.name)} = {self._value_of(statement)}"
+            case Assign(target, mark, value):
+                made = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
+                return self._anew(target, self._typed(made))
+        raise TranslationError(f"a {type(statement).__name__} is not written in Python")
+
+    def _value_of(self, declared: Declare) -> str:
+        return self._nothing(declared.kind) if declared.value is None else self._typed(declared.value)
+
+    def _anew(self, target: Expression, text: str) -> str:
+        """A variable, or a part of one, made anew: arrays are never changed in place."""
+        match target:
+            case Name(kind, name):
+                return f"{self._name(name)} = {self._kept(kind, name, text)}"
+            case Swizzle(_, inner, names):
+                places = "".join(f"{FIELDS.index(name)}, " for name in names)
+                places = places.strip() if len(names) == 1 else places.removesuffix(", ")
+                return self._anew(inner, f"{self._helped('_replaced')}({self._text(inner)}, ({places}), {text})")
+            case Index(kind, inner, at):
+                axes = f", {len(inner_shape(kind))}" if inner_shape(kind) else ""
+                put = f"{self._helped('_put')}({self._text(inner)}, {self._text(at)}, {text}{axes})"
+                return self._anew(inner, put)
+        raise TranslationError(f"a {type(target).__name__} of {target.kind} cannot be assigned to in Python")
+
+    def _kept(self, kind: str, name: str, text: str) -> str:
+        """A new value, for those normals alone that the conditions since the variable's declaration hold for."""
+        mask = self._state.masks[-1]
+        if self._state.depth.get(name) == len(self._state.masks) - 1 or not mask:
+            return text
+        return f"np.where({broad(mask, kind)}, {text}, {self._name(name)})"
+
+    def _if(self, statement: If, indent: str) -> str:
+        outer = self._state.masks[-1]
+        least = BINDING["&"] if outer else 0
+        condition = self._typed(statement.condition, least)
+        chosen = self._unused("chosen")
+        lines = [f"{chosen} = {outer} & {condition}" if outer else f"{chosen} = {condition}"]
+        other = self._unused("other") if statement.other else ""
+        lines += [f"{other} = {outer} & ~{chosen}" if outer else f"{other} = ~{chosen}"] if other else []
+        text = "".join(f"{indent}{line}\n" for line in lines)
+        text += self._within(chosen, statement.chosen, indent)
+        text += self._within(other, statement.other, indent) if other else ""
+        return text + (self._without_those_that_left(indent) if _leaves(statement) else "")
+
+    def _within(self, mask: str, body: list[Statement], indent: str) -> str:
+        """Statements under one more condition."""
+        self._state.masks.append(mask)
+        text = self._statements(body, indent)
+        self._state.masks.pop()
+        return text
+
+    def _without_those_that_left(self, indent: str) -> str:
+        """After what may leave a loop: the conditions around hold no longer for those that did."""
+        mask = self._state.masks[-1]
+        if not self._state.loops or mask == (going := self._state.loops[-1].going):
+            return ""
+        return f"{indent}{mask} = {mask} & {going}\n"
+
+    def _leave(self, word: str) -> list[str]:
+        loop, mask = self._state.loops[-1], self._state.masks[-1]
+        kept = f"{loop.looping} = {loop.looping} & ~{mask}"
+        going = f"{loop.going} = {loop.going} & ~{mask}"
+        if word == "continue":
+            return [going]
+        return [kept] if loop.going == loop.looping else [kept, going]
+
+    def _return(self, value: Expression) -> list[str]:
+        state, mask = self._state, self._state.masks[-1]
+        text = self._typed(value)
+        if not mask:
+            chosen = f"np.where({broad(state.live, value.kind)}, {text}, {state.result})"
+            return [f"return {chosen if state.live else text}"]
+        if not state.live:
+            state.live, state.result = self._unused("live"), self._unused("result")
+            return [f"{state.result} = {text}", f"{state.live} = ~{mask}"]
+        taken = self._unused("taken")
+        lines = [f"{taken} = {mask} & {state.live}"]
+        lines += [f"{state.result} = np.where({broad(taken, value.kind)}, {text}, {state.result})"]
+        ended = [state.live, *(state.loops[-1:] and {state.loops[-1].looping: 0, state.loops[-1].going: 0})]
+        return lines + [f"{name} = {name} & ~{taken}" for name in ended]
+
+    def _loop(self, loop: For | While, indent: str) -> str:
+        if isinstance(loop, For) and counted(loop) and not _leaves(loop.body):
+            return self._counting(loop, indent)
+        start, step = (loop.start, loop.step) if isinstance(loop, For) else (None, None)
+        text = self._statement(start, indent) if start else ""
+        looping = self._unused("looping")
+        going = self._unused("going") if _leaves(loop.body, ("continue",)) else looping
+        around = [name for name in (self._state.masks[-1], self._state.live) if name]
+        text += f"{indent}{looping} = {self._all_of([*around, *self._unless_true(loop.condition)])}\n"
+        text += f"{indent}while np.any({looping}):\n"
+        inner = indent + INDENT
+        text += f"{inner}{going} = {looping}\n" if going != looping else ""
+        self._state.loops.append(_Loop(looping, going))
+        text += self._within(going, loop.body, inner)
+        text += self._within(looping, [step], inner) if step else ""
+        self._state.loops.pop()
+        if _is_condition(loop.condition):
+            text += f"{inner}{looping} = {self._all_of([looping, *self._unless_true(loop.condition)])}\n"
+        return text + self._after_a_loop_that_returns(loop, indent)
+
+    def _after_a_loop_that_returns(self, loop: For | While, indent: str) -> str:
+        if not self._state.loops or not any(isinstance(node, Return) for node in inside(loop.body)):
+            return ""
+        outer = self._state.loops[-1]
+        names = dict.fromkeys((outer.looping, outer.going))
+        text = "".join(f"{indent}{name} = {name} & {self._state.live}\n" for name in names)
+        return text + self._without_those_that_left(indent)
+
+    def _counting(self, loop: For, indent: str) -> str:
+        """A loop that counts the same for all normals."""
+        start, condition, step = loop.start, loop.condition, loop.step
+        assert isinstance(start, Declare) and isinstance(condition, Binary) and isinstance(step, Assign)
+        self._state.depth[start.name] = len(self._state.masks) - 1
+        by = self._text(step.value)
+        end = self._text(condition.right) + (" + 1" if condition.operator == "<=" else "")
+        counts = f"np.arange({self._value_of(start)}, {end}{'' if by == '1' else f', {by}'}, dtype={TYPES[start.kind]})"
+        body = self._statements(loop.body, indent + INDENT) or f"{indent}{INDENT}pass\n"
+        return f"{indent}for {self._name(start.name)} in {counts}:\n{body}"
+
+    def _all_of(self, conditions: list[str]) -> str:
+        return " & ".join(conditions) or "np.bool_(True)"
+
+    def _unless_true(self, condition: Expression) -> list[str]:
+        return [self._typed(condition, BINDING["&"])] if _is_condition(condition) else []
+
+    def _name(self, name: str) -> str:
+        if name in self._state.depth or name in self._renamed:
+            return super()._name(name)
+        return self._own(name) if name in self._taken else name
+
+
+def _is_condition(condition: Expression) -> bool:
+    return condition != TRUE
+
+
+def _leaves(node: object, leaving: tuple[str, ...] = ("break", "continue")) -> bool:
+    """Whether statements may leave the loop around them: a loop within has words of its own, but returns leave all."""
+    if isinstance(node, list):
+        return any(_leaves(one, leaving) for one in node)
+    match node:
+        case Leave(word):
+            return word in leaving
+        case Return():
+            return "break" in leaving
+        case For() | While():
+            return "break" in leaving and any(isinstance(one, Return) for one in inside(node.body))
+        case If(_, chosen, other):
+            return _leaves(chosen, leaving) or _leaves(other, leaving)
+        case Block(body):
+            return _leaves(body, leaving)
+    return False
+
+
+def _returns(statements: list[Statement], is_in_loop: bool) -> Iterator[tuple[Return, bool]]:
+    """Each return, and whether it stands in a loop."""
+    for statement in statements:
+        match statement:
+            case Return():
+                yield statement, is_in_loop
+            case If(_, chosen, other):
+                yield from _returns([*chosen, *other], is_in_loop)
+            case Block(body):
+                yield from _returns(body, is_in_loop)
+            case For() | While():
+                yield from _returns(statement.body, True)
+
+
+def _with_choices(statements: list[Statement]) -> list[Statement]:
+    """if (c) return a; return b; as return c ? a : b."""
+    match statements:
+        case [
+            *first,
+            If(condition, [Return(Expression() as chosen)], []) as test,
+            Return(Expression() as other) as last,
+        ]:
+            made = Return(Choice(chosen.kind, condition, chosen, other), above=[*test.above, *last.above])
+            return _with_choices([*first, made])
+        case [*first, If(condition, [Return(Expression() as chosen)], [Return(Expression() as other)]) as test]:
+            made = Return(Choice(chosen.kind, condition, chosen, other), above=test.above)
+            return _with_choices([*first, made])
+    return statements

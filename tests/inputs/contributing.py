@@ -1,0 +1,64 @@
+"""The examples of CONTRIBUTING.md, and a copy of the code that they are added to."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from manual import ROOT
+
+PAGE = (ROOT / "CONTRIBUTING.md").read_text()
+NEW = re.compile(r"<!-- new (\S+) -->\n```\w+\n(.*?)^```$", re.S | re.M)
+LINE = re.compile(r"<!-- line (\S+), below (.*?) -->\n```\w+\n(.*?\n)```$", re.S | re.M)
+
+
+@dataclass(frozen=True)
+class Example:
+    """What is added to the code.
+
+    Attributes:
+        files: texts of new files by their paths.
+        lines: path, the line above, and the line with its end.
+    """
+
+    files: dict[str, str]
+    lines: list[tuple[str, str, str]]
+
+    def add_to(self, package: Path) -> None:
+        """Add it to a copy of the code."""
+        for name, text in self.files.items():
+            path = package / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        for name, above, line in self.lines:
+            path = package / name
+            lines = path.read_text().splitlines(keepends=True)
+            (at,) = [number for number, one in enumerate(lines, 1) if one.strip() == above]
+            path.write_text("".join([*lines[:at], line, *lines[at:]]))
+
+
+EXAMPLES = {
+    title.lower(): Example(dict(NEW.findall(text)), LINE.findall(text))
+    for title, text in re.findall(r"^## (An? .*?)\n(.*?)(?=^## |\Z)", PAGE, re.S | re.M)
+}
+
+
+def a_copy_of_the_rooms(folder: Path) -> Path:
+    """The package as a plain folder that Python finds from `folder` before the installed one."""
+    package = folder / "normalbench"
+    for room in ("encodings", "gbuffer", "bench", "reports"):
+        for source in (ROOT / room).rglob("*"):
+            if source.is_file() and "__pycache__" not in source.parts:
+                target = package / source.relative_to(ROOT)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(source.read_bytes())
+    return package
+
+
+def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
+    """The command of a copy."""
+    command = [sys.executable, "-m", "normalbench", *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)

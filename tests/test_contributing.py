@@ -1,0 +1,80 @@
+"""What CONTRIBUTING.md says is added as it says, in a copy of the code; and its commands are there."""
+
+import csv
+import io
+import json
+import re
+
+import pytest
+from contributing import EXAMPLES, PAGE, a_copy_of_the_rooms, normalbench_in
+from manual import ROOT
+
+
+def test_each_example_has_the_files_and_lines_that_it_says():
+    """The table at the top counts them."""
+    rows = re.findall(r"^\| (an? \w+) +\| +(\d+) \| +(\d+) \|$", PAGE, re.M)
+    said = {name: (int(files), int(lines)) for name, files, lines in rows}
+    assert said == {name: (len(one.files), len(one.lines)) for name, one in EXAMPLES.items()}
+
+
+def test_its_commands_are_those_of_the_makefile_and_of_the_tests():
+    targets = re.findall(r"^    make (\w+)", PAGE, re.M)
+    makefile = (ROOT / "Makefile").read_text()
+    assert targets and all(re.search(rf"^{target}:", makefile, re.M) for target in targets)
+    for path in re.findall(r"(?:tests|docs|bench)/[\w/]+(?:\.py|\.md)?", PAGE):
+        is_example = any(path in name for one in EXAMPLES.values() for name in one.files)
+        assert is_example or (ROOT / path).exists(), path
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """The code with every example, but for the table, which test_new_table.py uses."""
+    folder = tmp_path_factory.mktemp("copy")
+    package = a_copy_of_the_rooms(folder)
+    for name, example in EXAMPLES.items():
+        if name != "a table":
+            example.add_to(package)
+    return folder
+
+
+def rows_of(folder, *arguments):
+    done = normalbench_in(folder, *arguments, "--format", "csv")
+    assert done.returncode == 0, done.stderr
+    return list(csv.DictReader(io.StringIO(done.stdout)))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_an_encoding_is_a_pair_and_a_line(copy):
+    """It has a row in both languages; it is stereographic projection under another name."""
+    names = ("paraboloid", "stereographic")
+    rows = rows_of(copy, "quality", "--encoding", ",".join(names), "--storage", "rg16", "--normals", "hemisphere")
+    figures = {(row["encoding"], row["backend"]): float(row["psnr_db"]) for row in rows}
+    assert set(figures) == {(name, backend) for name in names for backend in ("jax", "glsl")}
+    for backend in ("jax", "glsl"):
+        assert figures["paraboloid", backend] == pytest.approx(figures["stereographic", backend], abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_an_effect_is_a_pair_and_a_line(copy):
+    """It is listed with its setting, and measured."""
+    assert "dimmed" in normalbench_in(copy, "list", "effects").stdout
+    arguments = ("--encoding", "octahedral", "--storage", "rg8", "--scene", "spheres", "--size", "64x48")
+    (row,) = rows_of(copy, "effects", "--effect", "dimmed:strength=0.25", *arguments)
+    assert row["effect"] == "dimmed:strength=0.25" and float(row["psnr_db"]) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl")
+def test_a_language_is_a_writer_a_module_and_two_lines(copy):
+    """Its file is run before it is written."""
+    done = normalbench_in(copy, "code", "octahedral", "--storage", "rg8", "--to", "signed", "-o", "made")
+    assert done.returncode == 0, done.stderr
+    (path,) = (copy / "made").iterdir()
+    text = path.read_text()
+    assert path.name == "octahedral_rg8.signed.glsl" and "// Written by an example." in text
+    assert "all 65536 texels" in " ".join(text.replace("//", "").split())
+    arguments = ("--check", "octahedral", "--storage", "rg8", "--to", "signed", "--format", "json")
+    done = normalbench_in(copy, "code", *arguments)
+    assert json.loads(done.stdout)[0]["signed"] is not None, done.stderr
