@@ -21,7 +21,7 @@ def test_its_commands_are_those_of_the_makefile_and_of_the_tests():
     targets = re.findall(r"^    make (\w+)", PAGE, re.M)
     makefile = (ROOT / "Makefile").read_text()
     assert targets and all(re.search(rf"^{target}:", makefile, re.M) for target in targets)
-    for path in re.findall(r"(?:tests|docs|bench)/[\w/]+(?:\.py|\.md)?", PAGE):
+    for path in re.findall(r"(?:tests|docs|bench)/[\w/-]+(?:\.py|\.md)?", PAGE):
         is_example = any(path in name for one in EXAMPLES.values() for name in one.files)
         assert is_example or (ROOT / path).exists(), path
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from .depth_encoding import DepthEncoding
 from .encoding import Encoding
@@ -30,38 +30,6 @@ class AnyEncoding(Protocol):
     def ulps_reason(self) -> str: ...
     @property
     def signatures(self) -> tuple[str, ...]: ...
-
-
-class AnyCodec(Protocol):
-    """What codecs of every kind can do: an encoding in a storage."""
-
-    @property
-    def name(self) -> str:
-        """What rows call it."""
-        ...
-
-    @property
-    def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can."""
-        ...
-
-    @property
-    def bits(self) -> int:
-        """The bits it occupies."""
-        ...
-
-    @property
-    def codes(self) -> int:
-        """How many codes it has, used or not."""
-        ...
-
-    def stored(self, *given: Any) -> Any:
-        """The code of what is given as it comes back from the storage."""
-        ...
-
-    def round_trip(self, *given: Any) -> Any:
-        """What is given, encoded, stored and decoded."""
-        ...
 
 
 @dataclass(frozen=True)

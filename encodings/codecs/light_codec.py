@@ -20,14 +20,19 @@ class LightCodec:
 
     @property
     def name(self) -> str:
-        """The encoding's, which is made for one format; the format's where a texel is the light itself."""
-        return self.storage.name if self.encoding.is_plain else self.encoding.name
+        """The encoding's; the format's where a texel is the light itself."""
+        return self.storage.name if self.encoding.is_plain else self._named[0]
+
+    @property
+    def _named(self) -> tuple[str, str]:
+        """Name and title of the encoding in this format."""
+        return self.encoding.in_curve if self.storage.curved else (self.encoding.name, self.encoding.title)
 
     @property
     def title(self) -> str:
         """What a reader calls it."""
         lacks = "" if self.has_alpha else ", no fourth channel"
-        return f"{self.storage.title}{lacks}" if self.encoding.is_plain else self.encoding.title
+        return f"{self.storage.title}{lacks}" if self.encoding.is_plain else self._named[1]
 
     @property
     def misfit(self) -> str | None:

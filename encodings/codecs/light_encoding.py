@@ -36,6 +36,7 @@ class LightEncoding:
         constants: numbers that both languages need, by their GLSL name.
         ranged: makes the encoding over another range, named `<name>:<range>`; None where it has none.
         is_plain: whether a texel is the light itself; a light buffer of it goes by the format's name.
+        in_curve: its name and title in a format that keeps colours by the sRGB curve, where it is made for one.
     """
 
     name: str
@@ -53,6 +54,7 @@ class LightEncoding:
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     ranged: Callable[[float], LightEncoding] | None = None
     is_plain: bool = False
+    in_curve: tuple[str, str] = ("", "")
 
     @property
     def no_light(self) -> float:

@@ -1,4 +1,8 @@
-"""Light over a range, in fixed point: Ols's RGBA8 scaled to [0, 2]."""
+"""Light over a range, in fixed point: Ols's RGBA8 scaled to [0, 2].
+
+`srgb` is the same numbers in a target that keeps colours by the sRGB curve and adds them in linear light. The curve is
+the hardware's: what the shader writes and reads is linear. The fourth channel has no curve.
+"""
 
 from dataclasses import replace
 from functools import partial
@@ -22,12 +26,17 @@ def decode(e: Vec4, limit: float = RANGE) -> Vec4:
     return e * limit
 
 
+def _in_curve(name: str, limit: float) -> tuple[str, str]:
+    return name, f"sRGB RGBA8, scaled to [0, {limit:g}]"
+
+
 def ranged(limit: float) -> LightEncoding:
     """The encoding over another range, in both languages."""
     return replace(
         ENCODING,
         name=f"linear:{limit:g}",
         title=f"RGBA8, linear, scaled to [0, {limit:g}]",
+        in_curve=_in_curve(f"srgb:{limit:g}", limit),
         encode=partial(encode, limit=limit),
         decode=partial(decode, limit=limit),
         limit=limit,
@@ -38,9 +47,10 @@ def ranged(limit: float) -> LightEncoding:
 ENCODING = LightEncoding(
     name="linear",
     title="RGBA8, linear, scaled to [0, 2]",
+    in_curve=_in_curve("srgb", RANGE),
     encode=encode,
     decode=decode,
-    storages=("rgba8",),
+    storages=("rgba8", "srgb8_a8"),
     blend="add",
     has_alpha=True,
     limit=RANGE,
