@@ -9,11 +9,13 @@ from typing import Any
 from ..ground.output.errors import tell
 from ..ground.output.writing import check_writable, without, write
 from .change_lines import in_short, total, what_matters
-from .comparison import GONE, compared
+from .comparison import GONE, compared, measured_otherwise
 from .runs import read_run
 
 # What begins the names of such facts: see `machine.settings`.
 SETTING = "setting "
+# How many conditions a line names that rows were measured under otherwise.
+MOST_NAMED = 3
 FOR_PROGRAMS = ("severity", "keys", "unit")
 # What makes `--fail-on` fail.
 FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GONE, "")}
@@ -35,6 +37,9 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
         tell("the machines differ; times are not compared")
     if apart := _settings_apart(ours.facts.get("machine") or {}, theirs.facts.get("machine") or {}):
         tell(f"figures may differ because settings do: {'; '.join(apart)}")
+    if otherwise := measured_otherwise(ours, theirs):
+        more = f"; and {len(otherwise) - MOST_NAMED} other conditions" if len(otherwise) > MOST_NAMED else ""
+        tell(f"figures may differ because rows were measured otherwise: {'; '.join(otherwise[:MOST_NAMED])}{more}")
     if not changes:
         tell(f"no change in {len(ours.steps)} steps")
     if format in ("table", "markdown"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -27,6 +28,8 @@ CEILING = -20 * math.log10(FLOOR)
 SMALL, SMALL_OTHER = 0.1, 0.2
 # As people read it.
 LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}".replace("%", " %")
+# What decides a figure beside the code that is measured: where two rows differ in one of them, so may their figures.
+CONDITIONS = ("count", "seed", "size", "samples", "lights", "device", "rounded_by", "compiled_by")
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
@@ -44,6 +47,22 @@ def compared(before: Done, after: Done) -> list[Row]:
         before_rows, after_rows = (named_rows(table, rows.get(name, [])) for rows in (ours, theirs))
         found += _between(name, table, before_rows, after_rows, same_machine)
     return in_order(found)
+
+
+def measured_otherwise(before: Done, after: Done) -> list[str]:
+    """The conditions under which rows of both runs were measured otherwise, in words; those of most rows first."""
+    found: Counter[tuple[str, Any, Any]] = Counter()
+    for name, ours in before.tables.items():
+        table = TABLES.get(name)
+        theirs = named_rows(table, after.tables.get(name, []))
+        for key, row in named_rows(table, ours).items():
+            other = theirs.get(key, {})
+            known = [column for column in CONDITIONS if None not in (row.get(column), other.get(column))]
+            found.update((column, row[column], other[column]) for column in known if row[column] != other[column])
+    return [
+        f"{column} was {one} and is {other} in {count} row{'s' * (count > 1)}"
+        for (column, one, other), count in found.most_common()
+    ]
 
 
 def in_order(changes: Sequence[Row]) -> list[Row]:

@@ -14,7 +14,7 @@ from contributing import a_copy_of_the_rooms
 from normalbench.bench.ground.machine.settings import settings
 from normalbench.bench.keep import compare_command
 from normalbench.bench.keep.change_lines import in_short, total, what_matters
-from normalbench.bench.keep.comparison import compared, mann_whitney
+from normalbench.bench.keep.comparison import compared, mann_whitney, measured_otherwise
 from normalbench.bench.keep.runs import Done, read_run
 
 MACHINE = {"machine": {"GL": "one"}}
@@ -48,6 +48,21 @@ def test_figures_are_compared_exactly_and_nan_is_itself():
     (change,) = compared(run_of(same), run_of(same | {"triangles": np.nextafter(1 / 3, 1)}))
     assert (change["table"], change["row"], change["column"]) == ("sweep", "a", "triangles")
     assert change["verdict"] == "worse"
+
+
+def test_rows_that_were_measured_otherwise_are_said():
+    """By another compiler, or of another number of normals: no figure is set beside it without a word."""
+    row = {"encoding": "xyz", "storage": "rg8", "count": 2**20, "compiled_by": "XLA", "psnr_db": 50.0}
+    others = [row | {"count": 2**26, "compiled_by": "gcc 12"}, row | {"storage": "rg16", "count": 2**26}]
+    runs = [
+        Done(MACHINE, [{"table": "quality", "key": {}, "rows": [one]} for one in rows])
+        for rows in ([row, row | {"storage": "rg16"}], others)
+    ]
+    assert measured_otherwise(*runs) == [
+        "count was 1048576 and is 67108864 in 2 rows",
+        "compiled_by was XLA and is gcc 12 in 1 row",
+    ]
+    assert measured_otherwise(runs[0], runs[0]) == []
 
 
 def test_steps_that_one_run_lacks_are_named():
