@@ -116,7 +116,7 @@ def _by_column(row: Sequence[Row]) -> list[Row]:
 
 
 def _rank(change: Row) -> tuple[int, float]:
-    """What changes are ordered by."""
+    """The key that sorts changes: their group, then the largest first."""
     return _group(change), -abs(change["severity"])
 
 

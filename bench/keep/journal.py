@@ -78,7 +78,7 @@ class Journal:
         self._file, self.lines = file, list(lines)
 
     def close(self) -> None:
-        """Let others write it."""
+        """Close the file, so that others may write it."""
         self._file.close()
 
 

@@ -187,7 +187,7 @@ class Run:
             self._journal.replace(lines)
 
     def finish(self) -> None:
-        """Every step has its rows."""
+        """Write that every step has its rows."""
         self.facts |= {"finished": True, **_seal((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
 

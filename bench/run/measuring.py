@@ -92,7 +92,7 @@ HERE = Here()
 
 
 class Nothing:
-    """Nothing is kept."""
+    """What keeps no rows: every step is measured anew."""
 
     def find(self, table: str, step: Step) -> list[Row] | None:  # noqa: ARG002 # as of every Kept
         return None

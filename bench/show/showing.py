@@ -55,13 +55,13 @@ def _with_lists(table: Table, rows: Sequence[Row]) -> list[Row]:
 
 
 def bins(text: str) -> list[tuple[float, int]]:
-    """The bins of `from:count` words."""
+    """The lower edge and the count of each bin of a text of `from:count` words."""
     pairs = (word.split(":") for word in text.split())
     return [(float(edge), int(count)) for edge, count in pairs]
 
 
 def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
-    """The finished rows for people."""
+    """The sheets that people are shown of finished rows."""
     if table.work.shown:
         yield from table.work.shown(done)
         return

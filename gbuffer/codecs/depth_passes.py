@@ -101,7 +101,7 @@ class DepthPasses(Passes):
 
 
 def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
-    """The camera as uniforms."""
+    """The uniforms that describe the camera, by name."""
     projection = encoding.projection
     return {
         "rays": camera.rays,

@@ -44,7 +44,7 @@ class Packing(Protocol):
         ...
 
     def unpack(self) -> Operation:
-        """And back."""
+        """A texel back to the numbers."""
         ...
 
 

@@ -48,7 +48,7 @@ class Pass:
 
     @property
     def begins(self) -> tuple[Resource, ...]:
-        """What it writes from nothing."""
+        """The resources that it writes and does not read."""
         return tuple(resource for resource in self.writes if resource not in self.reads)
 
     @property

@@ -87,7 +87,7 @@ class Frame:
                 self.held(resource).move_on()
 
     def held(self, resource: Resource) -> Held:
-        """A resource on the device."""
+        """The textures of a resource, made when it is first asked for."""
         if resource.shares and resource.is_shared(self.plan):
             return self.held(resource.shares)
         if resource not in self._held:

@@ -29,7 +29,7 @@ class Held:
         return self._copies[place]
 
     def move_on(self) -> None:
-        """Use the next copy."""
+        """Make the next copy the one in use."""
         self._used = (self._used + 1) % self._resource.copies
 
     def _made(self, texel: Texel) -> Any:

@@ -108,7 +108,7 @@ class Total:
         self.add((other.figures, other.histogram, other.worst))
 
     def as_text(self) -> str:
-        """For `total_of`, exactly."""
+        """All its numbers as text, from which `total_of` makes it again, exactly."""
         at = np.flatnonzero(self.histogram)
         counted = np.stack([np.diff(at, prepend=0), self.histogram[at]]).astype("<i8")
         worst = self.worst and [*map(float, (*self.worst.normal, *self.worst.decoded, self.worst.angle_deg))]
@@ -117,7 +117,7 @@ class Total:
 
 
 def total_of(text: str) -> Total:
-    """What `Total.as_text` gave."""
+    """The total that a text of `Total.as_text` stands for."""
     said, made = json.loads(text), Total()
     steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(said["counts"])), "<i8").reshape(2, -1)
     made.figures = Figures(*map(Fraction, said["sums"]))

@@ -72,7 +72,7 @@ class Admission:
         return self._taken[address]["host"]
 
     def lose(self, address: str) -> None:
-        """A worker is gone."""
+        """Forget a worker that is gone."""
         self._taken.pop(address, None)
 
 

@@ -80,7 +80,7 @@ class MainThread(Executor):
                 future.set_exception(error)
 
     def end(self) -> None:
-        """No further jobs."""
+        """Take no further jobs."""
         self._jobs.put(None)
 
 

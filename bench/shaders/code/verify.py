@@ -79,7 +79,7 @@ class Agreement:
 
     @property
     def says(self) -> str:
-        """In words."""
+        """The agreement in words, as a file's head has it."""
         if not self.differing:
             codes = f"all {self.count} texels are equal, bit for bit"
         elif self.searches:
@@ -124,7 +124,7 @@ def agreement(codec: Codec, language: str, path: Path, interface: Interface) -> 
 
 
 def compared(codec: Codec, expected: Reference, ran: Ran) -> Agreement:
-    """Results against the catalogue's."""
+    """How the results of a file differ from the catalogue's."""
     channels = Channels(codec)
     found = np.stack([_bits(channels, at, ran.words) for at in range(len(channels.channels))], axis=1)
     apart = np.stack(

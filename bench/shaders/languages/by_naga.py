@@ -21,7 +21,7 @@ ENTRY, GROUP, ROW = "normalbench_second", 64, 16
 
 
 def main(folder: Path) -> None:
-    """What the command does."""
+    """Run the file of a folder on a Vulkan device, and write what it gives there."""
     import wgpu
 
     found = adapters()

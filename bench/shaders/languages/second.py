@@ -74,7 +74,7 @@ def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
 
 
 def _frame(name: str, encoder: Translated) -> str:
-    """What calls the two functions."""
+    """The program around a file, which calls its two functions."""
     size = encoder.components
     words = {"CODE": "xyz"[:size], "ZEROS_E": "0.0, 0.0" if size == 2 else "0.0"}
     for side, (function, takes_view) in zip(("ENCODE", "DECODE"), encoder.functions, strict=True):

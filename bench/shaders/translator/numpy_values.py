@@ -158,7 +158,7 @@ class NumpyValues(Writer):
         return f"{self._helped('_times')}(np.swapaxes({self._text(right)}, -1, -2), {self._text(left)})"
 
     def _division(self, value: Binary) -> tuple[str, int]:
-        """Of whole numbers."""
+        """A quotient or a remainder of whole numbers, and how tightly it binds."""
         left, right, mark = value.left, value.right, value.operator
         if scalar_of(left.kind) == "uint" and isinstance(right, Literal) and int(right.text, 0):
             level = BINDING[mark]
@@ -242,7 +242,7 @@ class NumpyValues(Writer):
             yield text if size_of(one.kind) == 1 else f"*{self._helped('_parts')}({text})"
 
     def _converted(self, value: Expression, scalar: str) -> str:
-        """Numbers of another type."""
+        """A value as numbers of another type."""
         mine = scalar_of(value.kind)
         if mine == scalar:
             return self._typed(value)

@@ -94,7 +94,7 @@ class Parser:
         self._words = {token.text for token in given if token.kind == "word"}
 
     def program(self) -> Program:
-        """All of it. Raises TranslationError."""
+        """The tree of the whole text. Raises TranslationError."""
         with one_error_type(self._error):
             found = self._program()
         found.functions[:0] = self._made_functions.values()

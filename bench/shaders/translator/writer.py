@@ -95,7 +95,7 @@ class Writer:
         self._used: set[str] = set()
 
     def program(self, program: Program) -> str:
-        """All of it. Raises TranslationError."""
+        """The text of the whole program. Raises TranslationError."""
         everything = [*program.constants, *program.tables, *program.functions]
         self._taken = {one.name for one in everything} | self.reserved | BUILTINS
         self._taken |= {*self.kinds.values(), *self.functions.values()}

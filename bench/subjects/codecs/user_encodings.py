@@ -373,7 +373,7 @@ class Looks:
 
     @property
     def notes(self) -> list[str]:
-        """What was guessed of it."""
+        """What was guessed of the file, in sentences."""
         notes = [*self.said, *self.glsl.get("notes", []), *([self.unit_note] if self.is_unit else [])]
         return [*notes, *self._of_domain()]
 

@@ -112,7 +112,7 @@ def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None
 
 
 def main() -> int:
-    """Do what the arguments say."""
+    """Write what the arguments ask for; the exit status."""
     mode, kind, path, out, *names = sys.argv[1:]
     limit_addresses(MAX_MEMORY)
     # Each thread takes address space, and processes beside this one take the cores.

@@ -64,7 +64,7 @@ def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[s
 
 
 def _size(case: Case) -> int:
-    """How many numbers go in."""
+    """How many numbers the function of a case takes of each normal."""
     encoding = _encoding(case)
     return 3 if case.operation == "encode" else encoding.components + encoding.sign_bits
 
@@ -113,7 +113,7 @@ class Normals:
 
 
 def joined(shards: Sequence[tuple[Vec3, Vec3]]) -> tuple[Vec3, Vec3]:
-    """The shards' planes as one."""
+    """The planes of all shards, one after the other."""
     return jax.tree.map(lambda *parts: jnp.concatenate(parts), *shards)
 
 
@@ -139,7 +139,7 @@ def total(function: Function, given: Any, view: Vec3) -> Any:
 
 
 def total_by_blocks(function: Function, given: Any, view: Vec3) -> Any:
-    """The same in blocks."""
+    """All that a function makes of planes, added up block by block: what a core's cache holds."""
 
     def step(carry, block):
         return carry + sum(function(*block)), None

@@ -83,7 +83,7 @@ class Drawn:
 
     @property
     def shown(self) -> np.ndarray:
-        """The image as displayed."""
+        """An image of light as a display shows it, in [0, 1]."""
         return self.display.image(self.linear)
 
 

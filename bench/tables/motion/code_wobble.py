@@ -49,12 +49,12 @@ class Total:
     jump_sum: float = 0.0
 
     def add(self, frame: Frame) -> None:
-        """A frame by itself."""
+        """Add the errors of a frame."""
         self.points += int(np.count_nonzero(frame.counts))
         self.squares += float(np.sum(frame.error[frame.counts] ** 2))
 
     def add_pair(self, one: Frame, other: Frame) -> None:
-        """A frame and the next."""
+        """Add what changes from a frame to the next."""
         both = one.counts & other.counts
         change = _length(other.error - one.error)[both]
         jumped = reduce(np.logical_or, (other.codes != one.codes).T)[both]

@@ -323,7 +323,7 @@ def _figures(s: Statistics, area: float | None) -> Row:
 
 
 def _components(vector: np.ndarray) -> str:
-    """Three float32, as they are."""
+    """A vector as text, with all digits of its three float32."""
     return f"({', '.join(map(str, vector))})"
 
 

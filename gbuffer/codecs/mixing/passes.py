@@ -59,7 +59,7 @@ class Meetings:
 
     @property
     def seconds(self) -> np.ndarray:
-        """The one to its right."""
+        """The normal to the right of the first one of each patch, (height, width, 4)."""
         return self.normals[::SIDE, 1::SIDE]
 
     @property
@@ -112,7 +112,7 @@ class MixPasses:
         self._stack.close()
 
     def _passed(self, shader: str) -> VertexArray:
-        """A pass, compiled once."""
+        """The pass of a fragment shader, which is compiled once."""
         if shader not in self._passes:
             made = self._device.fragment_pass(shader, self._defines, self._names)
             self._passes[shader] = self._device.owned(self._stack, made)

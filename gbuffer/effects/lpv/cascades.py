@@ -134,7 +134,7 @@ def sun_sight(sun: Light, cascade: Cascade, box: np.ndarray, texels: int) -> Sig
 
 
 def spot_sight(spot: Light) -> Sight:
-    """A spot's cone."""
+    """The camera of a spot's shadow, which sees its cone."""
     way = np.array(spot.direction)
     up = tuple(np.eye(3)[np.argmin(abs(way))].tolist())
     view = View(spot.position, tuple((np.array(spot.position) + way).tolist()), 90.0, 1.0, 2.0, up)

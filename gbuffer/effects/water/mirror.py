@@ -37,7 +37,7 @@ class MirrorSight:
         return matrix
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """As the view's."""
+        """The rays of the view that is mirrored: `View.rays`."""
         return self.view.rays(size)
 
 

@@ -45,20 +45,20 @@ class Maps:
 
     @property
     def heights(self) -> Resource:
-        """Height and slope."""
+        """The volume of the water's height and slope."""
         return Resource("water_heights", "rgba32f", (self.texels, self.texels), depth=self.octaves)
 
     @property
     def bends(self) -> Resource:
-        """Second derivatives of the height."""
+        """The volume of the second derivatives of the height."""
         return Resource("water_bends", "rgba32f", (self.texels, self.texels), depth=self.octaves)
 
     @property
     def caustics(self) -> Resource:
-        """Sunlight on the ground, by that under still water, one slice for each of some depths."""
+        """The volume of sunlight on the ground over that under still water, one slice for each of some depths."""
         return Resource("water_caustics", "r32f", (self.texels, self.texels), depth=CONSTANTS["CAUSTIC_SLICES"])
 
     def defines(self, chop: float) -> dict[str, object]:
-        """Macros."""
+        """The macros that shaders of the maps are compiled with."""
         own = {"LEVELS": self.octaves, "TEXELS": self.texels, "WAVE_COUNT": self.octaves * WAVES, "CHOP": float(chop)}
         return {**elementary.CONSTANTS, **CONSTANTS, **own, "CELLS": CELLS, "MARGIN": MARGIN}

@@ -67,7 +67,7 @@ def _cables() -> Iterator[Mesh]:
 
 
 def _cable(start: np.ndarray, middle: np.ndarray, end: np.ndarray) -> Mesh:
-    """Along a quadratic Bezier curve."""
+    """The mesh of a cable along a quadratic Bezier curve."""
     t = np.linspace(0, 1, CABLE_STEPS)[:, None]
     path = (1 - t) ** 2 * start + 2 * t * (1 - t) * middle + t * t * end
     return swept(path, (CABLE_RADIUS,) * CABLE_STEPS, CABLE_SIDES)

@@ -17,7 +17,7 @@ from ....ground.machine.vulkan import adapters
 
 
 def main(words: Sequence[str]) -> None:
-    """What the command does."""
+    """Have naga read a file of WGSL, under the limits of a process for users' code."""
     children.limit_this_process()
     import wgpu
 

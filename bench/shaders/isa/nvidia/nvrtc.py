@@ -54,7 +54,7 @@ class Nvrtc:
             self._library.nvrtcDestroyProgram(ctypes.byref(program))
 
     def _log(self, program: ctypes.c_void_p) -> str:
-        """The first error."""
+        """The first error that the compiler names, else its first line."""
         lines = self._bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
         return next((line for line in lines if "error" in line), lines[0] if lines else "it does not say why")[:200]
 

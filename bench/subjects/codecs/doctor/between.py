@@ -78,7 +78,7 @@ FOLDS = (NOTHING, Step("the other one's fold, whose .xy is .yx,", _other_fold))
 
 @cache
 def _orders(size: int) -> tuple[Step, ...]:
-    """Numbers swapped and negated."""
+    """Every way to swap and to negate the numbers of a code, the shortest to say first."""
     made = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):

@@ -128,7 +128,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
-    """Of directions that come back."""
+    """What is wrong, in lines, with directions that the code holds."""
     found = list(nearly.mistakes(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
     # What is scaled or shifted is far off where the map is steep, which says nothing more.
     seams = [] if found else [*exact.seam(held, probe), *exact.poles(held)]

@@ -37,11 +37,11 @@ class Domain:
         return np.sum(trip.n * trip.view, axis=1) < 0 if self.name == "view" else np.full(len(trip.n), True)
 
     def held(self, trip: Trip) -> Trip:
-        """Those of a trip."""
+        """The part of a trip whose directions it has."""
         return trip.of(self.holds(trip))
 
     def lost(self, trip: Trip) -> Trip:
-        """Those of a trip that a hemisphere lacks, but for its rim."""
+        """The part of a trip that a hemisphere lacks, without its rim."""
         return trip.of(trip.n[:, self.axis] * self.side < -RIM)
 
     @property

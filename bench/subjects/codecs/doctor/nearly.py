@@ -72,7 +72,7 @@ class Lattice:
         return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
     def whole(self, codes: np.ndarray) -> np.ndarray:
-        """Codes in steps."""
+        """Codes counted in steps: whole numbers where they lie on the lattice."""
         return (codes * 0.5 + 0.5 if self.is_unit else codes) * self.steps
 
     @property
@@ -104,7 +104,7 @@ class Start:
         return self.about * (1 - self.scale)
 
     def of(self, codes: np.ndarray) -> np.ndarray:
-        """Codes at which it begins."""
+        """Codes, scaled and shifted as the search begins."""
         return codes * self.scale + self.shift
 
 

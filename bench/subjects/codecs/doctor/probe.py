@@ -73,7 +73,7 @@ class Trip:
     decoded: np.ndarray
 
     def of(self, which: np.ndarray) -> Trip:
-        """Some of them."""
+        """The trip of some of its directions, a mask or indices."""
         return Trip(self.n[which], self.view[which], self.codes[which], self.decoded[which])
 
     @property
