@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tomllib
 from contextlib import nullcontext, suppress
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import NoReturn
@@ -28,9 +28,7 @@ from normalbench.bench.run import measuring
 from normalbench.bench.run.workers import places
 from normalbench.bench.show import report
 from normalbench.bench.tables.columns import explained
-from normalbench.bench.tables.growth import work as growth
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.throughput import measure as throughput
 from normalbench.gbuffer.scenes.mesh import sphere
 
 MOST_LINES = 150
@@ -95,7 +93,7 @@ def test_every_example_is_used():
 
 # What takes more than a second of processor time: it renders, tunes, draws, compiles or measures many rows.
 LONG = re.compile(
-    r"normalbench (pick|mix|maps|render|effects|motion|lights|sweep|throughput|growth|tune|run|report|frames|check|code"
+    r"normalbench (pick|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check|code"
     r"|published)\b(?! --help)|python|normalbench (doctor|vectors)$"
     r"|.*(--on |--plot|--report|--worst-case|--encoding all|--arithmetic float|--far|--normals (scene|frame))"
 )
@@ -116,7 +114,7 @@ TAKEN = "test_readme.py::test_every_long_command_is_taken_as_written"
 BEGINNINGS = (
     (measuring.Here, "measure"),
     (code_command, "agreement"),
-    (report, "read_run"),
+    (report, "read_to_show"),
     (examine, "examined"),
     (machine, "examine"),
 )
@@ -185,11 +183,6 @@ def test_every_command_runs_as_written(command, readers_folder, monkeypatch, cap
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         return
-    # Rates are no part of the manual: three turns are measured, however short.
-    monkeypatch.setattr(throughput, "LONG_ENOUGH", 0.0)
-    # Neither is how times grow: the largest of three sizes takes most of the time.
-    kinds = {name: replace(kind, usual=kind.usual[:2]) for name, kind in growth.KINDS.items()}
-    monkeypatch.setattr(growth, "KINDS", kinds)
     monkeypatch.setattr(sys, "argv", [*words, *in_small(words)])
     assert cli.main() == 0, capsys.readouterr().err
     for option in ("-o", "--images", "--plot"):

@@ -21,7 +21,7 @@ from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
 from ..run.measuring import Asked, Place, asked, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
-from ..run.workers.places import keep_times, place
+from ..run.workers.places import place
 from ..show.showing import say_lines, say_skipped, show_summary
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
@@ -153,7 +153,6 @@ def _measured_and_shown(
             shown = _measure_all(run, asks, said, where, second)
         shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
-        keep_times(where, run.folder)
         _complete(run, shown, second.drawn if second else {})
     except (KeyboardInterrupt, SystemExit):
         tell(f"{run.kept} of {total} steps are kept; the same command goes on")

@@ -55,7 +55,7 @@ def _share_a_row(before: Done, after: Done) -> bool:
 
 
 def _names(done: Done) -> set[tuple]:
-    return {(name, *key) for name, rows in done.tables.items() for key in named_rows(TABLES.get(name), rows)}
+    return {(name, *key) for name, rows in done.tables.items() for key in named_rows(TABLES[name], rows)}
 
 
 def _rows_of_each(before: Done, after: Done) -> Counter[str]:
@@ -63,7 +63,7 @@ def _rows_of_each(before: Done, after: Done) -> Counter[str]:
     found: dict[tuple, str] = {}
     for done in (before, after):
         for name, rows in done.tables.items():
-            table = TABLES.get(name)
+            table = TABLES[name]
             named = named_rows(table, rows).items()
             found |= {(name, *key): _subject(name, row) for key, row in named if not gives_reason(table, row)}
     return Counter(found.values())

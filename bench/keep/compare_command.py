@@ -10,7 +10,7 @@ from ..ground.output.errors import tell
 from ..ground.output.writing import check_writable, without, write
 from .change_lines import in_short, total, what_matters
 from .comparison import GONE, compared, measured_otherwise
-from .runs import read_run
+from .runs import read_to_show
 
 # What begins the names of such facts: see `machine.settings`.
 SETTING = "setting "
@@ -27,11 +27,9 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     Returns:
         the exit status: 1 where something changed that `fail_on` names.
     """
-    ours, theirs = read_run(before), read_run(after)
+    ours, theirs = read_to_show(before), read_to_show(after)
     if output:
         check_writable(output)
-    for damage in filter(None, (ours.damage, theirs.damage)):
-        tell(f"{damage}")
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         tell("the machines differ; times are not compared")

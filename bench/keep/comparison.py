@@ -43,9 +43,8 @@ def compared(before: Done, after: Done) -> list[Row]:
     ours, theirs = before.tables, after.tables
     found: list[Row] = []
     for name in dict.fromkeys([*ours, *theirs]):
-        table = TABLES.get(name)
-        before_rows, after_rows = (named_rows(table, rows.get(name, [])) for rows in (ours, theirs))
-        found += _between(name, table, before_rows, after_rows, same_machine)
+        before_rows, after_rows = (named_rows(TABLES[name], rows.get(name, [])) for rows in (ours, theirs))
+        found += _between(TABLES[name], before_rows, after_rows, same_machine)
     return in_order(found)
 
 
@@ -110,8 +109,7 @@ def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
 
 def _by_column(row: Sequence[Row]) -> list[Row]:
     """The changes of one row in the order of its table's columns."""
-    table = TABLES.get(row[0]["table"])
-    names = [column.name for column in table.columns] if table else []
+    names = [column.name for column in TABLES[row[0]["table"]].columns]
     return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))
 
 
@@ -137,76 +135,67 @@ def is_small(change: Row) -> bool:
     return 0 < abs(change["severity"]) < (SMALL if change["unit"] in ERRORS else SMALL_OTHER)
 
 
-def named_rows(table: Table | None, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
+def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
     """Rows by what they are called, and those that are called alike by their order."""
     found: dict[tuple[str, int], Row] = {}
     counts: dict[str, int] = {}
     for row in rows:
-        name = table.name_of(row) if table else str(list(row.values())[:3])
+        name = table.name_of(row)
         found[name, counts.setdefault(name, 0)] = row
         counts[name] += 1
     return found
 
 
-def _between(
-    name: str, table: Table | None, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool
-) -> Iterator[Row]:
+def _between(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
     """What differs between the rows of one table."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
-            yield from _changes(name, table, key[0], ours[key], theirs[key], same_machine)
+            yield from _changes(table, key[0], ours[key], theirs[key], same_machine)
         else:
             row = ours.get(key) or theirs[key]
-            change = _change(name, table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
+            change = _change(table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
             yield change | ({"verdict": GONE} if key in ours else {})
 
 
-def _change(
-    name: str, table: Table | None, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0
-) -> Row:
+def _change(table: Table, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0) -> Row:
     """A line; `severity` is above 0 where it is worse, and the larger the worse."""
     verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
-    keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)} if table else {}
-    known = table.column(column) if table and column else None
-    made: Row = {"table": name, "row": called, "column": column, "before": before, "after": after}
+    keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)}
+    known = table.column(column) if column else None
+    made: Row = {"table": table.name, "row": called, "column": column, "before": before, "after": after}
     made |= {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
     return made | {"unit": known.unit if known else ""}
 
 
-def _changes(name: str, table: Table | None, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
+def _changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
     has_reason = gives_reason(table, one) or gives_reason(table, other)
     for column in dict.fromkeys([*one, *other]):
-        known = table.column(column) if table else None
+        known = table.column(column)
         before, after = one.get(column), other.get(column)
-        if _is_compared(table, known) and not same(before, after):
+        if known and known.role in (Role.FIGURE, Role.REASON) and not same(before, after):
             severity = severity_of(known, before, after, has_reason)
-            yield _change(name, table, one, called, column, before, after, severity)
+            yield _change(table, one, called, column, before, after, severity)
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
         if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
             severity = 20 * math.log10(1 + effect)
-            change = _change(name, table, one, called, FRAME, one[FRAME], other[FRAME], severity)
+            change = _change(table, one, called, FRAME, one[FRAME], other[FRAME], severity)
             yield change | {"change": f"{100 * effect:+.1f} %"}
 
 
-def gives_reason(table: Table | None, row: Row) -> bool:
+def gives_reason(table: Table, row: Row) -> bool:
     """Whether a row says why it lacks figures."""
-    return bool(table) and any(row.get(column.name) for column in table.of_role(Role.REASON))
+    return any(row.get(column.name) for column in table.of_role(Role.REASON))
 
 
-def _is_compared(table: Table | None, known: Column | None) -> bool:
-    """Figures are, and whether there are any; of a table that this version does not know, everything."""
-    return not table or (known is not None and known.role in (Role.FIGURE, Role.REASON))
-
-
-def severity_of(column: Column | None, before: Any, after: Any, has_reason: bool) -> float:
+def severity_of(column: Column, before: Any, after: Any, has_reason: bool) -> float:
     """How much worse a figure has become, in decibels; below 0 where it is better, 0 for neither.
 
     A figure that could not be measured any more is infinitely worse, one that now can be is infinitely better. Without
     a reason it was not looked for, as the supremum of a code that is no longer the best.
     """
-    if not column or not column.better:
+    if not column.better:
         return 0.0
     if before is None or after is None:
         return 0.0 if not has_reason else math.inf if after is None else -math.inf

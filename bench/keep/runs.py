@@ -15,7 +15,7 @@ from pathlib import Path
 from threading import Lock
 
 from ...encodings.codecs.files import file_json
-from ..ground.output.errors import UsageError
+from ..ground.output.errors import UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, whole_file
 from ..tables.registry import table_of_run
@@ -46,23 +46,29 @@ class Done:
 
     @property
     def tables(self) -> dict[str, list[Row]]:
-        """The rows of each table, by this version's names. A row that was measured again replaces the older one."""
+        """The rows of each table that this version has. A row that was measured again replaces the older one."""
         found: dict[str, list[Row]] = {}
         last: dict[tuple[str, str], int] = {}
         made: list[tuple[int, str, str, Row]] = []
         for at, step in enumerate(self.steps):
             table = table_of_run(step["table"])
-            name = table.name if table else step["table"]
-            found.setdefault(name, [])
+            if not table:
+                continue
+            found.setdefault(table.name, [])
             for row in (_renamed(table, row) for row in step["rows"]):
-                # Nobody knows which rows of a table of another version are of the same.
-                identity = _identity(table, row) if table else str(at)
-                last[name, identity] = at
-                made.append((at, name, identity, row))
+                identity = _identity(table, row)
+                last[table.name, identity] = at
+                made.append((at, table.name, identity, row))
         for at, name, identity, row in made:
             if last[name, identity] == at:
                 found[name].append(row)
         return found
+
+    @property
+    def left_out(self) -> str:
+        """Which rows `tables` does not have, as a sentence without its end; empty where it has all."""
+        names = dict.fromkeys(step["table"] for step in self.steps if not table_of_run(step["table"]))
+        return f"Rows of {', '.join(names)} are left out, because this version has no such table" if names else ""
 
     @property
     def finished(self) -> bool:
@@ -75,13 +81,13 @@ class Done:
         return bool(self.facts.get("finished")) and all(one.get("finished") is not False for one in last.values())
 
 
-def _renamed(table: Table | None, row: Row) -> Row:
-    return {table.renamed.get(name, name): value for name, value in row.items()} if table else row
+def _renamed(table: Table, row: Row) -> Row:
+    return {table.renamed.get(name, name): value for name, value in row.items()}
 
 
-def _identity(table: Table | None, row: Row) -> str:
+def _identity(table: Table, row: Row) -> str:
     """What a row is of, and under what conditions."""
-    names = [c.name for c in table.of_role(Role.KEY, Role.HOW)] if table else []
+    names = [c.name for c in table.of_role(Role.KEY, Role.HOW)]
     return json.dumps([row.get(name) for name in names], sort_keys=True)
 
 
@@ -102,6 +108,18 @@ def read_run(folder: Path) -> Done:
     _check_steps(folder, lines)
     whole = [line for line in lines if PART not in line["key"]]
     return Done(facts, whole, _damage(folder, facts), [line for line in lines if PART in line["key"]])
+
+
+def read_to_show(folder: Path) -> Done:
+    """A results folder that people look at: what is amiss with its rows is said on standard error.
+
+    Raises:
+        UsageError: as `read_run`.
+    """
+    done = read_run(folder)
+    for line in filter(None, (done.damage, done.left_out and f"{folder}: {done.left_out}")):
+        tell(line)
+    return done
 
 
 def _check_steps(folder: Path, lines: Sequence[Row]) -> None:

@@ -14,8 +14,7 @@ from .runs import Row
 def write_tables(folder: Path, found: Mapping[str, list[Row]]) -> None:
     """The rows of tables, by name, as files for others. Raises UsageError."""
     for name, rows in found.items():
-        table = TABLES.get(name)
-        _write_table(folder / name, table.work.finish(rows) if table else rows)
+        _write_table(folder / name, TABLES[name].work.finish(rows))
 
 
 def _write_table(path: Path, rows: list[Row]) -> None:

@@ -32,11 +32,11 @@ from ...reports.page.verdict import BACKENDS, LEADING, is_count, is_number
 from ...reports.tables import LARGEST_WHOLE
 from ..ground.options.gpu_families import FAMILIES, usual_stage
 from ..ground.output import cache
-from ..ground.output.errors import UsageError, tell
+from ..ground.output.errors import UsageError
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file, write_text
 from ..keep import side_by_side
-from ..keep.runs import Done, Row, read_run
+from ..keep.runs import Done, Row, read_run, read_to_show
 from ..measures.live import checks
 from ..measures.live.kept import read_live
 from ..measures.live.programs import helpers, storage_functions
@@ -68,9 +68,7 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
     """
     if output:
         _check_output(output, as_markdown)
-    done = [read_run(folder) for folder in folders]
-    for damage in filter(None, (one.damage for one in done)):
-        tell(f"{damage}")
+    done = [read_to_show(folder) for folder in folders]
     if len(folders) > 1:
         _report_several(folders, done, as_markdown, pictures_beside, output)
     elif as_markdown:
@@ -214,14 +212,11 @@ def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
 
 def gathered(folder: Path, done: Done) -> Found:
     """Everything that a page shows of a run; nothing is measured."""
-    measured = {str(plain_text(name)): _clean(rows) for name, rows in done.tables.items()}
+    measured = done.tables
     # In the order of the page, whichever was measured first.
-    tables = {name: measured[name] for name in (*TABLES, *measured) if name in measured}
+    tables = {name: _clean(measured[name]) for name in TABLES if name in measured}
     facts = plain_text(done.facts)
-    remarks: list[str] = [f"{plain_text(done.damage)}."] if done.damage else []
-    unknown = [name for name in tables if name not in TABLES]
-    if unknown:
-        remarks.append(f"This version does not know these tables, which are in the run's folder: {', '.join(unknown)}.")
+    remarks = [f"{plain_text(said)}." for said in (done.damage, done.left_out) if said]
     if facts.get("sources") != sources():
         remarks.append("Another version of the program measured this run: what columns mean may have changed since.")
     quality, family = tables.get("quality", []), usual_family(tables)
@@ -332,7 +327,7 @@ def _asked(facts: Row) -> set[str]:
 def _subjects(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Subject]:
     """What the run has pictures of."""
     for name, rows in tables.items():
-        if name in TABLES and "images" in TABLES[name].files:
+        if "images" in TABLES[name].files:
             try:
                 finished = TABLES[name].work.finish([dict(row) for row in rows])
                 yield from TABLES[name].work.subjects(folder / TABLES[name].files["images"], finished)

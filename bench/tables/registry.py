@@ -24,8 +24,6 @@ FOLDERS = (
     "vectors",
     "sweep",
     "tune",
-    "throughput",
-    "growth",
     "published",
     "devices",
     "device_facts",

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from speed import numpy_baseline as independent
 
 from normalbench.bench.measures.metrics import published
-from normalbench.bench.tables.throughput import numpy_baseline as independent
 from normalbench.gbuffer.scenes.mesh import Mesh, facing, joined
 from normalbench.gbuffer.scenes.playground import ARMS, CAMERA, in_view_space
 from normalbench.gbuffer.scenes.playground import playground as rendered

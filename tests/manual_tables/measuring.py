@@ -3,6 +3,7 @@ that it prints, where they are others."""
 
 import json
 import re
+import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
@@ -11,8 +12,7 @@ from unittest.mock import patch
 
 from .table import Measured, Row, Table
 
-# Step times and costs by `python -m normalbench.bench.run.workers.simulate --record`.
-RECORD = Path(__file__).parents[1] / "bench" / "run" / "workers" / "record.json"
+ROOT = Path(__file__).parents[2]
 
 
 def measure(table: Table, is_again: bool = False) -> Measured:
@@ -48,9 +48,8 @@ def answers() -> list[Row]:
 
 def simulated() -> list[Row]:
     """Runs on many workers, by the step times of a record."""
-    from normalbench.bench.run.workers.simulate import table
-
-    return table(json.loads(RECORD.read_text()))
+    command = [sys.executable, "-m", "tests.speed", "simulate"]
+    return json.loads(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
 
 
 def for_every_storage(rows: list[Row]) -> list[Row]:

@@ -66,9 +66,10 @@ class Read(HTMLParser):
         return [attributes for tag, attributes in self.tags if tag == name]
 
 
-def reported(run, folder: Path) -> tuple[str, Read]:
+def reported(run, folder: Path, told: str = "") -> tuple[str, Read]:
+    """The page of a run, and what it reads; `told` is the line on standard error, if one is expected."""
     status, out, err = run("report", str(folder))
-    assert (status, err) == (0, ""), err
+    assert status == 0 and (told in err and err.count("\n") == 1 if told else not err), err
     assert out == f"{folder / 'report.html'}\n"
     text = (folder / "report.html").read_text()
     return text, Read(text)
@@ -85,7 +86,7 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
         HOSTILE: [{HOSTILE: HOSTILE}],
     }
     folder = a_run(tmp_path / "run", tables, machine={HOSTILE: HOSTILE}, command=[HOSTILE], time=HOSTILE)
-    text, read = reported(run, folder)
+    text, read = reported(run, folder, "this version has no such table")
     kinds = [attributes.get("type") for attributes in read.all("script")]
     assert kinds.count(None) == len(page.SCRIPTS), "only the page's own"
     assert set(kinds) <= {None, "application/json", "text/plain"}, "the others are data"
@@ -222,11 +223,21 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
         "colours": [{"red": 1}],
         "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "codes": ["xy"]}],
     }
-    _, read = reported(run, a_run(tmp_path / "run", tables))
+    _, read = reported(run, a_run(tmp_path / "run", tables), "Rows of colours are left out")
     assert "The rows of quality are not those of this version" in read.text
-    assert "does not know these tables, which are in the run's folder: colours" in read.text
+    assert "Rows of colours are left out, because this version has no such table." in read.text
     assert "The chart 'depth' cannot be drawn from these rows" in read.text
     assert "octahedral" in read.text and "its rows keep no histograms" in read.text
+
+
+def test_rows_of_a_table_that_is_no_more_are_left_out_with_a_line(run, tmp_path):
+    """Where people look at the run: its page, its text, and the page of several."""
+    tables = {"throughput": [{"encoding": "xy", "rate": 1.0}], "growth": [], "quality": [quality_row("xy")]}
+    folder = a_run(tmp_path / "run", tables)
+    for words in ((), ("--markdown",), (str(folder), "-o", str(tmp_path / "several.html"))):
+        status, _, err = run("report", str(folder), *words)
+        said = f"{folder}: Rows of throughput, growth are left out, because this version has no such table\n"
+        assert status == 0 and said in err and "Traceback" not in err
 
 
 def test_an_empty_run_is_a_page(run, tmp_path):

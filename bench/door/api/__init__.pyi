@@ -661,38 +661,6 @@ def tune(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
-def throughput(
-    *,
-    encoding: Names = ...,
-    statistics: Names = ...,
-    counts: Names = ...,
-    on: str | None = ...,
-) -> Rows:
-    """How fast rows are measured, next to a C program, NumPy and reading the input.
-
-    All of them encode, store in UNORM of 8 bits, decode and measure the same normals, on all cores in one run, and take turns.
-
-    Args:
-        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        statistics: moments (squared error and its maximum), row (a whole row of the quality table); comma-separated, or all.
-        counts: Numbers of normals, comma-separated, such as 256k,2^20.
-        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
-    """
-
-def growth(
-    *,
-    over: Names = ...,
-    sizes: Names | None = ...,
-    on: str | None = ...,
-) -> Rows:
-    """How the time grows with the number of normals, codecs, codes, objects and lights.
-
-    Args:
-        over: What grows: normals, codecs, codes, objects, lights; comma-separated, or all.
-        sizes: Sizes, comma-separated, of one kind. Default: three, each about ten times the one before.
-        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
-    """
-
 def published(
     *,
     source: Names = ...,

@@ -69,7 +69,7 @@ def _row() -> ctypes.CDLL:
         return squared, article, angle, *(jnp.asarray(one, jnp.int32) for one in (invalid, bins_of(angle, True)))
 
     function = c_function("errors_of", errors_of, FLOATS, FLOATS)
-    made = library(source(HERE / "row.c", function, (), bins=BINS, block=BLOCK), "row", "moments", "in_bin")
+    made = library(source(HERE / "row.c", function, (), bins=BINS, block=BLOCK), "row", "in_bin")
     made.in_bin.restype = ctypes.c_size_t
     return made
 
@@ -107,12 +107,6 @@ class NativeMeter:
         found = Figures(*figures.tolist())
         worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest, counts)
         return [(found, counts.astype(np.int64), worst)]
-
-    def moments(self, loads: Sequence[Load]) -> tuple[float, float]:
-        """The sum and the largest of |n - n'|^2 of chunks, and nothing else."""
-        figures, chunks = np.zeros(2), _Chunks([load() for load in loads])
-        self._row.moments(self._codec, *chunks.given, address(figures))
-        return float(figures[0]), float(figures[1])
 
     def _worst(self, chunks: _Chunks, largest: float, counts: np.ndarray) -> Worst | None:
         """The normal with the largest angle, among those of the highest bin; None where none counts."""

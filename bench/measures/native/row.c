@@ -165,27 +165,3 @@ size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float leas
     set_back(was);
     return have;
 }
-
-static void add_squared(const Codec *codec, const Chunk *chunk, double *figures) {
-    float decoded[3][BLOCK], squared[BLOCK];
-    for (size_t first = 0; first < chunk->count; first += BLOCK) {
-        codec->decode(chunk->plane, codec->given, first, decoded);
-        for (size_t k = 0; k < BLOCK; k++) {
-            float x = chunk->plane[0][first + k] - decoded[0][k], y = chunk->plane[1][first + k] - decoded[1][k];
-            float z = chunk->plane[2][first + k] - decoded[2][k];
-            squared[k] = x * x + y * y + z * z;
-        }
-        if (!is_covered(chunk, first))
-            for (size_t k = 0; k < BLOCK; k++) squared[k] = chunk->covered[first + k] ? squared[k] : 0;
-        float top = largest(squared);
-        figures[0] += summed(squared);
-        figures[1] = top > figures[1] ? top : figures[1];
-    }
-}
-
-// Adds to figures[0] the squared errors of chunks; the largest of them and what was there is in figures[1] then.
-void moments(const Codec *codec, const Chunk *chunks, size_t number, double *figures) {
-    unsigned was = flush();
-    for (size_t c = 0; c < number; c++) add_squared(codec, chunks + c, figures);
-    set_back(was);
-}

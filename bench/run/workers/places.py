@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...ground.output.writing import whole_file
 from ..measuring import HERE, Here
 from .words import Local, place_named, require_dask
 
 if TYPE_CHECKING:
     from .pool import Pool
-
-# A run that workers measured keeps how long each step took them: `simulate` reads it.
-TIMES = "step_times.json"
 
 
 @contextmanager
@@ -73,11 +67,3 @@ def _crew(address: str, look_after: Callable[[], bool] = lambda: False) -> Itera
         yield Pool(crew)
     finally:
         crew.close()
-
-
-def keep_times(where: object, folder: Path) -> None:
-    """Write how long the steps of a run took workers; nothing where none measured."""
-    times = getattr(where, "times", None)
-    if times:
-        with whole_file(folder / TIMES) as partial:
-            partial.write_text(json.dumps(times, indent=None) + "\n", encoding="utf-8")

@@ -25,14 +25,9 @@ Found = Iterator[tuple[Waiting, list[Row]]]
 
 
 class Pool:
-    """A place where workers measure.
-
-    Attributes:
-        times: of each step that was measured its table, its seconds on the worker, and the bytes of its pictures.
-    """
+    """A place where workers measure."""
 
     def __init__(self, crew: Crew):
-        self.times: list[Row] = []
         self._crew = crew
         self._lacks: dict[str, list[str]] = {}
 
@@ -93,8 +88,6 @@ class Pool:
                 partial.write_bytes(data)
         lacks = self._lacks.setdefault(ask.table.name, [])
         lacks += [reason for reason in step.lacks if reason not in lacks]
-        size = sum(map(len, step.pictures.values()))
-        self.times.append({"table": ask.table.name, "seconds": round(step.seconds, 4), "bytes": size})
         return step.rows
 
     def _measured_here(self, ask: Asked, left: Sequence[Waiting], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:

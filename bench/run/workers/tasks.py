@@ -7,7 +7,6 @@ import io
 import os
 import shutil
 import tempfile
-import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
@@ -29,13 +28,12 @@ TOLD = "normalbench: "
 
 @dataclass(frozen=True)
 class StepAnswer:
-    """A measured step: its name, its rows, its pictures by their place, what the worker lacks, and how long it took."""
+    """A measured step: its name, its rows, its pictures by their place, and what the worker lacks."""
 
     name: str
     rows: list[Row]
     pictures: dict[str, bytes]
     lacks: list[str]
-    seconds: float
 
 
 @dataclass(frozen=True)
@@ -75,10 +73,6 @@ def probe() -> About:
     return about()
 
 
-def nothing(_: bytes = b"") -> None:
-    """Takes no time: what remains is what sending a task takes."""
-
-
 def measure(order: Order | str, wanted: Sequence[str]) -> Answer:
     """Measure steps of an order; never raises.
 
@@ -115,11 +109,10 @@ def _measured(laid: Laid, wanted: Sequence[str]) -> Answer:
 
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[StepAnswer]:
     ask, chosen = laid.ask, [laid.steps[name] for name in wanted]
-    rows_of, began = ask.table.work.measure(chosen, lambda _: None), time.perf_counter()
+    rows_of = ask.table.work.measure(chosen, lambda _: None)
     for name, step, rows in zip(wanted, chosen, rows_of, strict=True):
-        seconds, lacks = time.perf_counter() - began, _lacks(ask, step, rows)
-        yield StepAnswer(name, laid.order.as_typed(list(rows)), _taken(laid.folder), lacks, seconds)
-        began = time.perf_counter()
+        lacks = _lacks(ask, step, rows)
+        yield StepAnswer(name, laid.order.as_typed(list(rows)), _taken(laid.folder), lacks)
 
 
 def _lacks(ask: Asked, step: Step, rows: Sequence[Row]) -> list[str]:

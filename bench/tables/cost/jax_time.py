@@ -10,16 +10,19 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.vec import Vec2, Vec3
+from ...ground.machine.cores import cores
 from ...ground.output.errors import MissingError
-from ...measures.metrics.moments import FAST_BLOCK, LANES
-from ...subjects.normals.directions import CORES, make_input
 from .clocks import summary
 from .measure import Case, Row
 
 SECONDS = 0.03
+CORES = cores()
+# Normals of a block, which stays in a core's cache; and the lanes that are summed apart.
+BLOCK, LANES = 2**15, 256
 
 Function = Callable[[Any, Vec3], Any]
 Work = Callable[[], object]
@@ -39,7 +42,7 @@ def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[s
     """
     asked = [case for case in chosen if case.encoding is not None]
     try:
-        normals = Normals(max(count // (FAST_BLOCK * CORES), 1) * FAST_BLOCK * CORES)
+        normals = Normals(max(count // (BLOCK * CORES), 1) * BLOCK * CORES)
     except MemoryError as error:
         raise MissingError(f"--count {count}: this machine lacks the memory for that many normals") from error
     with normals:
@@ -95,7 +98,7 @@ class Normals:
         self.count, self._is_cpu = count, jax.default_backend() == "cpu"
         kind = jax.devices()[0].device_kind
         self.device = f"{kind}, {CORES} cores" if self._is_cpu else kind
-        shards = make_input(count).shards
+        shards = random_shards(count)
         self._shards = shards if self._is_cpu else [joined(shards)]
         self._pool = ThreadPoolExecutor(len(self._shards))
 
@@ -110,6 +113,20 @@ class Normals:
         call = jax.jit(partial(total_by_blocks if self._is_cpu else total, function))
         shards = [(n if size == 3 else Vec2(n.x, n.y), view) for n, view in self._shards]
         return lambda: list(self._pool.map(lambda shard: float(call(*shard)), shards))
+
+
+def random_shards(count: int, seed: int = 0) -> list[tuple[Vec3, Vec3]]:
+    """Directions, uniform on the sphere, and positions in front of the eye: planes of float32, a part for each core."""
+    rng = np.random.default_rng(seed)
+    n = rng.normal(size=(count, 3)).astype(np.float32)
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    view = rng.uniform((-1, -1, -2), (1, 1, -1), (count, 3)).astype(np.float32)
+    parts = np.array_split(np.arange(count), CORES)
+    return [(_planes(n[part]), _planes(view[part])) for part in parts]
+
+
+def _planes(rows: np.ndarray) -> Vec3:
+    return Vec3(*(jnp.asarray(np.ascontiguousarray(plane)) for plane in rows.T))
 
 
 def joined(shards: Sequence[tuple[Vec3, Vec3]]) -> tuple[Vec3, Vec3]:
@@ -144,5 +161,5 @@ def total_by_blocks(function: Function, given: Any, view: Vec3) -> Any:
     def step(carry, block):
         return carry + sum(function(*block)), None
 
-    blocks = jax.tree.map(lambda a: a.reshape(-1, FAST_BLOCK), (given, view))
-    return jax.lax.scan(step, jnp.zeros(FAST_BLOCK, jnp.float32), blocks)[0].reshape(-1, LANES).sum()
+    blocks = jax.tree.map(lambda a: a.reshape(-1, BLOCK), (given, view))
+    return jax.lax.scan(step, jnp.zeros(BLOCK, jnp.float32), blocks)[0].reshape(-1, LANES).sum()

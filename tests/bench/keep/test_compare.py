@@ -65,6 +65,14 @@ def test_rows_that_were_measured_otherwise_are_said():
     assert measured_otherwise(runs[0], runs[0]) == []
 
 
+def test_rows_of_a_table_that_is_no_more_are_not_compared():
+    """Both runs of it, and one; the sentence names it."""
+    one, other = (Done(MACHINE, [{"table": "growth", "key": {}, "rows": [{"seconds": at}]}]) for at in (1.0, 2.0))
+    assert compared(one, other) == compared(one, run_of()) == [] and not one.tables
+    assert one.left_out == "Rows of growth are left out, because this version has no such table"
+    assert run_of({"pipeline": "a"}).left_out == ""
+
+
 def test_steps_that_one_run_lacks_are_named():
     a, b = {"pipeline": "a", "triangles": 1}, {"pipeline": "b", "triangles": 1}
     (change,) = compared(run_of(a, b), run_of(b))
@@ -169,20 +177,20 @@ def test_encodings_that_changed_are_five_sentences_and_a_number():
 
 def test_runs_that_share_no_row_say_so_first(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0), "after": quality_of(xyz=44.0)}
-    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
     for kind in ("table", "markdown"):
         assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs share no row\n")
 
 
 def test_a_spreadsheet_gets_numbers_as_they_are(run, monkeypatch):
-    monkeypatch.setattr(compare_command, "read_run", lambda folder: broken_fold()[folder.name == "after"])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: broken_fold()[folder.name == "after"])
     out = run("compare", "before", "after", "--format", "csv")[1]
     assert "-inf" in out and "-44.4" in out and "+0.035" in out and "'" not in out
 
 
 def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0, xyz=45.0), "after": quality_of(xy=39.0, xyz=44.0)}
-    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
     for kind in ("table", "markdown"):
         status, out, _ = run("compare", "before", "after", "--format", kind)
         *above, last = out.splitlines()
@@ -201,7 +209,7 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     assert settings()["XLA_FLAGS"] == flags and not any("CACHE" in name for name in settings())
     set_here = {"setting XLA_FLAGS": flags}
     runs = {"one": Done({"machine": {"python": "3"}}, []), "two": Done({"machine": {"python": "3"} | set_here}, [])}
-    monkeypatch.setattr(compare_command, "read_run", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
     status, _, err = run("compare", "one", "two")
     assert status == 0
     assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err

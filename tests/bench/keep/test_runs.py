@@ -56,7 +56,8 @@ def test_a_finished_step_is_not_measured_twice(tmp_path):
         with opened(tmp_path / "run", FACTS) as run:
             rows = kept(run, last, measured)
     assert measured == [0, 1, 2, 3, 4] and rows[1] == [{"number": 1, "figure": 1 / 3, "nothing": None}]
-    assert [row["number"] for row in read_run(tmp_path / "run").tables["table"]] == [0, 1, 2, 3, 4]
+    steps = read_run(tmp_path / "run").steps
+    assert [row["number"] for step in steps for row in step["rows"]] == [0, 1, 2, 3, 4]
 
 
 @pytest.mark.parametrize("cut", range(1, 80, 7))
@@ -66,7 +67,7 @@ def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
         kept(run, 3, measured)
     whole = (folder / ROWS).read_bytes()
     (folder / ROWS).write_bytes(whole[:-cut])
-    assert len(read_run(folder).tables["table"]) == 2, "the cut line is not there"
+    assert len(read_run(folder).steps) == 2, "the cut line is not there"
     assert (folder / ROWS).read_bytes() == whole[:-cut], "reading does not write"
     measured.clear()
     with opened(folder, FACTS) as run:

@@ -13,18 +13,17 @@ from directions import random_directions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio
+from speed.numpy_baseline import whole_row
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.machine.cores import cores, on_all_cores
 from normalbench.bench.ground.options import counts
 from normalbench.bench.measures.metrics import meter as metrics
 from normalbench.bench.measures.metrics.meter import Meter, angle_between
-from normalbench.bench.measures.metrics.moments import squared_errors
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.tables.throughput.numpy_baseline import whole_row
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
@@ -153,20 +152,6 @@ def test_psnr_is_scikit_images():
 def test_identical_normals_have_infinite_psnr():
     row = quality.measure(quality.Case(Codec(ENCODINGS["xyz"], STORAGES["rgba32f"]), sphere(1000), "jax"))
     assert row["psnr_db"] == np.inf and row["exact"] and row["angle_max_deg"] == 0 and row["angle_p99_deg"] == 0
-
-
-@pytest.mark.parametrize("name", ["octahedral", "spheremap", "warped_cube"])
-def test_the_fast_path_gives_the_same_sums(name):
-    """XLA asked for vectors of 512 bits made an arc tangent of the warped cube 0: the sums of the fast path alone were
-    wrong."""
-    codec = Codec(ENCODINGS[name], STORAGES["rgba8"])
-    n = random_directions(2**16)
-    view = np.broadcast_to(AHEAD, n.shape)
-    total, largest = squared_errors(codec)(vec.from_array(n), vec.from_array(-view))
-    row = quality.measure(quality.Case(codec, from_arrays("", "", n, view, np.ones(len(n), bool)), "jax"))
-    assert total / (3 * len(n)) == pytest.approx(row["mse"], rel=1e-6)
-    # The chord of the angle: all of these decode to unit vectors.
-    assert np.degrees(2 * np.arcsin(np.sqrt(largest) / 2)) == pytest.approx(row["angle_max_deg"], rel=1e-3)
 
 
 @pytest.mark.parametrize("make, z_mean, z2_mean", [(sphere, 0, 1 / 3), (hemisphere, 1 / 2, 1 / 3)])

@@ -173,15 +173,6 @@ def replaced(case, chunks: range):
     return replace(case, normal_set=replace(case.normal_set, of=chunks))
 
 
-def test_moments_are_the_sum_and_the_largest_of_squared_errors():
-    n = random_directions(CHUNK + 77)
-    view = (n + np.random.default_rng(1).normal(0, 0.01, n.shape)).astype(np.float32)
-    normals = from_arrays("", "", n, view, np.ones(len(n), bool))
-    total, largest = NativeMeter(lambda _, view: view).moments([*normals.loads()])
-    squared = np.sum((n.astype(np.float64) - view) ** 2, axis=1)
-    assert total == pytest.approx(squared.sum(), rel=1e-6) and largest == pytest.approx(squared.max(), rel=1e-5)
-
-
 def test_numbers_below_the_normal_ones_are_0():
     """As XLA has them; and the processor is left as it was."""
     n = random_directions(3000)

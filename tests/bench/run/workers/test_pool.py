@@ -85,7 +85,7 @@ class FakeCrew:
 
 
 def answer(names) -> Answer:
-    return Answer([StepAnswer(name, [{"of": name}], {}, [], 0.1) for name in names])
+    return Answer([StepAnswer(name, [{"of": name}], {}, []) for name in names])
 
 
 def measured(crew: FakeCrew, ask: Asked) -> tuple[list[str], list]:
@@ -190,10 +190,10 @@ def test_every_table_whose_rows_have_times_says_so_in_its_keys():
     """By `repeats`, or whatever it is that the table goes by."""
     # Readers' times are in the files that they saved.
     timed = {name for name, table in TABLES.items() if table.of_role(Role.TIME)} - {"devices"}
-    assert timed == {"cost", "render", "effects", "sweep", "maps", "throughput", "growth"}
+    assert timed == {"cost", "render", "effects", "sweep", "maps"}
     assert all(TABLES[name].work.is_timed(Step({"repeats": 1}, None, "")) for name in timed)
     always = {name for name in timed if TABLES[name].work.is_timed(Step({}, None, ""))}
-    assert always == {"maps", "throughput", "growth"}, "their rows always have a time"
+    assert always == {"maps"}, "its rows always have a time"
 
 
 @pytest.mark.parametrize(

@@ -127,7 +127,7 @@ def test_normals_that_memory_does_not_hold_are_one_line(run, monkeypatch):
     def too_many(_):
         raise MemoryError
 
-    monkeypatch.setattr(cost_jax, "make_input", too_many)
+    monkeypatch.setattr(cost_jax, "random_shards", too_many)
     status, out, err = run("cost", "--jax", "--encoding", "xy", "--count", str(2**28), "--format", "json")
     assert status == 3 and err.count("\n") == 1 and "lacks the memory" in err
     assert [row["skipped"] is not None for row in json.loads(out)] == [True]

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ...ground.native.library import NONE
+from normalbench.bench.ground.native.library import NONE
 
 SOURCE = Path(__file__).with_name("row.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fopenmp", "-fPIC", "-w")
@@ -30,26 +30,26 @@ def missing(name: str) -> str:
     return "" if shutil.which("cc") else NONE
 
 
-def work(name: str, statistics: str, n: np.ndarray, view: np.ndarray) -> Callable[[], np.ndarray]:
+def work(name: str, function: str, n: np.ndarray, view: np.ndarray) -> Callable[[], np.ndarray]:
     """A function that measures an encoding through UNORM8 once, on all cores.
 
     Args:
         name: one of ENCODINGS.
-        statistics: "moments": the sum of |n - n'|^2 and the largest; "row": the sum of the angles, that of their
-            squares, and the largest, in degrees; "reading": the sum of all components.
+        function: "row": the sum of the angles, that of their squares, and the largest, in degrees; "reading": the sum
+            of all components.
         n, view: float32 of shape (count, 3).
 
     Raises:
         OSError, subprocess.SubprocessError: it cannot be compiled.
     """
-    function, figures = getattr(_library(name), statistics), np.zeros(3)
+    call, figures = getattr(_library(name), function), np.zeros(3)
     planes = [np.ascontiguousarray(a.T, np.float32) for a in (n, view)]
     rows = [(ctypes.c_void_p * 3)(*(plane.ctypes.data for plane in each)) for each in planes]
-    counts = [np.zeros(BINS, np.int64)] if statistics == "row" else []
+    counts = [np.zeros(BINS, np.int64)] if function == "row" else []
     given = (*rows, ctypes.c_long(len(n)), *(ctypes.c_void_p(a.ctypes.data) for a in (figures, *counts)))
 
     def run(_kept=(planes, counts)) -> np.ndarray:
-        function(*given)
+        call(*given)
         return figures
 
     return run

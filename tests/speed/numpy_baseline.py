@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...ground.angles import angles_deg
+from normalbench.bench.ground.angles import angles_deg
 
 
 def quantise_unorm(code: np.ndarray, levels: int = 255) -> np.ndarray:
@@ -125,12 +125,6 @@ BASELINES = {
         octahedral,
     )
 }
-
-
-def squared_error_and_maximum(n: np.ndarray, d: np.ndarray) -> tuple[float, float]:
-    """Mean and largest |n - n'|^2."""
-    squared = np.sum((n - d) ** 2, axis=1)
-    return float(squared.mean()), float(squared.max())
 
 
 def whole_row(n: np.ndarray, d: np.ndarray) -> tuple[float, ...]:

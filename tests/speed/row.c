@@ -1,5 +1,5 @@
 // The row in C: what the throughput is held against. Encode, UNORM8, decode, and the statistics of the angle (mean, RMS,
-// maximum, and a histogram of bins of 2^15 units in the last place), or the squared error and its maximum alone.
+// maximum, and a histogram of bins of 2^15 units in the last place).
 //
 // cc -O3 -march=native -ffast-math -fopenmp -DENCODING=spheremap -DVIEW=0
 //
@@ -106,26 +106,6 @@ void reading(const float *const *n, const float *const *view, long count, double
         total += sum;
     }
     figures[0] = total;
-}
-
-// Sum and maximum of |n - n'|^2, into figures[0] and [1].
-void moments(const float *const *n, const float *const *view, long count, double *figures) {
-    double total = 0;
-    float largest = 0;
-#pragma omp parallel for reduction(+ : total) reduction(max : largest) schedule(static)
-    for (long first = 0; first < count; first += BLOCK) {
-        float sum = 0, top = 0;
-        long end = first + BLOCK < count ? first + BLOCK : count;
-        for (long i = first; i < end; i++) {
-            Vec a = at(n, i), d = ENCODING(a, SEEN);
-            float x = a.x - d.x, y = a.y - d.y, z = a.z - d.z, squared = x * x + y * y + z * z;
-            sum += squared;
-            top = fmaxf(top, squared);
-        }
-        total += sum;
-        largest = fmaxf(largest, top);
-    }
-    figures[0] = total, figures[1] = largest;
 }
 
 // Sum of angles and of their squares and the largest, in degrees, into figures; counts[BINS] of their bins.

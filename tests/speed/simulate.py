@@ -1,31 +1,26 @@
-"""How long a run takes on many workers: a simulation with recorded times of steps.
-
-    python -m normalbench.bench.run.workers.simulate RECORD.json
-    python -m normalbench.bench.run.workers.simulate --record RUN RECORD.json
-
-RUN is a results folder that workers measured. `--record` takes its step times, and measures on two worker processes of
-this machine what a task, a row and a byte cost.
-"""
+"""How long a run takes on many workers: a simulation of the same rules for tasks, with recorded times of steps."""
 
 from __future__ import annotations
 
 import heapq
 import json
 import random
-import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ....reports.tables import written
-from ...ground.output.errors import UsageError
-from ...keep.journal import journal
-from ...measures.metrics.growth import exponent
-from .chunks import chunk_size
-from .places import TIMES
+from normalbench.bench.ground.output.errors import pick
+from normalbench.bench.keep.journal import journal
+from normalbench.bench.run.measuring import HERE, asked
+from normalbench.bench.run.workers.chunks import chunk_size
+from normalbench.bench.run.workers.orders import PICTURES
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Table
+
+from .timing import Row, exponent
 
 WORKERS = (1, 4, 10, 100, 1000)
 # Workers of a machine, of which one measures at a time where a clock is read.
@@ -105,13 +100,13 @@ def simulated(load: Load, workers: int, costs: Costs, seed: int = 0) -> Simulate
     return Simulated(end, busy)
 
 
-def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[dict[str, Any]]:
+def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[Row]:
     """A row for each number of workers; the loads are measured one after the other.
 
     From the row before the time grows as workers^exponent: -1 where twice as many take half the time.
     """
     alone = sum(simulated(load, 1, costs).seconds for load in loads)
-    made: list[dict[str, Any]] = []
+    made: list[Row] = []
     fewer: tuple[int, float] | None = None
     for workers in WORKERS:
         found = [simulated(load, workers, costs) for load in loads]
@@ -143,31 +138,43 @@ def loads_of(record: Mapping[str, Any]) -> dict[str, list[Load]]:
     return {"all encodings, storages and sets": everything, f"render, {scenes['count']} scenes": [render]}
 
 
-def table(record: Mapping[str, Any]) -> list[dict[str, Any]]:
+def table(record: Mapping[str, Any]) -> list[Row]:
     """The rows of every work in a record."""
     costs = Costs(**record["costs"])
     return [row for name, loads in loads_of(record).items() for row in rows(name, loads, costs)]
 
 
-def recorded(run: Path) -> dict[str, Any]:
-    """What a run says of its steps: by table their seconds, and the mean bytes of their pictures. Raises UsageError."""
-    try:
-        steps = json.loads((run / TIMES).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{run / TIMES} cannot be read ({error}); name a run that was measured with --on") from error
-    names = list(dict.fromkeys(step["table"] for step in steps))
-    of = {name: [step for step in steps if step["table"] == name] for name in names}
-    seconds = {name: [round(step["seconds"], 3) for step in part] for name, part in of.items()}
-    sizes = {name: round(sum(step["bytes"] for step in part) / len(part)) for name, part in of.items()}
-    return {"seconds": seconds, "bytes": sizes}
+def record(names: Iterable[str], path: Path) -> None:
+    """Put step times of tables, and what sending costs here, into a record; what else it holds stays.
+
+    Raises:
+        UsageError: an unknown table.
+    """
+    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    made = {"seconds": dict(before.get("seconds", {})), "bytes": dict(before.get("bytes", {}))}
+    for table in pick("table", ",".join(names), TABLES):
+        made["seconds"][table.name], made["bytes"][table.name] = step_times(table)
+    path.write_text(json.dumps(before | made | {"costs": asdict(measured_costs())}) + "\n", encoding="utf-8")
+
+
+def step_times(table: Table) -> tuple[list[float], int]:
+    """The seconds of a table's usual steps in this process, and the mean bytes of their pictures."""
+    with tempfile.TemporaryDirectory() as folder:
+        images = {PICTURES: Path(folder)} if PICTURES in table.files else {}
+        ask = asked(table, table.options(), replace(table.outputs(), **images))
+        times, began = list[float](), time.perf_counter()
+        for _ in HERE.measure(ask, ask.steps, lambda _: None):
+            times.append(round(time.perf_counter() - began, 3))
+            began = time.perf_counter()
+        sizes = [path.stat().st_size for path in Path(folder).rglob("*") if path.is_file()]
+    return times, round(sum(sizes) / max(len(times), 1))
 
 
 def measured_costs() -> Costs:
     """What a task, a row and a byte cost here, with two workers."""
-    from .about import about
-    from .crew import Crew
-    from .local import LocalProcesses
-    from .tasks import nothing
+    from normalbench.bench.run.workers.about import about
+    from normalbench.bench.run.workers.crew import Crew
+    from normalbench.bench.run.workers.local import LocalProcesses
 
     own, began = about(), time.perf_counter()
     processes = LocalProcesses(2)
@@ -177,9 +184,10 @@ def measured_costs() -> Costs:
             crew.lost()
             crew.arrival()
         start = time.perf_counter() - began
-        task = _through(crew, TASKS, lambda address: crew.send(address, "", nothing)) / TASKS
+        # `len` takes no time: what remains is what sending a task takes.
+        task = _through(crew, TASKS, lambda address: crew.send(address, "", len, b"")) / TASKS
         data = bytes(BYTES)
-        byte = _through(crew, 8, lambda address: crew.send(address, "", nothing, data)) / (8 * BYTES)
+        byte = _through(crew, 8, lambda address: crew.send(address, "", len, data)) / (8 * BYTES)
     finally:
         crew.close()
         processes.close()
@@ -203,18 +211,3 @@ def _row_cost() -> float:
         for _ in range(200):
             kept.add(ROW)
         return (time.perf_counter() - began) / 200
-
-
-def main(words: list[str]) -> None:
-    """Print the table of a record, or make a record."""
-    if words[:1] == ["--record"]:
-        run, path = map(Path, words[1:])
-        before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        made = before | recorded(run) | {"costs": asdict(measured_costs())}
-        path.write_text(json.dumps(made) + "\n", encoding="utf-8")
-        return
-    print(written(table(json.loads(Path(words[0]).read_text(encoding="utf-8"))), "table"), end="")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -1,1 +1,0 @@
-"""How the time grows with the size of what is measured."""

@@ -1,0 +1,173 @@
+"""The programs of `python -m tests.speed`: that everybody measures the same, ratios, exponents, and the simulation."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from speed import __main__ as program
+from speed import c_baseline, growth, simulate, throughput, timing
+from speed.simulate import ON_A_MACHINE, Costs, Load, simulated
+from speed.throughput import WHOLE
+
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+
+needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+FREE = Costs(start=0, task=0, row=0, byte=0)
+
+
+@pytest.fixture
+def briefly(monkeypatch):
+    """Three turns, however short."""
+    monkeypatch.setattr(timing, "LONG_ENOUGH_S", 0.0)
+
+
+def printed(capsys, *words):
+    """The rows that a program prints."""
+    program.main([*words])
+    return json.loads(capsys.readouterr().out)
+
+
+@needs_c
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(c_baseline.ENCODINGS))
+def test_the_c_program_measures_what_the_table_measures(name):
+    """Mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few normals to another
+    code."""
+    data = throughput.normals(WHOLE)
+    ours = throughput.by_jax(ENCODINGS[name], data)()
+    total, squares, largest = c_baseline.work(name, "row", data.n, data.view)()
+    assert total / WHOLE == pytest.approx(ours["angle_mean_deg"], rel=1e-4)
+    assert np.sqrt(squares / WHOLE) == pytest.approx(ours["angle_rms_deg"], rel=1e-4)
+    assert largest == pytest.approx(ours["angle_max_deg"], rel=2e-2)
+
+
+@needs_c
+def test_small_numbers_stay_what_they_are_beside_the_c_program():
+    """A library that is linked with -ffast-math makes its process take them for 0."""
+    data = throughput.normals(WHOLE)
+    c_baseline.work("xyz", "reading", data.n, data.view)()
+    assert np.float64(5e-324) * 1 > 0 and np.float32(1e-45) * np.float32(1) > 0
+
+
+@pytest.mark.usefixtures("briefly")
+def test_ratios_are_of_the_rates_of_one_run(capsys):
+    """What is not written in C says so. Counts are rounded down to whole blocks, and measured once."""
+    counts = f"{WHOLE + 5},{WHOLE}"
+    row, other = printed(capsys, "throughput", "--encoding", "octahedral,hemi_octahedral", "--counts", counts)
+    assert row["count"] == other["count"] == WHOLE
+    for name in ("numpy", "numpy_blocked", "c", "reading"):
+        assert (row[name] is None) == (row[f"times_{name}"] is None)
+        assert row[name] is None or row[f"times_{name}"] == pytest.approx(row["rate"] / row[name])
+    assert row["numpy"] and (row["c"] is None) == (row["reading"] is None) == bool(row["no_c"])
+    assert other["rate"] > 0 and other["c"] is None and other["numpy"] is None
+    assert other["no_c"] == "row.c has no hemi_octahedral"
+
+
+def test_the_exponent_is_the_slope_in_logarithms():
+    """By hand: 3 x^2 has 2, a constant 0; through 1, 10 and 1000 seconds at 1, 10 and 100 the slope is 1.5."""
+    assert timing.exponent([1, 2, 4], [3, 12, 48]) == pytest.approx(2)
+    assert timing.exponent([5, 50], [7, 7]) == pytest.approx(0)
+    assert timing.exponent([1, 10, 100], [1, 10, 1000]) == pytest.approx(1.5)
+    assert timing.exponent([5, 5], [1, 2]) is None
+
+
+def test_each_row_has_the_exponent_from_the_next_smaller_size(monkeypatch):
+    """Sizes are rounded to those that there are, and timed once; the time here is the root of the size."""
+    kind = growth.Kind("", lambda size: size**0.5, (1,), 1, 10**9)
+    monkeypatch.setattr(growth, "KINDS", {"codes": kind})
+    rows = growth.rows("codes", (2**20, 60000, 65536))
+    assert [row["size"] for row in rows] == [2**16, 2**20]
+    assert rows[0]["exponent"] is None and rows[1]["exponent"] == pytest.approx(0.5)
+    assert rows[0]["microseconds_each"] == pytest.approx(1e6 / 2**8)
+
+
+@pytest.mark.usefixtures("gl")
+def test_what_is_timed_is_as_large_as_said(monkeypatch):
+    """Codecs of a table, normals of a row, objects and lights of a frame, codes of a search."""
+    rows, searched, frames = [], [], []
+    monkeypatch.setattr(growth, "least_times", lambda works: [works[0](), [1.0]][1])
+    monkeypatch.setattr(growth.quality, "rows", lambda cases, _: rows.append(cases) or [])
+    monkeypatch.setattr(growth, "worst_case", type("", (), {"__wrapped__": searched.append}))
+    monkeypatch.setattr(growth, "_frame", lambda *sizes: frames.append(sizes) or 1.0)
+    for over, size in (("normals", 1000), ("codecs", 7), ("codes", 4**6), ("objects", 30), ("lights", 50)):
+        assert growth.measure(over, size)["microseconds_each"] == pytest.approx(1e6 / size)
+    assert [[case.normal_set.count for case in cases] for cases in rows] == [[1000], [growth.NORMALS] * 7]
+    assert len({case.codec.encoding.name for case in rows[1]}) == 7
+    assert [codec.codes for codec in searched] == [4**6]
+    assert frames == [(30, growth.LIGHTS), (growth.OBJECTS, 50)]
+
+
+def test_without_a_gl_device_the_row_says_so(monkeypatch):
+    def missing():
+        raise MissingError("no GL driver")
+
+    monkeypatch.setattr(growth, "require_device", missing)
+    row = growth.measure("lights", 10)
+    assert row["skipped"] == "no GL driver" and row["seconds"] is None
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["throughput", "--counts", "3"], f"--counts 3: whole numbers from {WHOLE} to"),
+        (["throughput", "--encoding", "no"], "unknown encoding 'no'"),
+        (["growth", "--over", "pixels"], "unknown kind 'pixels'"),
+        (["growth", "--sizes", "5"], "--sizes 5: sizes are of one kind; name it, such as --over normals"),
+        (["growth", "--over", "lights", "--sizes", "0"], "--sizes 0: whole numbers from 1 to"),
+        (["simulate", "--record", "no"], "unknown table 'no'"),
+    ],
+)
+def test_bad_input_is_one_line(words, said):
+    with pytest.raises(SystemExit, match=r"^tests\.speed: ") as error:
+        program.main(words)
+    assert said in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(("workers", "seconds"), [(1, 1024), (4, 256), (64, 16), (2000, 1)])
+def test_steps_of_a_second_are_shared_out(workers, seconds):
+    """1024 steps, where nothing else takes time."""
+    assert simulated(Load([1.0], 1024), workers, FREE).seconds == pytest.approx(seconds)
+
+
+def test_a_command_that_is_always_busy_is_the_limit():
+    """A row costs it 10 ms, and 1000 of them 10 s, however many workers there are; the last step takes one more."""
+    found = simulated(Load([1.0], 1000), 10**4, Costs(start=0, task=0, row=0.01, byte=0))
+    assert found.seconds == pytest.approx(11.0) and found.command == pytest.approx(10.0)
+
+
+def test_what_an_order_costs_comes_once_for_each_worker():
+    """Steps are made in 50 s. Files of 10 orders are sent in a second each: to one worker, or to all of 100."""
+    assert simulated(Load([1.0], 100, prepare=50), 1, FREE).seconds == pytest.approx(150)
+    assert simulated(Load([1.0], 100, prepare=50), 100, FREE).seconds == pytest.approx(51)
+    load, costs = Load([1.0], 100, sent=1.0, orders=10), Costs(start=0, task=0, row=0, byte=1.0)
+    assert simulated(load, 1, costs).command == pytest.approx(10)
+    assert simulated(load, 100, costs).command == pytest.approx(100)
+
+
+def test_of_steps_that_a_clock_is_read_for_a_machine_has_one_at_a_time():
+    assert simulated(Load([1.0], 100, is_timed=True), ON_A_MACHINE, FREE).seconds == pytest.approx(100)
+    assert simulated(Load([1.0], 100, is_timed=True), 10 * ON_A_MACHINE, FREE).seconds == pytest.approx(10)
+
+
+def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
+    path = tmp_path / "record.json"
+    path.write_text(json.dumps({"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}}))
+    monkeypatch.setattr(simulate, "measured_costs", lambda: FREE)
+    simulate.record(["vectors"], path)
+    made = json.loads(path.read_text())
+    times = made["seconds"].pop("vectors")
+    assert times and all(time >= 0 for time in times) and made["bytes"].pop("vectors") == 0
+    assert made == {"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}, "costs": vars(FREE)}
+    assert len(times) == len(TABLES["vectors"].work.steps(TABLES["vectors"].options(), TABLES["vectors"].outputs()))
+
+
+@pytest.mark.slow
+def test_the_record_that_is_kept_makes_a_table(capsys):
+    """What a task costs is measured anew by two worker processes."""
+    rows = printed(capsys, "simulate")
+    assert {row["workers"] for row in rows} == set(simulate.WORKERS)
+    costs = simulate.measured_costs()
+    assert 0 < costs.task < 1 and 0 < costs.byte < 1e-5 and 0 < costs.row < 1
