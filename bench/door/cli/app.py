@@ -133,17 +133,6 @@ def doctor(
         str | None,
         typer.Option("--domain", help="The normals it is meant for: sphere, hemisphere or view. Default: found out."),
     ] = None,
-    build_mesa: Annotated[
-        Path | None,
-        typer.Option(
-            "--build-mesa", help="Build Mesa's drivers for phones and small boards in this folder, for cost --isa."
-        ),
-    ] = None,
-    mesa_source: Annotated[
-        str | None,
-        typer.Option("--mesa-source", help="--build-mesa: a tarball of Mesa, as a file or URL. Default: Debian's."),
-    ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="--build-mesa: do not ask.")] = False,
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
@@ -152,14 +141,6 @@ def doctor(
     Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
     directions before any storage.
     """
-    if build_mesa is not None:
-        if file is not None or plot is not None or storage or domain:
-            raise UsageError("--build-mesa builds and does nothing else; leave out the file and its options")
-        from ...shaders.isa.mobile.build import build_command
-
-        return build_command(build_mesa, mesa_source, yes)
-    if mesa_source is not None or yes:
-        raise UsageError("--mesa-source and --yes go with --build-mesa DIR")
     if file is None and plot is None and not storage and not domain:
         from ...keep.machine import examine
 

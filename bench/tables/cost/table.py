@@ -30,7 +30,7 @@ class CostOptions:
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
             f"for these; {titled('nvidia')}, or nvidia for these; {titled('terascale')}, or terascale for these; "
-            f"{titled('mobile')}, or mobile for these, which doctor --build-mesa builds; all.",
+            f"{titled('mobile')}, or mobile for these, whose drivers you build; all.",
             in_run=True,
         ),
     ] = "radeon"

@@ -12,12 +12,12 @@ from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_mobile.c")
 SAID = "NORMALBENCH_NULL_MOBILE"
-# A folder that `normalbench doctor --build-mesa` was given, where it is not the last one.
+# A folder that `python -m tests.build_mesa` was given, where it is not the last one.
 VARIABLE = "NORMALBENCH_MESA"
 BUILD = "build"
 # The file of the cache that names the last build.
 RECORD = "mesa"
-INSTALL = "build it once (normalbench doctor --build-mesa DIR)"
+INSTALL = "build it once, in a checkout of normalbench (python -m tests.build_mesa DIR)"
 
 
 def folder() -> Path | None:

@@ -1,17 +1,16 @@
-"""Instructions on GPUs of phones and small boards: what listings hold, the device that is not there, and the build."""
+"""Instructions on GPUs of phones and small boards: what listings hold, and the device that is not there."""
 
 import json
-import subprocess
 from pathlib import Path
 
 import pytest
 from null_devices import NO_DEVICE, tried
 
-from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES, MOBILE, TURNIP
-from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES, MOBILE
+from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.shaders.isa import driver_files, isa
-from normalbench.bench.shaders.isa.mobile import build, driver, ir3_disassembly, qpu_disassembly
+from normalbench.bench.shaders.isa.mobile import driver, ir3_disassembly, qpu_disassembly
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines.kernels import STAGES
@@ -111,9 +110,9 @@ def test_without_a_build_the_rows_say_how_to_build(run, monkeypatch):
     monkeypatch.delenv(driver.VARIABLE, raising=False)
     monkeypatch.setattr(driver_files, "_descriptions", lambda: iter(()))
     status, out, err = run(*EVERY, "--family", "mobile")
-    assert status == 3 and "normalbench doctor --build-mesa DIR" in err
+    assert status == 3 and "python -m tests.build_mesa DIR" in err
     assert {row["skipped"] for row in json.loads(out) if row["skipped"]} == set(map(driver_files.no_driver, MOBILE))
-    with pytest.raises(MissingError, match=r"no Qualcomm turnip: .*; no Broadcom v3dv: .*build-mesa"):
+    with pytest.raises(MissingError, match=r"no Qualcomm turnip: .*; no Broadcom v3dv: .*build_mesa"):
         require_mobile()
 
 
@@ -122,115 +121,6 @@ def test_without_a_build_the_rows_say_how_to_build(run, monkeypatch):
 def test_the_null_device_answers_for_itself_alone(family, version):
     told = driver.variables(FAMILIES[family].null_device)
     assert tried(told) == [0, NO_DEVICE, NO_DEVICE, version]
-
-
-def script(folder: Path, name: str, text: str) -> None:
-    folder.mkdir(exist_ok=True)
-    (folder / name).write_text(f"#!/bin/sh\n{text}\n")
-    (folder / name).chmod(0o755)
-
-
-@pytest.fixture
-def tools(tmp_path, monkeypatch):
-    """Programs to build with that make what the real ones would, as far as it is looked for."""
-    folder = tmp_path / "bin"
-    for name in [*build.PROGRAMS, *build.DEBIAN_PROGRAMS, "python3"]:
-        script(folder, name, "exit 0")
-    script(folder, "meson", 'mkdir -p "$2" && touch "$2/build.ninja" && echo configured')
-    makes = "; ".join(
-        f'mkdir -p "$2/src/{name}/vulkan"; echo \'{{"ICD": {{"library_path": "/x/libvulkan_{name}.so"}}}}\' '
-        f'> "$2/src/{name}/vulkan/{name}_devenv_icd.x86_64.json"'
-        for name in ("freedreno", "broadcom")
-    )
-    script(folder, "ninja", makes)
-    monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
-    monkeypatch.delenv(driver.VARIABLE, raising=False)
-    return folder
-
-
-@pytest.fixture
-def tarball(tmp_path):
-    """A source of Mesa, as far as the build looks at it."""
-    source = tmp_path / "mesa-1.2.3"
-    source.mkdir()
-    (source / "meson.build").write_text("project('mesa')\n")
-    path = tmp_path / "mesa.tar.gz"
-    subprocess.run(["tar", "czf", str(path), "-C", str(tmp_path), source.name], check=True)
-    return str(path)
-
-
-@pytest.mark.usefixtures("own_cache", "tools")
-def test_a_build_is_remembered_and_found(run, tmp_path, tarball):
-    where = tmp_path / "mesa"
-    status, _, err = run("doctor", "--build-mesa", str(where), "--mesa-source", tarball, "--yes")
-    assert status == 0 and build.COST in err, err
-    assert driver.folder() == where and driver_files.driver_file(TURNIP).is_relative_to(where)
-    assert [path.name for path in where.iterdir() if path.name.endswith(".part")] == []
-
-
-@pytest.mark.usefixtures("own_cache")
-def test_a_build_goes_on_where_it_was_ended(run, tmp_path, tarball, tools):
-    where = tmp_path / "mesa"
-    whole = (tools / "ninja").read_text()
-    script(tools, "ninja", "echo 'x.c:1: error: no such thing'; exit 1")
-    words = ["doctor", "--build-mesa", str(where), "--mesa-source", tarball, "--yes"]
-    status, _, err = run(*words)
-    assert status == 2 and "ninja fails: x.c:1: error: no such thing; see" in err and driver.folder() is None
-    (tools / "ninja").write_text(whole)
-    script(tools, "meson", "exit 1")
-    status, _, err = run(*words)
-    assert status == 0 and "fetching" not in err and "configuring" not in err, err
-
-
-@pytest.mark.usefixtures("tools")
-def test_a_build_that_cannot_be_remembered_says_how_to_name_it(run, tmp_path, tarball, monkeypatch):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    where = tmp_path / "mesa"
-    status, _, err = run("doctor", "--build-mesa", str(where), "--mesa-source", tarball, "--yes")
-    assert status == 2 and f"set {driver.VARIABLE}={where}" in err, err
-
-
-@pytest.mark.usefixtures("own_cache", "tools")
-def test_nothing_is_built_unless_somebody_agrees(run, tmp_path, tarball, monkeypatch):
-    monkeypatch.setattr(build, "_agrees", lambda: False)
-    status, _, err = run("doctor", "--build-mesa", str(tmp_path / "mesa"), "--mesa-source", tarball)
-    assert status == 2 and "nothing was built; --yes builds without asking" in err
-    assert not (tmp_path / "mesa").exists()
-
-
-@pytest.mark.usefixtures("own_cache")
-def test_what_is_missing_is_one_line_with_the_packages(run, tmp_path, tarball, tools, monkeypatch):
-    for name in ("meson", "flex"):
-        (tools / name).unlink()
-    monkeypatch.setenv("PATH", str(tools))
-    script(tools, "pkg-config", '[ "$2" != libdrm ]')
-    words = ["doctor", "--build-mesa", str(tmp_path / "mesa"), "--mesa-source", tarball, "--yes"]
-    status, _, err = run(*words)
-    assert status == 3 and err.count("\n") == 1, err
-    assert "missing: meson, flex, libdrm; install them (Debian: apt-get install meson flex libdrm-dev)" in err
-
-
-@pytest.mark.usefixtures("own_cache", "tools")
-@pytest.mark.parametrize(
-    "words, said",
-    [
-        (["--build-mesa", "mesa", "--yes", "--mesa-source", "no/such.tar"], "--mesa-source no/such.tar: no such file"),
-        (["--build-mesa", "mesa", "--yes", "--mesa-source", __file__], "test_mobile.py: "),
-        (["--build-mesa", "mesa", "--plot", "sphere.png"], "leave out the file and its options"),
-        (["--yes"], "go with --build-mesa DIR"),
-    ],
-)
-def test_bad_words_are_one_line(run, tmp_path, monkeypatch, words, said):
-    monkeypatch.chdir(tmp_path)
-    status, _, err = run("doctor", *words)
-    assert status == 2 and said in err.splitlines()[-1], err
-
-
-def test_another_system_than_debian_is_told_to_give_a_tarball(monkeypatch):
-    monkeypatch.setattr(build, "_release", lambda: iter(['ID="fedora"', "VERSION_CODENAME="]))
-    with pytest.raises(UsageError, match="--mesa-source FILE or URL"):
-        build._codename()
 
 
 @pytest.fixture

@@ -1,10 +1,14 @@
 """Builds Mesa's drivers for GPUs of phones and small boards, from Debian's source package or from a tarball.
 
-Nothing is installed: all of it stays in the user's folder. What is there already is not done again.
+    python -m tests.build_mesa DIR [--source TARBALL] [--yes]
+
+`normalbench cost --isa --family mobile` then counts with them. Nothing is installed: all of it stays in DIR. What is
+there already is not done again. Exit status: 2 where it does not build, 3 where something to build with is missing.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import shutil
 import subprocess
@@ -15,9 +19,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from ....ground.options.gpu_families import MOBILE, TITLES
-from ....ground.output.errors import MissingError, UsageError
-from . import driver
+from normalbench.bench.ground.options.gpu_families import MOBILE, TITLES
+from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.shaders.isa.mobile import driver
 
 # What it takes, as measured on two cores with Mesa 22.3.
 COST = "about 40 MB to download, 330 MB on disk and 5 to 10 minutes on two cores"
@@ -64,7 +68,7 @@ def build(where: Path, source: str | None, say: Say) -> None:
     try:
         where.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UsageError(f"--build-mesa {where}: {error.strerror or error}") from error
+        raise UsageError(f"{where}: {error.strerror or error}") from error
     if _tree(where) is None:
         say(f"fetching Mesa's source into {where / SOURCE}")
         _fetch(where, source)
@@ -98,7 +102,7 @@ def check(source: str | None) -> Path:
     """A Python that has what Mesa's scripts need. Raises MissingError for what is missing, all at once, and UsageError
     for a tarball that is not there."""
     if source is not None and not _is_url(source) and not Path(source).is_file():
-        raise UsageError(f"--mesa-source {source}: no such file")
+        raise UsageError(f"--source {source}: no such file")
     python = _python()
     programs = {**PROGRAMS, **({} if source else DEBIAN_PROGRAMS)}
     missing = {name: package for name, package in programs.items() if not shutil.which(name)}
@@ -154,7 +158,7 @@ def _downloaded(url: str, folder: Path) -> Path:
         with urllib.request.urlopen(url, timeout=60) as answer, path.open("wb") as file:
             shutil.copyfileobj(answer, file)
     except (OSError, ValueError) as error:
-        raise UsageError(f"--mesa-source {url}: {error}") from error
+        raise UsageError(f"--source {url}: {error}") from error
     return path
 
 
@@ -163,7 +167,7 @@ def _unpack(tarball: Path, folder: Path) -> None:
         with tarfile.open(tarball) as archive:
             archive.extractall(folder, filter="data")
     except (OSError, tarfile.TarError) as error:
-        raise UsageError(f"--mesa-source {tarball}: {error}") from error
+        raise UsageError(f"--source {tarball}: {error}") from error
 
 
 def _by_apt(where: Path, folder: Path) -> None:
@@ -184,7 +188,7 @@ def _codename() -> str:
     said = dict(line.split("=", 1) for line in _release() if "=" in line)
     codename = said.get("VERSION_CODENAME", "").strip('"')
     if said.get("ID") != "debian" or not codename:
-        raise UsageError("this is not Debian: give a tarball of Mesa's source with --mesa-source FILE or URL")
+        raise UsageError("this is not Debian: give a tarball of Mesa's source with --source FILE or URL")
     return codename
 
 
@@ -206,16 +210,14 @@ def _run(command: Sequence[str], where: Path, environment: Mapping[str, str], fo
         raise UsageError(f"{command[0]} fails: {last}; see {where / LOG}")
 
 
-def build_command(where: Path, source: str | None, is_agreed: bool) -> int:
-    """What `normalbench doctor --build-mesa` does. Raises as `build`, and UsageError where nobody agrees."""
+def build_if_agreed(where: Path, source: str | None, is_agreed: bool) -> None:
+    """Says what it takes, asks and builds. Raises as `build`, and UsageError where nobody agrees."""
     check(source)
-    say = _said
-    say(f"building Mesa's turnip and v3dv in {where}: {COST}")
+    _said(f"building Mesa's turnip and v3dv in {where}: {COST}")
     if not is_agreed and not _agrees():
         raise UsageError("nothing was built; --yes builds without asking")
-    build(where, source, say)
-    say("built; `normalbench cost --isa --family mobile` counts with them")
-    return 0
+    build(where, source, _said)
+    _said("built; `normalbench cost --isa --family mobile` counts with them")
 
 
 def _said(line: str) -> None:
@@ -227,3 +229,23 @@ def _agrees() -> bool:
         return False
     _said("Go on? [y/N]")
     return sys.stdin.readline().strip().lower() in ("y", "yes")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """The exit status; what is wrong is one line on standard error."""
+    formatter = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser("python -m tests.build_mesa", description=__doc__, formatter_class=formatter)
+    parser.add_argument("folder", type=Path, metavar="DIR")
+    parser.add_argument("--source", metavar="TARBALL", help="Mesa's source, a file or a URL. Default: Debian's.")
+    parser.add_argument("--yes", action="store_true", help="Do not ask.")
+    asked = parser.parse_args(words)
+    try:
+        build_if_agreed(asked.folder, asked.source, asked.yes)
+    except (UsageError, MissingError) as error:
+        _said(f"build_mesa: {' '.join(str(error).split())}")
+        return 3 if isinstance(error, MissingError) else 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
