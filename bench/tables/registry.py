@@ -26,7 +26,6 @@ FOLDERS = (
     "tune",
     "published",
     "devices",
-    "device_facts",
 )
 TABLES: Mapping[str, Table] = MappingProxyType(
     {table.name: table for table in (import_module(f".{folder}.table", __package__).TABLE for folder in FOLDERS)}

@@ -678,27 +678,15 @@ def published(
 def devices(
     *,
     devices: Names = ...,
+    facts: bool = ...,
     on: str | None = ...,
 ) -> Rows:
-    """What readers' devices make of each codec: codes that differ from the run's, angles and times.
+    """What readers' devices make of each codec: codes that differ from the run's, angles and times. With --facts, how they round, filter, resolve and compute.
 
     A device file is what the live section of a page saves by "Save this device".
 
     Args:
         devices: Device files, or folders of them, comma-separated.
-        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
-    """
-
-def device_facts(
-    *,
-    devices: Names = ...,
-    on: str | None = ...,
-) -> Rows:
-    """How readers' devices round, filter and resolve each format, and how exactly they compute.
-
-    A device file is what the live section of a page saves by "Save this device".
-
-    Args:
-        devices: Device files, or folders of them, comma-separated.
+        facts: Show how each device rounds, filters, resolves and computes, in place of its codecs.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """

@@ -12,15 +12,13 @@ from ...ground.output.writing import say
 from ...keep.plain import plain
 from ...keep.runs import amended, read_run
 from ...keep.table_files import write_tables
-from ...tables.device_facts.table import TABLE as FACTS
 from ...tables.devices.agreement import many
 from ...tables.devices.device_file import DeviceFile, Read, read_device_file
 from ...tables.devices.names import told_apart
-from ...tables.devices.reading import Device, checked_number, codec_rows, devices, fact_rows
-from ...tables.devices.table import TABLE as DEVICES
+from ...tables.devices.reading import Device, checked_number, devices, rows_of
+from ...tables.devices.table import CODEC, FACT, TABLE
 from ...tables.table import Row
 
-OURS = (DEVICES.name, FACTS.name)
 # A GPU as a browser names it, and that browser.
 Identity = tuple[Any, Any]
 
@@ -40,7 +38,7 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
         if new:
             run.replace(_with(run.lines, new))
         # Also where nothing is new: an earlier import may have been ended before it wrote them.
-        write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name in OURS})
+        write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name == TABLE.name})
     names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
     for one in found:
         called = replace(one, name=names[one.file.renderer]).called
@@ -67,7 +65,7 @@ def read_all(paths: Sequence[Path]) -> list[Read]:
 
 
 def _is_ours(line: Row) -> bool:
-    return line["table"] in OURS and "renderer" in line["key"]
+    return line["table"] == TABLE.name and "renderer" in line["key"]
 
 
 def _identity(line: Row) -> Identity:
@@ -100,10 +98,10 @@ def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
 
 
 def _lines(one: Device) -> Iterator[Row]:
-    for table, rows in ((DEVICES, codec_rows(one)), (FACTS, fact_rows(one))):
-        made = plain([table.empty() | row for row in rows])
+    for row_of in (CODEC, FACT):
+        made = plain([TABLE.empty() | row for row in rows_of(one, row_of)])
         if made:
-            yield {"table": table.name, "key": one.key, "rows": made}
+            yield {"table": TABLE.name, "key": one.key(row_of), "rows": made}
 
 
 def _renamed(lines: Sequence[Row]) -> Iterator[Row]:

@@ -9,7 +9,6 @@ from typing import Any
 
 from ....reports.page.page import Table, table
 from ....reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
-from ...tables.device_facts.table import TABLE as FACTS
 from ...tables.devices.agreement import (
     codec_name,
     codec_of,
@@ -22,15 +21,14 @@ from ...tables.devices.agreement import (
     time_of,
 )
 from ...tables.devices.reading import Device, codec_rows, fact_rows
-from ...tables.devices.table import TABLE as DEVICES
+from ...tables.devices.table import TABLE
 from ...tables.table import Row, Sheet
-from ...tables.table import Table as BenchTable
 from .answers import Known, answers
 
 INDEX, FOLDER = "index.html", "devices"
 LONGEST = 60
 # What a device's page leaves to its heading and its facts.
-OF_DEVICE = ("device", "browser", "made", "program", "sources", "renderer", "vendor")
+OF_DEVICE = ("device", "browser", "row_of", "made", "program", "sources", "renderer", "vendor")
 # The columns of the index that no table has.
 INDEXED = {
     "agree": "Codecs with every code equal to the run's.",
@@ -91,7 +89,7 @@ def _device_page(entry: Entry) -> DevicePage:
     known = {name: text for name, text in about.items() if text}
     codecs = [_without(row, OF_DEVICE) for row in entry.rows]
     facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
-    tables = [_shown("Every codec", codecs, DEVICES), *([_shown("Facts", facts, FACTS)] if facts else [])]
+    tables = [_shown("Every codec", codecs), *([_shown("Facts", facts)] if facts else [])]
     answered = [Answer((*sheet.said, *sheet.aside), _front(sheet)) for sheet in entry.answers]
     said = f"{device.called} {difference(entry.rows)}."
     return DevicePage(device.called, entry.path, said, known, answered, tables)
@@ -106,14 +104,14 @@ def _without(row: Row, names: Sequence[str]) -> Row:
     return {name: value for name, value in row.items() if name not in names}
 
 
-def _shown(title: str, rows: Sequence[Row], of: BenchTable) -> Table:
-    """Rows as a page shows them, with the definitions of their table."""
+def _shown(title: str, rows: Sequence[Row]) -> Table:
+    """Rows as a page shows them, with the definitions of their columns."""
 
     def says(name: str) -> str:
-        column = of.column(name)
+        column = TABLE.column(name)
         return column.definition if column else ""
 
-    order = [column.name for column in of.columns if column.name in rows[0]]
+    order = [column.name for column in TABLE.columns if column.name in rows[0]]
     return table(title, [{name: row[name] for name in order} for row in rows], says)
 
 

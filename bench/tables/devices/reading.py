@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from ...ground.output.errors import UsageError, check_comma, names_a_folder, tel
 from ..table import Row, Step
 from .device_file import CodecRow, DeviceFile, Read, read_device_file
 from .names import browser_name, told_apart
+from .table import CODEC, FACT
 
 MOST_FILES = 2048
 SAVED = 'the live section of a page saves one by "Save this device"'
@@ -32,12 +33,11 @@ class Device:
         """The device and its browser, as sentences call them."""
         return called(self.name, self.browser)
 
-    @property
-    def key(self) -> Row:
-        """What tells its rows from those of every other file."""
+    def key(self, row_of: str) -> Row:
+        """What tells its rows of a kind from all others."""
         file = self.file
         known = {"renderer": file.renderer, "browser": self.browser, "made": file.made, "digest": file.digest}
-        return {"device": self.name, **known}
+        return {"device": self.name, "row_of": row_of, **known}
 
 
 def called(device: Any, browser: Any) -> str:
@@ -95,16 +95,22 @@ def named(files: Sequence[DeviceFile]) -> list[Device]:
     return [Device(names[file.renderer], file) for file in files]
 
 
-def steps_of(words: str) -> list[Step]:
-    """A step for each device. Raises UsageError for a file that cannot be read or is not a device's."""
+def steps_of(words: str, is_of_facts: bool) -> list[Step]:
+    """A step for each device: its facts, or its codecs. Raises UsageError for a file that cannot be read or is not a
+    device's."""
     found = devices(read_device_file(path) for path in files_named(words))
-    return [Step(one.key, one, one.called) for one in found]
+    row_of = FACT if is_of_facts else CODEC
+    return [Step(one.key(row_of), (one, row_of), one.called) for one in found]
+
+
+def rows_of(device: Device, row_of: str) -> list[Row]:
+    """The rows of a device that are of codecs, or those that are of facts."""
+    return fact_rows(device) if row_of == FACT else codec_rows(device)
 
 
 def codec_rows(device: Device) -> list[Row]:
-    """The rows of the table `devices`."""
-    about = _about(device) | {"sources": device.file.sources, "vendor": device.file.vendor}
-    return [about | _codec(row) for row in device.file.codecs]
+    """A row for each codec."""
+    return [_about(device, CODEC) | _codec(row) for row in device.file.codecs]
 
 
 def _codec(row: CodecRow) -> Row:
@@ -114,17 +120,18 @@ def _codec(row: CodecRow) -> Row:
     return said | {"same_percent": 100 * row.equal / row.normals, "timer": timer or None}
 
 
-def fact_rows(device: Device) -> Iterator[Row]:
-    """The rows of the table `device_facts`."""
-    for name, value in device.file.facts.items():
-        number = None if isinstance(value, str) else value
-        yield _about(device) | {"name": name, "value": str(value), "number": number}
+def fact_rows(device: Device) -> list[Row]:
+    """A row for each fact."""
+    return [
+        _about(device, FACT) | {"name": name, "value": str(value), "number": None if isinstance(value, str) else value}
+        for name, value in device.file.facts.items()
+    ]
 
 
-def _about(device: Device) -> Row:
+def _about(device: Device, row_of: str) -> Row:
     file = device.file
-    about = {"device": device.name, "browser": device.browser, "renderer": file.renderer}
-    return about | {"made": file.made, "program": file.program}
+    about = {"device": device.name, "browser": device.browser, "row_of": row_of, "renderer": file.renderer}
+    return about | {"vendor": file.vendor, "made": file.made, "program": file.program, "sources": file.sources}
 
 
 def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:

@@ -1,4 +1,4 @@
-"""The table of readers' devices: what they make of each codec, next to the run's own codes."""
+"""The table of readers' devices: what they make of each codec, next to the run's own codes, and what else they do."""
 
 from __future__ import annotations
 
@@ -10,29 +10,27 @@ from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
-
-Devices = Annotated[
-    str,
-    Option("--devices", "Device files, or folders of them, comma-separated.", files=True, in_run=True),
-]
+# What a row is of.
+CODEC, FACT = "codec", "fact"
 
 
 @dataclass(frozen=True, kw_only=True)
 class DevicesOptions:
-    """Which device files are read."""
+    """Which device files are read, and what of them is shown."""
 
-    devices: Devices = ""
+    devices: Annotated[
+        str,
+        Option("--devices", "Device files, or folders of them, comma-separated.", files=True, in_run=True),
+    ] = ""
+    facts: Annotated[
+        bool, Option("--facts", "Show how each device rounds, filters, resolves and computes, in place of its codecs.")
+    ] = False
 
-
-DEVICE = Column("device", "The GPU, by a short name of what the browser calls it.", KEY)
-BROWSER = Column("browser", "The browser and its major version.", KEY)
-MADE = Column("made", "When the device was saved, in UTC.", HOW, drops=5)
-PROGRAM = Column("program", "The version of normalbench whose page measured it.", HOW, drops=6)
-RENDERER = Column("renderer", "The GPU as the browser calls it.", HOW, drops=1)
 
 COLUMNS = (
-    DEVICE,
-    BROWSER,
+    Column("device", "The GPU, by a short name of what the browser calls it.", KEY),
+    Column("browser", "The browser and its major version.", KEY),
+    Column("row_of", f"What the row is of: a {CODEC}, or a {FACT}.", Role.RAW, shown=False),
     shared.ENCODING,
     shared.STORAGE,
     Column("rounding", "How the stored numbers are rounded.", KEY),
@@ -66,10 +64,13 @@ COLUMNS = (
     ),
     Column("timer", "What timed it.", HOW, drops=2),
     Column("normals", "How many normals the device encoded.", HOW, drops=10),
-    MADE,
-    PROGRAM,
+    Column("name", "What the fact is about.", KEY, option="facts"),
+    Column("value", "What the device does, as text.", HOW, option="facts"),
+    Column("number", "The same where it is a number, for gates and comparisons.", option="facts"),
+    Column("made", "When the device was saved, in UTC.", HOW, drops=5),
+    Column("program", "The version of normalbench whose page measured it.", HOW, drops=6),
     Column("sources", "The fingerprint of the run that the page showed.", HOW, drops=3),
-    RENDERER,
+    Column("renderer", "The GPU as the browser calls it.", HOW, drops=1),
     Column("vendor", "The vendor as the browser calls it.", HOW, drops=4),
 )
 
@@ -77,21 +78,26 @@ TABLE = Table(
     name="devices",
     package=__package__ or "",
     group=Group.KEEP,
-    help="What readers' devices make of each codec: codes that differ from the run's, angles and times.\n\n"
+    help="What readers' devices make of each codec: codes that differ from the run's, angles and times. With --facts, "
+    "how they round, filter, resolve and compute.\n\n"
     'A device file is what the live section of a page saves by "Save this device".',
     example="normalbench devices --devices phone.json",
     options=DevicesOptions,
     columns=COLUMNS,
+    usual=({}, {"facts": True}),
     by="device",
     in_all=False,
     asked_by="devices",
     section=Section(
         title="On readers' devices",
         short="Devices",
-        intro="Which GPUs store the same codes as this program, and which do not?",
+        intro="Which GPUs store the same codes as this program, which do not, and what else do they do otherwise?",
         method="The live section of a page encoded the same normals on each device, into the formats that the browser "
         "renders to, and compared every code with the run's own, bit for bit. The angles are of what the device "
         "encodes, stores, reads and decodes itself. Times are per megapixel, less an empty pass; the column timer "
-        "names the clock. A file that a reader saved is all that is known of a device: nothing is measured here.",
+        "names the clock. The section also tried how the device rounds, filters, resolves and computes: a fact is what "
+        "came out there, not what a specification promises. A file that a reader saved is all that is known of a "
+        "device: nothing is measured here.",
+        parts="row_of",
     ),
 )

@@ -10,10 +10,11 @@ from typing import Any
 from ....reports.charts import devices as charts
 from ....reports.charts.drawings import Drawing
 from ..charts import drawing
-from ..table import Role, Row, Step, Work, each
-from .agreement import codec_name, device_of, sheets, time_of
-from .reading import codec_rows, newest, steps_of
-from .table import TABLE, DevicesOptions
+from ..table import Role, Row, Sheet, Step, Work, each
+from . import agreement, facts
+from .agreement import codec_name, device_of, time_of
+from .reading import newest, rows_of, steps_of
+from .table import FACT, TABLE, DevicesOptions
 
 # Codecs of a chart.
 MOST_DRAWN = 60
@@ -21,16 +22,25 @@ KEYS = [column.name for column in TABLE.of_role(Role.KEY)]
 
 
 def _steps(options: DevicesOptions, _: object) -> list[Step]:
-    return steps_of(options.devices)
+    return steps_of(options.devices, options.facts)
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
     return newest(rows, KEYS)
 
 
+def _of_codecs(rows: Sequence[Row]) -> list[Row]:
+    return [row for row in rows if row.get("row_of") != FACT]
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    yield from agreement.sheets(_of_codecs(rows))
+    yield from facts.sheets([row for row in rows if row.get("row_of") == FACT])
+
+
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     """Devices whose codes differ from the run's by more than one step: no rounding explains that."""
-    for sheet in sheets(rows):
+    for sheet in agreement.sheets(_of_codecs(rows)):
         yield from (line for line in sheet.said if "more than one step" in line)
 
 
@@ -49,7 +59,7 @@ def timed(rows: Sequence[Row]) -> list[Row]:
 
 
 def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = timed(_finish(rows))
+    usable = timed(_of_codecs(_finish(rows)))
     if usable:
         said = "Milliseconds per megapixel to encode and to decode, a dot for each device. The fastest codec is on top."
         said += f" At most {MOST_DRAWN} codecs are drawn. The figures are in the table."
@@ -59,9 +69,9 @@ def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
 
 WORK = Work(
     steps=_steps,
-    measure=each(lambda device: [TABLE.empty() | row for row in codec_rows(device)]),
+    measure=each(lambda case: [TABLE.empty() | row for row in rows_of(*case)]),
     finish=_finish,
-    summary=sheets,
+    summary=_summary,
     warnings=_warnings,
     drawings=_drawings,
     needs=lambda _: frozenset(),

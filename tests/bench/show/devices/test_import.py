@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 import devices as made
@@ -43,11 +44,11 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def test_the_tables_have_their_columns_and_names_that_are_unique(run, tmp_path):
+def test_codecs_and_facts_have_their_columns_and_names_that_are_unique(run, tmp_path):
     made.write_ten(tmp_path / "ten")
-    for name, count in (("devices", 350), ("device_facts", 40)):
-        status, out, _ = run(name, "--devices", str(tmp_path / "ten"), "--format", "json")
-        rows, table = json.loads(out), TABLES[name]
+    for words, count in (((), 350), (("--facts",), 40)):
+        status, out, _ = run("devices", *words, "--devices", str(tmp_path / "ten"), "--format", "json")
+        rows, table = json.loads(out), TABLES["devices"]
         assert status == 0 and len(rows) == count == len({table.name_of(row) for row in rows})
         assert all(tuple(row) == tuple(table.empty()) for row in rows)
 
@@ -68,8 +69,8 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     assert (status, err) == (0, "") and "SwiftShader, Chromium 156: added 35 codecs, 4 facts" in out
     assert f"normalbench report {folder}" in out
     done = read_run(folder)
-    assert done.finished and not done.damage and len(done.tables["devices"]) == 35 and len(done.tables["quality"]) == 1
-    assert len(json.loads((folder / "devices.json").read_text())) == 35
+    assert done.finished and not done.damage and len(done.tables["devices"]) == 39 and len(done.tables["quality"]) == 1
+    assert len(json.loads((folder / "devices.json").read_text())) == 39
     before = content_of(folder)
     status, out, _ = run(*command, str(first))
     assert status == 0 and "nothing added; the run has the file of 2026-11-23T15:00:00Z already\n" in out
@@ -77,7 +78,7 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     newer = made.write(tmp_path / "b.json", made="2026-11-24T15:00:00Z", truncated=("RG8",))
     assert "in place of those of 2026-11-23T15:00:00Z" in run(*command, str(newer))[1]
     rows = read_run(folder).tables["devices"]
-    assert len(rows) == 35 and {row["made"] for row in rows} == {"2026-11-24T15:00:00Z"}
+    assert len(rows) == 39 and {row["made"] for row in rows} == {"2026-11-24T15:00:00Z"}
     before = content_of(folder)
     assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
     changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
@@ -162,7 +163,7 @@ def test_a_run_whose_import_is_killed_is_whole(run, tmp_path, folder, monkeypatc
     assert ("devices" in done.tables) == (when == "after the rows")
     assert run("import", str(path), "-o", str(folder))[0] == 0
     done = read_run(folder)
-    assert not done.damage and len(done.tables["devices"]) == 35
+    assert not done.damage and len(done.tables["devices"]) == 39
 
 
 @pytest.mark.slow
@@ -172,19 +173,18 @@ def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "1000")
     assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
     done = read_run(folder)
-    assert done.finished and set(done.tables) == {"quality", "devices", "device_facts"}
+    assert done.finished and set(done.tables) == {"quality", "devices"}
     assert '<section id="devices"' in (folder / "report.html").read_text()
 
 
-def test_a_named_device_makes_its_tables_part_of_all(run, tmp_path):
+def test_a_named_device_makes_its_table_part_of_all(run, tmp_path):
     from normalbench.bench.door.run import chosen_tables
 
-    names = {table.name for table in chosen_tables("all", {"devices": "a.json"})}
-    assert {"devices", "device_facts"} <= names
-    assert not {"devices", "device_facts"} & {table.name for table in chosen_tables("all", {"count": 3})}
+    assert "devices" in {table.name for table in chosen_tables("all", {"devices": "a.json"})}
+    assert "devices" not in {table.name for table in chosen_tables("all", {"count": 3})}
     path, out = made.write(tmp_path / "a.json"), tmp_path / "out"
-    assert run("run", "--tables", "devices,device_facts", "--devices", str(path), "-o", str(out))[0] == 0
-    assert {name: len(rows) for name, rows in read_run(out).tables.items()} == {"devices": 35, "device_facts": 4}
+    assert run("run", "--tables", "devices", "--devices", str(path), "-o", str(out))[0] == 0
+    assert Counter(row["row_of"] for row in read_run(out).tables["devices"]) == {"codec": 35, "fact": 4}
 
 
 def test_gates_hold_devices(run, tmp_path):
@@ -194,6 +194,16 @@ def test_gates_hold_devices(run, tmp_path):
     status, out, err = run("check", str(tmp_path / "gates.toml"), "--format", "json")
     failing = [row["row"] for row in json.loads(out) if row["holds"] != "pass"]
     assert status == 1 and len(failing) == 8 and all("rgb10a2" in name for name in failing), err
+
+
+def test_gates_hold_facts(run, tmp_path):
+    """Whether they say that facts are meant, or name a column that only facts have."""
+    made.write(tmp_path / "a.json")
+    for how in ("facts = true\n", ""):
+        gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/a.json"\n{how}number = "at least 23"\n'
+        (tmp_path / "gates.toml").write_text(gate)
+        rows = json.loads(run("check", str(tmp_path / "gates.toml"), "--format", "json")[1])
+        assert {row["row"].split(" 156 ")[1]: row["holds"] for row in rows}["highp mantissa bits"] == "pass", how
 
 
 @pytest.mark.slow
@@ -222,7 +232,7 @@ def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
 def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)
-        words = ("--tables", "devices,device_facts", "--devices", str(path), "-o", str(tmp_path / name))
+        words = ("--tables", "devices", "--devices", str(path), "-o", str(tmp_path / name))
         assert run("run", *words)[0] == 0
     status, out, _ = run("compare", str(tmp_path / "before"), str(tmp_path / "after"), "--format", "json")
     rows = json.loads(out)
@@ -257,10 +267,10 @@ def test_tables_of_an_import_that_was_killed_are_written_by_the_next(run, tmp_pa
     with monkeypatch.context() as patch:
         patch.setattr(import_command, "write_tables", killed)
         assert run(*words)[0] == 130
-    assert len(read_run(folder).tables["devices"]) == 35 and not (folder / "devices.csv").exists()
+    assert len(read_run(folder).tables["devices"]) == 39 and not (folder / "devices.csv").exists()
     status, out, _ = run(*words)
     assert status == 0 and "nothing added" in out
-    assert len(json.loads((folder / "devices.json").read_text())) == 35 and (folder / "devices.csv").exists()
+    assert len(json.loads((folder / "devices.json").read_text())) == 39 and (folder / "devices.csv").exists()
 
 
 @pytest.mark.slow
@@ -277,7 +287,7 @@ def test_a_killed_import_keeps_all_or_nothing(tmp_path, folder):
         process.wait()
         done = read_run(folder)
         assert done.finished and not done.damage and len(done.tables["quality"]) == 1, at
-        assert len(done.tables.get("devices", ())) in (0, 35), at
+        assert len(done.tables.get("devices", ())) in (0, 39), at
 
 
 def test_an_older_file_in_a_folder_does_not_stop_a_gate(run, tmp_path):
@@ -295,4 +305,4 @@ def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder)
     (folder / "run.json").write_text(json.dumps(facts | {"finished": False}))
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
     done = read_run(folder)
-    assert not done.finished and len(done.tables["devices"]) == 35
+    assert not done.finished and len(done.tables["devices"]) == 39

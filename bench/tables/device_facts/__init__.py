@@ -1,1 +1,0 @@
-"""What readers' devices are and do."""
