@@ -35,10 +35,9 @@ SECOND = "normalbench.bench.door.second_child"
 def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
     """The tables that comma-separated names stand for; of "all" those measured unasked, with the options that were
     said. Raises UsageError."""
-    known = {name: table for table in TABLES.values() for name in (table.name, *table.old_names)}
     if names.strip() == "all":
         return [table for table in TABLES.values() if table.is_in_all(said)]
-    return list(dict.fromkeys(pick("table", names, known)))
+    return list(dict.fromkeys(pick("table", names, TABLES)))
 
 
 def given(request: Any) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from ...encodings.codecs.files import file_json
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, whole_file
-from ..tables.registry import table_of_run
+from ..tables.registry import TABLES
 from ..tables.table import PART, Role, Row, Step, Table
 from .journal import Journal, data_of, journal, read_lines
 from .plain import key_text, plain
@@ -51,11 +51,11 @@ class Done:
         last: dict[tuple[str, str], int] = {}
         made: list[tuple[int, str, str, Row]] = []
         for at, step in enumerate(self.steps):
-            table = table_of_run(step["table"])
+            table = TABLES.get(step["table"])
             if not table:
                 continue
             found.setdefault(table.name, [])
-            for row in (_renamed(table, row) for row in step["rows"]):
+            for row in step["rows"]:
                 identity = _identity(table, row)
                 last[table.name, identity] = at
                 made.append((at, table.name, identity, row))
@@ -67,7 +67,7 @@ class Done:
     @property
     def left_out(self) -> str:
         """Which rows `tables` does not have, as a sentence without its end; empty where it has all."""
-        names = dict.fromkeys(step["table"] for step in self.steps if not table_of_run(step["table"]))
+        names = dict.fromkeys(step["table"] for step in self.steps if step["table"] not in TABLES)
         return f"Rows of {', '.join(names)} are left out, because this version has no such table" if names else ""
 
     @property
@@ -77,12 +77,7 @@ class Done:
         requests = [one for one in before if isinstance(one, dict)] if isinstance(before, list) else []
         # The same request may have been made again since.
         last = {json.dumps(one.get("request"), sort_keys=True): one for one in [*requests, self.facts]}
-        # A run of an older version does not say whether its earlier requests were finished.
-        return bool(self.facts.get("finished")) and all(one.get("finished") is not False for one in last.values())
-
-
-def _renamed(table: Table, row: Row) -> Row:
-    return {table.renamed.get(name, name): value for name, value in row.items()}
+        return all(one.get("finished") for one in last.values())
 
 
 def _identity(table: Table, row: Row) -> str:

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, Validat
 from typing_extensions import TypedDict
 
 from ..ground.output.errors import UsageError
-from ..tables.registry import table_of_run
+from ..tables.registry import TABLES
 from ..tables.table import Role, Row, Table
 
 # A float holds whole numbers below this: storages of 64 bits have more codes than fit a whole number of NumPy's.
@@ -115,7 +115,7 @@ def check_step(line: Any, place: str, keys: Keys) -> None:
 
 
 def _check_keys(name: str, row: Row, place: str, keys: Keys) -> None:
-    table = table_of_run(name)
+    table = TABLES.get(name)
     for column in table.of_role(Role.KEY) if table else ():
         value = row.get(column.name)
         is_text, where = keys.setdefault((name, column.name), (isinstance(value, str), place)) if value else (False, "")
@@ -136,8 +136,8 @@ def check_entry(entry: Any, place: str) -> None:
 
 
 def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
-    """Raises UsageError where a column holds what it cannot. Columns of another version may hold anything."""
-    table = table_of_run(name)
+    """Raises UsageError where a column holds what it cannot. Columns that the table does not have may hold anything."""
+    table = TABLES.get(name)
     roles = {column: role for column in row if (role := _role(table, column))} if table else {}
     _check(SCALARS, {name: row[name] for name in roles}, place)
     _check(NUMBERS, {name: row[name] for name, role in roles.items() if role in (Role.FIGURE, Role.TIME)}, place)
@@ -146,7 +146,7 @@ def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
 @cache
 def _role(table: Table, name: str) -> Role | None:
     """What a row's column is for. Kept, because rows are many and patterns of names take long."""
-    column = table.column(table.renamed.get(name, name))
+    column = table.column(name)
     return column.role if column else None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import pickle
+import shlex
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -47,7 +48,7 @@ from ..tables.cost.measure import OPERATIONS, listing
 from ..tables.cost.sheets import article_rows, order_notes
 from ..tables.cost.work import SOURCES
 from ..tables.quality import sphere_maps
-from ..tables.registry import TABLES, table_of_run
+from ..tables.registry import TABLES
 from ..tables.table import Role, Table
 
 SEVERAL = "runs.html"
@@ -56,7 +57,7 @@ LIVE = "live"
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
 STAGE, LISTED = "fragment", 2**20
 NOTHING: Mapping[str, str] = MappingProxyType({})
-# Rows that another version wrote, or somebody's hand.
+# What may go wrong with rows that another version wrote, or somebody's hand.
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
@@ -218,7 +219,7 @@ def gathered(folder: Path, done: Done) -> Found:
     facts = plain_text(done.facts)
     remarks = [f"{plain_text(said)}." for said in (done.damage, done.left_out) if said]
     if facts.get("sources") != sources():
-        remarks.append("Another version of the program measured this run: what columns mean may have changed since.")
+        remarks.append(f"Another version of the program measured this run; measure it again: {_command(facts)}.")
     quality, family = tables.get("quality", []), usual_family(tables)
     found = Found(
         name=str(plain_text(folder.resolve().name)),
@@ -280,7 +281,8 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
             if one.rows
         ]
     except UNEXPECTED:
-        remarks.append(f"The rows of {table.name} are not those of this version; they are shown as they are.")
+        again = f"measure them again: normalbench run --tables {table.name}"
+        remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {again}.")
         return []
 
 
@@ -312,6 +314,13 @@ def _flat(value: Any) -> Any:
     return str(value) if is_odd else value
 
 
+def _command(facts: Row) -> str:
+    """How a run was measured, as it is typed into another folder."""
+    words = [str(word) for word in facts.get("command") or ("run",)]
+    at = next((at for at, word in enumerate(words) if word in ("-o", "--output")), len(words))
+    return shlex.join(["normalbench", *words[:at], *words[at + 2 :]])
+
+
 def _asked(facts: Row) -> set[str]:
     """The tables that a run was asked for, at any time."""
     before = facts.get("before")
@@ -319,7 +328,7 @@ def _asked(facts: Row) -> set[str]:
     found: set[str] = set()
     for request in (request for request in requests if isinstance(request, dict)):
         words = {word.strip() for word in str(request.get("tables")).split(",")}
-        found |= {table.name for word in words if (table := table_of_run(word))}
+        found |= words & TABLES.keys()
         found |= {table.name for table in TABLES.values() if "all" in words and table.is_in_all(request)}
     return found
 

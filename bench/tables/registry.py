@@ -30,8 +30,3 @@ FOLDERS = (
 TABLES: Mapping[str, Table] = MappingProxyType(
     {table.name: table for table in (import_module(f".{folder}.table", __package__).TABLE for folder in FOLDERS)}
 )
-
-
-def table_of_run(name: str) -> Table | None:
-    """The table that a run calls so, whatever version wrote it; None where this version has none."""
-    return next((table for table in TABLES.values() if name in (table.name, *table.old_names)), None)

@@ -275,8 +275,6 @@ class Table:
         asked_by: an option; where it is given, `run` measures the table without being asked to.
         is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
             on the GL device.
-        old_names: what older runs call the table.
-        renamed: columns of older runs, by what they are called now.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
@@ -299,8 +297,6 @@ class Table:
     in_all: bool = True
     asked_by: str = ""
     is_measured_beside: bool = False
-    old_names: tuple[str, ...] = ()
-    renamed: Mapping[str, str] = field(default_factory=dict)
     compilers: tuple[str, ...] = ()
 
     def is_in_all(self, said: Mapping[str, Any]) -> bool:

@@ -38,7 +38,7 @@ def agreement(quality: Sequence[Row]) -> str:
     """How far the figures of the two back ends are apart; empty where no codec has both.
 
     Args:
-        quality: rows of the quality table, of any version.
+        quality: rows of the quality table.
     """
     figures: dict[tuple[Any, ...], dict[Any, float]] = {}
     for row in quality:

@@ -81,7 +81,7 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
     tables = {
         "quality": rows,
         "render": [{"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}],
-        "passes": [{"pipeline": HOSTILE, "ms_frame": 1.0, "ms_lights": 0.5, "clock": HOSTILE}],
+        "sweep": [{"pipeline": HOSTILE, "ms_frame": 1.0, "ms_lights": 0.5, "clock": HOSTILE}],
         "cost": [{"family": "../../..", "encoding": HOSTILE, "stage": "fragment", "instructions": 3}],
         HOSTILE: [{HOSTILE: HOSTILE}],
     }
@@ -147,7 +147,7 @@ def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
     assert "This run is not finished. Steps that are done: 1." in read.text
-    assert "Another version of the program measured this run" in read.text
+    assert "Another version of the program measured this run; measure it again: normalbench run." in read.text
     assert "it was asked for, and has no rows" in read.text
 
 
@@ -201,6 +201,15 @@ def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_
     assert text.count('data-codec="mine rgba8"') >= 2 and "<option>mine rgba8</option>" in text
 
 
+def test_a_run_of_another_version_says_how_to_measure_it_again(run, tmp_path):
+    """By the same command, less the folder that holds it."""
+    command = ["run", "--tables", "quality", "-o", "old run", "--normals", "my set.npy"]
+    folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, sources="other", command=command)
+    said = "measure it again: normalbench run --tables quality --normals 'my set.npy'."
+    assert said in reported(run, folder)[1].text
+    assert "measure it again" in run("report", str(folder), "--markdown")[1]
+
+
 def test_a_row_without_an_encoding_has_no_empty_heading(run, tmp_path):
     """The cost of a storage alone."""
     about = {"measure": "isa", "storage": "rg8", "operation": "encode", "stage": "fragment", "family": "navi31"}
@@ -218,13 +227,14 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
         ],
         "render": [{"psnr": "high"}],
         "lights": [{"experiment": "equal", "sum": 1.0, "lights": 8}],
-        "passes": [{"ms_frame": 3.0, "ms_lights": 1.0}],
+        "sweep": [{"ms_frame": 3.0, "ms_lights": 1.0}],
         "depth": [{"distance": 1.0, "error_max": 0.1, "near": 0.1, "far": 1.0, "fov": 60.0}],
         "colours": [{"red": 1}],
         "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "codes": ["xy"]}],
     }
     _, read = reported(run, a_run(tmp_path / "run", tables), "Rows of colours are left out")
-    assert "The rows of quality are not those of this version" in read.text
+    assert "The rows of quality are not those of this version, and shown as they are; measure them again: " in read.text
+    assert "normalbench run --tables quality." in read.text
     assert "Rows of colours are left out, because this version has no such table." in read.text
     assert "The chart 'depth' cannot be drawn from these rows" in read.text
     assert "octahedral" in read.text and "its rows keep no histograms" in read.text

@@ -15,7 +15,7 @@ from ...ground.options.option import fields_of
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import whole_file
 from ...keep.comparison import difference, same
-from ...tables.registry import table_of_run
+from ...tables.registry import TABLES
 from ...tables.table import Role, Row, Table
 from .listings import differences as listing_differences
 from .listings import lines_of
@@ -138,7 +138,7 @@ class Baseline:
 
     def _other_compilers(self, one: Entry) -> str:
         """By which other compilers the file has a row; empty for none."""
-        table = table_of_run(one["table"])
+        table = TABLES.get(one["table"])
         names = table.compilers if table else ()
         alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(one, names)]
         if not names or not alike:
@@ -158,7 +158,7 @@ def _less(one: Entry, names: Sequence[str]) -> str:
 
 
 def _name(one: Entry) -> str:
-    table = table_of_run(one["table"])
+    table = TABLES.get(one["table"])
     return table.name_of(one["row"]) if table else str(one["table"])
 
 

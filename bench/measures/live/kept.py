@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal, NotRequired
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
 from typing_extensions import TypedDict
@@ -81,7 +81,7 @@ class Kept(TypedDict):
     takes_view: bool
     channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
     tables: dict[Name, Table]
-    checks: NotRequired[Checks | None]
+    checks: Checks | None
 
 
 KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
@@ -114,7 +114,7 @@ def _checks(codec: Codec) -> Record | None:
 
 def _current(record: Record) -> Record:
     """A record whose checks are of the normals that the page makes; without them where they are of others."""
-    found = record.get("checks")
+    found = record["checks"]
     is_whole = found and checks.is_whole(found, record["domain"], len(record["channels"]))
     return record if is_whole else {**record, "checks": None}
 

@@ -20,7 +20,7 @@ NEEDS, AIM = "sphere", "angle"
 UNKNOWN = "not in the catalogue: the normals that it is made for are not known"
 # What tells questions apart.
 QUESTION = ("storage", "target", "rounding")
-# Of a storage that this version does not know, behind all others.
+# Of a storage that is not in the catalogue, behind all others.
 MANY = 1 << 16
 
 

@@ -341,9 +341,8 @@ def _times(made: Rendering, repeats: int) -> Row:
 
 
 def shown_scene(row: Row) -> str:
-    """What a row was rendered of, as a sentence names it; a row of an older version has no power."""
-    power = row.get("power")
-    return str(row.get("scene")) + (f" at power {power:g}" if isinstance(power, int | float) else "")
+    """What a row was rendered of, as a sentence names it."""
+    return str(row["scene"]) + ("" if row["power"] is None else f" at power {row['power']:g}")
 
 
 def in_order(rows: list[Row]) -> list[Row]:

@@ -92,7 +92,6 @@ TABLE = Table(
     columns=COLUMNS,
     usual=({"pipeline": "all", "objects": "200", "shadow": "on", "size": "auto", "scale": 1.0, "repeats": 9},),
     single={"pipeline": "deferred", "objects": "100", "shadow": "on", "size": "320x240", "repeats": 1},
-    old_names=("passes",),
     section=Section(
         title="What the passes take",
         short="Passes",

@@ -88,10 +88,8 @@ def _line(row: Row) -> tuple:
 
 
 def _place(row: Row) -> tuple[int, ...]:
-    """Where a code stands in the catalogues; those of other versions last."""
-    lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
-    names = (row["encoding"], row["storage"])
-    return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))
+    """Where a code stands in the catalogues."""
+    return [*MOTION_ENCODINGS].index(row["encoding"]), [*MOTION_STORAGES].index(row["storage"])
 
 
 def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:

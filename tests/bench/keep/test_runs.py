@@ -168,6 +168,16 @@ def test_a_finished_run_is_extended_and_keeps_its_rows(tmp_path):
     assert done.finished and [one["request"] for one in done.facts["before"]] == [{"count": 1}]
 
 
+def test_a_first_request_that_was_stopped_is_not_finished_by_another(tmp_path):
+    """The facts of a new run do not say whether it is finished."""
+    first = {name: fact for name, fact in FACTS.items() if name != "finished"}
+    with opened(tmp_path / "run", first):
+        pass
+    with opened(tmp_path / "run", first | {"request": {"count": 2}}) as run:
+        run.finish()
+    assert not read_run(tmp_path / "run").finished
+
+
 def test_a_run_whose_earlier_request_was_stopped_is_not_finished_by_another(tmp_path):
     folder, measured, other = tmp_path / "run", [], FACTS | {"request": {"count": 2}}
     with opened(folder, FACTS) as run:

@@ -33,7 +33,7 @@ def test_every_codec_is_written_in_what_browsers_know():
     assert set(ENCODINGS) - set(found) == {"best_fit", "spherical_lut"}
     for name, record in found.items():
         assert not LATER.search(record["source"]), name
-        kept.KEPT.validate_python(record)
+        kept.KEPT.validate_python({**record, "checks": None})
 
 
 def test_a_users_encoding_brings_its_text(tmp_path):
