@@ -44,7 +44,10 @@ from .kind import MEASURED, Attack, Kind, one_line
 ENDINGS = {"png16": "png", "png8": "png", "tiff": "tif", "float tiff": "tif"}
 PIXELS = ("png16", "png8", "npy", "exr", "tiff", "float tiff", "dds", "hdr", "webp")
 OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
-STL = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
+# In which changes may be harmless: most of it is a name and digits.
+CORNERS = "".join(f"vertex {x:.9f} {y:.9f} 0.000000000\n" for x, y in ((0, 0), (1, 0), (0, 1)))
+FACET = f"facet normal 0.000000000 0.000000000 1.000000000\nouter loop\n{CORNERS}endloop\nendfacet\n"
+STL = f"solid {'a name that says nothing of the shape ' * 3}\n{FACET}endsolid\n"
 MESHES = ("glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply", "off", "text stl", "stl")
 TUNED = "best_fit"
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import struct
 
 import numpy as np
 import pytest
@@ -132,8 +133,10 @@ BAD_TEXTS = {
     "an OFF of too many": ("a.off", OFF.replace("4 2", "99999999 2"), ["cut off or damaged"]),
     "an OFF of another kind": ("a.off", "4" + OFF, ["no OFF file"]),
     "an STL that is cut off": ("a.stl", STL[:-12], ["cut off or damaged"]),
-    "an STL without a vertex": ("a.stl", STL.replace("vertex 0 1 0\n", ""), ["cut off or damaged"]),
-    "an STL word": ("a.stl", STL.replace("1 0 0", "1 zero 0"), ["cut off or damaged"]),
+    "an STL without a vertex": ("a.stl", STL.replace("vertex 0 1 0\n", ""), ["facet 0 is cut off or damaged"]),
+    "an STL word": ("a.stl", STL.replace("1 0 0", "1 zero 0"), ["facet 0 is cut off or damaged"]),
+    "an STL with more than facets": ("a.stl", STL.replace("endsolid b", "facet\nendsolid b"), ["facet 2 is cut off"]),
+    "an STL without a facet": ("a.stl", "solid a\nendsolid a\n", ["no triangle with an area"]),
     "an STL NaN": ("a.stl", STL.replace("1 0 0", "1 nan 0"), ["position of vertex 1", "nan"]),
     "no STL": ("a.stl", "", ["no STL file"]),
     "flat triangles": ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ["no triangle with an area"]),
@@ -167,6 +170,18 @@ def test_a_bad_text_is_one_line(tmp_path, run, what):
     (tmp_path / name).write_text(text)
     err = refusal(run, tmp_path / name)
     assert all(part in err for part in said), err
+
+
+@pytest.mark.parametrize("length", [0, 83, 84, 133, 135, 183, 185])
+def test_a_binary_stl_of_another_length_is_one_line(tmp_path, run, length):
+    """It says two facets: only 184 bytes are it. A head that reads as a text's does not help."""
+    facet = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 7)
+    for head in (bytes(80), b"solid of another program".ljust(80)):
+        whole = head + struct.pack("<I", 2) + 2 * facet
+        (tmp_path / "a.stl").write_bytes((whole + b"!")[:length])
+        assert "no STL file, cut off or damaged; export it again" in refusal(run, tmp_path / "a.stl")
+        (tmp_path / "a.stl").write_bytes(whole)
+        assert len(read_mesh_file(tmp_path / "a.stl").baked.triangles) == 2
 
 
 def test_what_is_too_large_is_refused_before_it_is_read(tmp_path, run):

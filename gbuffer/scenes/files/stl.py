@@ -1,21 +1,26 @@
-"""STL files by trimesh, in one grey material seen from both sides.
-
-Its loader of this format is called by itself: `trimesh.load` merges and reorders vertices. It passes over words that
-are not numbers and what is missing at the end of a text, so that what it gives is counted against what the file says.
-"""
+"""STL files, binary or text, in one grey material seen from both sides."""
 
 from __future__ import annotations
 
-import io
 import re
-import struct
-import warnings
 from pathlib import Path
 
 import numpy as np
 
 from .mesh_file import MeshFile, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
+
+# Of a binary file: 80 bytes of anything, how many facets there are, and the facets.
+COUNT_AT, HEAD = 80, 84
+FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+THREE = r"((?:\s++\S++){3})"
+CORNER = rf"\s++vertex{THREE}"
+TEXT_FACET = re.compile(
+    rf"\s*+facet\s++normal{THREE}\s++outer\s++loop{CORNER}{CORNER}{CORNER}\s++endloop\s++endfacet\b"
+)
+
+# Normals of shape (facets, 3), and the corners of each facet one after the other, of shape (3 facets, 3).
+Facets = tuple[np.ndarray, np.ndarray]
 
 
 def read_stl(path: Path) -> MeshFile:
@@ -25,43 +30,47 @@ def read_stl(path: Path) -> MeshFile:
         SceneFileError: it is damaged, too large, or has no faces.
     """
     data = file_bytes(path)
-    try:
-        triangles = _binary_facets(data)
-        if not triangles:
-            text, triangles = _one_solid(file_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace"))
-            data = text.encode()
-        checked_size(path, 3 * triangles, triangles, "the file")
-        found = _loaded(data)
-        positions, faces = (np.asarray(found[key]).reshape(-1, 3) for key in ("vertices", "faces"))
-        normals = np.asarray(found["face_normals"]).reshape(-1, 3)
-        if (len(positions), len(faces), len(normals)) != (3 * triangles, triangles, triangles):
-            raise ValueError("what was read is not all of it")
-    except SceneFileError:
-        raise
-    except Exception as error:  # of a dozen kinds, by what is damaged
-        raise SceneFileError(f"{path}: no STL file, cut off or damaged; export it again") from error
-    mesh, notes = mesh_of(path, "the mesh", positions, faces, np.repeat(normals, 3, axis=0))
+    count = int.from_bytes(data[COUNT_AT:HEAD], "little")
+    is_binary = len(data) == HEAD + FACET.itemsize * count
+    normals, corners = _binary(path, data, count) if is_binary else _text(path)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    mesh, notes = mesh_of(path, "the mesh", corners, faces, np.repeat(normals, 3, axis=0))
     return of_one_mesh(path, mesh, notes)
 
 
-def _loaded(data: bytes) -> dict:
-    # Here, because it takes more than a second.
-    from trimesh.exchange.stl import load_stl
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        return load_stl(io.BytesIO(data))
+def _binary(path: Path, data: bytes, count: int) -> Facets:
+    checked_size(path, 3 * count, count, "the file")
+    facets = np.frombuffer(data, FACET, offset=HEAD)
+    return facets["normal"], facets["corners"].reshape(-1, 3)
 
 
-def _binary_facets(data: bytes) -> int:
-    """How many facets a binary STL file has; 0 where it is none."""
-    (count,) = struct.unpack_from("<I", data, 80) if len(data) >= 84 else (0,)
-    return count if len(data) == 84 + 50 * count else 0
+def _text(path: Path) -> Facets:
+    """The facets of all solids; what these are called may be anything."""
+    text = file_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace").lower().strip()
+    if not text.startswith("solid") or not re.search(r"\bendsolid\b", text.rpartition("\n")[2]):
+        raise SceneFileError(f"{path}: no STL file, cut off or damaged; export it again")
+    facets = re.sub(r"(?m)^[^\S\n]*(end)?solid\b.*$", "", text)
+    count = facets.count("endfacet")
+    checked_size(path, 3 * count, count, "the file")
+    numbers = np.empty((count, 12))
+    end = 0
+    for at in range(count):
+        numbers[at], end = _facet(path, facets, at, end)
+    if facets[end:].strip():
+        raise _damaged(path, count)
+    return numbers[:, :3], numbers[:, 3:].reshape(-1, 3)
 
 
-def _one_solid(text: str) -> tuple[str, int]:
-    """A text STL's facets as one solid without a name, and how many there are."""
-    if not re.match(r"\s*solid", text, re.IGNORECASE) or not re.search(r"(?i)\bendsolid[^\n]*\s*\Z", text):
-        raise ValueError("no solid")
-    facets = re.sub(r"(?im)^[^\S\n]*(end)?solid\b.*$", "", text)
-    return f"solid\n{facets}\nendsolid\n", len(re.findall(r"(?i)vertex", facets)) // 3
+def _facet(path: Path, facets: str, at: int, start: int) -> tuple[list[float], int]:
+    """The 12 numbers of a text's facet number `at`, and where it ends."""
+    found = TEXT_FACET.match(facets, start)
+    if not found:
+        raise _damaged(path, at)
+    try:
+        return [float(word) for word in " ".join(found.groups()).split()], found.end()
+    except ValueError as error:
+        raise _damaged(path, at) from error
+
+
+def _damaged(path: Path, at: int) -> SceneFileError:
+    return SceneFileError(f"{path}: facet {at} is cut off or damaged; export it again")
