@@ -52,7 +52,7 @@ def measured_otherwise(before: Done, after: Done) -> list[str]:
     """The conditions under which rows of both runs were measured otherwise, in words; those of most rows first."""
     found: Counter[tuple[str, Any, Any]] = Counter()
     for name, ours in before.tables.items():
-        table = TABLES.get(name)
+        table = TABLES[name]
         theirs = named_rows(table, after.tables.get(name, []))
         for key, row in named_rows(table, ours).items():
             other = theirs.get(key, {})
