@@ -33,7 +33,9 @@ def test_a_light_buffer_is_an_encoding_in_a_storage():
     """A buffer goes by its encoding's name, or by its format's where a texel is the light itself."""
     plain = [name for name, codec in LIGHT_BUFFERS.items() if codec.encoding is LIGHT_ENCODINGS["plain"]]
     assert plain == ["rgba32f", "rgba16f", "r11g11b10f"]
-    assert list(LIGHT_BUFFERS) == [*plain, *LIGHT_NAMES[1:]]
+    assert list(LIGHT_BUFFERS) == [*plain, "linear", "srgb", *LIGHT_NAMES[2:]]
+    curved = LIGHT_BUFFERS["srgb"]
+    assert curved.encoding is LIGHT_ENCODINGS["linear"] and curved.storage is LIGHT_STORAGES["srgb8_a8"]
     assert [name for name, codec in LIGHT_BUFFERS.items() if codec.misfit] == []
     misfit = LightCodec(LIGHT_ENCODINGS["rgbm"], LIGHT_STORAGES["rgba16f"]).misfit
     assert misfit == "rgbm is made for rgba8"

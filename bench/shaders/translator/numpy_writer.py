@@ -78,7 +78,7 @@ class NumpyWriter(NumpyValues):
     """Python with NumPy 2."""
 
     reserved = words(
-        "and as assert async await break class continue def del elif else except finally for from global if import in "
+        "as and assert async await break class continue def del elif else except finally for from global if import in "
         "is lambda nonlocal not or pass raise return try while with yield True False None match case type np Path "
         "range print zip len enumerate"
     )
