@@ -35,7 +35,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "render --flip": require_flip,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
-        "code in C, and fast rows of 2^22 normals and more (cc)": c.compiler,
+        "code in C, and fast rows of 2^26 normals and more (cc)": c.compiler,
         "code in Metal (clang++)": msl.compiler,
         "code in Slang (slangc)": slang.compiler,
         "rays (method_rms of effects)": require_rays,

@@ -30,8 +30,6 @@ VIEWED = """#define VIEWED(source, target, value) \\
     ({ source from_ = (value); target to_; memcpy(&to_, &from_, sizeof to_); to_; })
 """
 COMPILING_S = 30
-# From so many normals on it pays to compile, which takes a fifth of a second.
-LARGE = 2**22
 NONE = "no C compiler: install one that is called cc (Debian: gcc)"
 DIGEST = hashlib.sha256().digest_size
 

@@ -17,12 +17,14 @@ import numpy as np
 from ....encodings.elementary import sincos_pi
 from ....encodings.vec import Vec3, from_array, sqrt
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import LARGE, NoCompilerError
+from ...ground.native.library import NoCompilerError
 from ...ground.options.counts import DEFAULT_COUNT
 from .fill import Fill
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
+# From so many normals on C fills them, which takes a fifth of a second to compile: the same normals to the last bit.
+LARGE = 2**22
 # Larger sets are measured and kept in parts of so many normals, by several workers where there are some.
 PART = 2**30
 

@@ -25,7 +25,7 @@ from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import LARGE, NoCompilerError
+from ...ground.native.library import NoCompilerError
 from ...ground.output.errors import MissingError
 from ...measures.metrics.code_limits import AREAS, effective_bits
 from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
@@ -41,6 +41,9 @@ from .table import TABLE
 
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
+# From so many normals on the C compiler's code measures. It rounds a few products otherwise than XLA does, which shows
+# in the printed digits of 32 of 430 codecs, so smaller sets, which take seconds by either, have one arithmetic.
+LARGE = 2**26
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
 # How many chunks the C compiler's code measures in turn: with fewer, what Python does for each shows.

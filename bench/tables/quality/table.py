@@ -194,7 +194,7 @@ COLUMNS = (
     shared.ROUNDED_BY,
     Column(
         "compiled_by",
-        "What compiled the JAX functions: XLA or, of 4194304 pixels or normals and more, this machine's C compiler.",
+        "What compiled the JAX functions: XLA or, of 67108864 pixels or normals and more, this machine's C compiler.",
         HOW,
         shown=False,
     ),

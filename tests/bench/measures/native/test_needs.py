@@ -1,7 +1,7 @@
 """Which steps need the same C compiler wherever they are measured."""
 
-from normalbench.bench.ground.native.library import LARGE
 from normalbench.bench.run.workers.about import CAN
+from normalbench.bench.tables.quality.measure import LARGE
 from normalbench.bench.tables.quality.work import WORK
 from normalbench.bench.tables.table import C_COMPILER, GL, VULKAN, Step
 
