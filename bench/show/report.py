@@ -291,7 +291,8 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
 
 def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[drawings.Drawing]:
     try:
-        return list(table.work.drawings(found, whole(rows)))
+        kept = whole(rows)
+        return [*table.work.drawings(found, kept), *map(drawings.of, table.work.charts(kept))]
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []

@@ -215,6 +215,7 @@ class Work:
         warnings: a line for each row that is measured but odd.
         failures: a line for each row that makes the command fail.
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
+        charts: `chart.Chart` values of rows: the page, files of `run`, notebooks and --plot draw them.
         drawings: charts of the page, from its contents and the table's rows.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
@@ -238,6 +239,7 @@ class Work:
     warnings: Callable[[Sequence[Row]], Iterable[str]] = _nothing
     failures: Callable[[Sequence[Row]], Iterable[str]] = _nothing
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
+    charts: Callable[[Sequence[Row]], Iterator[Any]] = _nothing
     drawings: Callable[..., Iterator[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import math
-import statistics
 from collections.abc import Iterator, Sequence
-from typing import Any
 
-from ....reports.charts import devices as charts
-from ....reports.charts.drawings import Drawing
-from ..charts import drawing
 from ..table import Role, Row, Step, Work, each
-from .agreement import codec_name, device_of, sheets, time_of
+from .agreement import sheets
+from .charts import charts
 from .reading import codec_rows, newest, steps_of
 from .table import TABLE, DevicesOptions
 
-# Codecs of a chart.
-MOST_DRAWN = 60
 KEYS = [column.name for column in TABLE.of_role(Role.KEY)]
 
 
@@ -34,36 +27,13 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         yield from (line for line in sheet.said if "more than one step" in line)
 
 
-def timed(rows: Sequence[Row]) -> list[Row]:
-    """What the chart shows: codec, device and milliseconds, the codec with the least geometric mean first.
-
-    A logarithmic axis has no place for times that are not above 0.
-    """
-    made = [{"codec": codec_name(row), "device": device_of(row), "ms": time_of(row)} for row in rows]
-    made = [row for row in made if row["ms"] is not None and row["ms"] > 0]
-    logs: dict[str, list[float]] = {}
-    for row in made:
-        logs.setdefault(row["codec"], []).append(math.log(row["ms"]))
-    order = sorted(logs, key=lambda name: statistics.fmean(logs[name]))[:MOST_DRAWN]
-    return sorted((row for row in made if row["codec"] in order), key=lambda row: order.index(row["codec"]))
-
-
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = timed(_finish(rows))
-    if usable:
-        said = "Milliseconds per megapixel to encode and to decode, a dot for each device. The fastest codec is on top."
-        said += f" At most {MOST_DRAWN} codecs are drawn. The figures are in the table."
-        title = "How long codecs take on readers' devices"
-        yield drawing("devices", title, said, usable, charts.devices_chart, charts.devices_specs)
-
-
 WORK = Work(
     steps=_steps,
     measure=each(lambda device: [TABLE.empty() | row for row in codec_rows(device)]),
     finish=_finish,
     summary=sheets,
     warnings=_warnings,
-    drawings=_drawings,
+    charts=lambda rows: charts(_finish(rows)),
     needs=lambda _: frozenset(),
     # Reading a file here takes less time than sending it.
     stays=True,

@@ -1,0 +1,106 @@
+"""Charts drawn by both renderers, and what each of them shows."""
+
+import json
+import re
+from dataclasses import dataclass, field
+from xml.etree import ElementTree
+
+import vl_convert
+from matplotlib import pyplot
+from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
+from matplotlib.patches import Rectangle
+
+from normalbench.reports.charts import draw, vega
+from normalbench.reports.charts.chart import Chart, Kind, Scale
+
+WIDTH = 900
+SVG = "{http://www.w3.org/2000/svg}"
+# Marks of the page that a file has as parts of others.
+NOT_COUNTED = ("hits", "leaders")
+TITLE = re.compile(r"([XY])-axis (?:titled '(.*)' )?for a")
+
+
+@dataclass
+class Shown:
+    """A panel: how many marks of each kind, where its axes end, the titles of its axes, and its labels."""
+
+    marks: dict[str, int] = field(default_factory=dict)
+    extents: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    titles: dict[str, str] = field(default_factory=dict)
+    texts: list[str] = field(default_factory=list)
+
+
+def in_files(chart: Chart) -> list[Shown]:
+    """What each panel shows, drawn by matplotlib."""
+    figure = draw.figure([chart])
+    try:
+        return [_in_axes(axes, part) for axes, (_, part) in zip(figure.axes, chart.still(), strict=False)]
+    finally:
+        pyplot.close(figure)
+
+
+def _in_axes(axes, part: Chart) -> Shown:
+    points = [one for one in axes.collections if isinstance(one, PathCollection)]
+    rules = [one for one in axes.collections if isinstance(one, LineCollection)]
+    areas = [one for one in axes.collections if isinstance(one, FillBetweenPolyCollection)]
+    is_cell = part.x.scale == Scale.NAMES
+    found = Shown(texts=sorted(text.get_text().replace(r"\$", "$") for text in axes.texts))
+    found.marks = {
+        Kind.POINTS: sum(len(one.get_offsets()) for one in points),
+        Kind.LINES: len(axes.lines),
+        Kind.RULES: sum(len(one.get_segments()) for one in rules),
+        Kind.AREAS: len(areas),
+        Kind.CELLS if is_cell else Kind.BARS: sum(isinstance(one, Rectangle) for one in axes.patches),
+    }
+    found.marks = {kind: count for kind, count in found.marks.items() if count}
+    for name, said, ends in (("x", part.x, axes.get_xlim()), ("y", part.y, axes.get_ylim())):
+        found.extents[name] = (len(said.names),) if said.scale == Scale.NAMES else ends
+    found.titles = {"x": axes.get_xlabel(), "y": axes.get_ylabel()}
+    return found
+
+
+def in_pages(chart: Chart) -> list[Shown]:
+    """What each panel shows, drawn by Vega-Lite, with what a switch has chosen at first."""
+    switch = chart.switch
+    choices = switch.values if switch and switch.has_panels else [None]
+    return [_in_svg(_chosen(spec, choice)) for choice in choices for spec in vega.specs(chart)]
+
+
+def _chosen(spec, choice):
+    """A specification as it is where a reader has chosen something else."""
+    if choice is None:
+        return spec
+    param = spec["usermeta"]["switch"]["param"]
+    chosen = [one | {"value": choice} if one["name"] == param else one for one in spec["params"]]
+    return spec | {"params": chosen}
+
+
+def _in_svg(spec) -> Shown:
+    # What follows the container is as wide as it is told here.
+    text = json.dumps(spec | {"width": WIDTH}, allow_nan=False).replace("containerSize()[0]", str(WIDTH))
+    whole = json.loads(text)
+    scales = {scale["name"]: scale for scale in vl_convert.vegalite_to_vega(whole)["scales"]}
+    found = Shown(extents={name: _ends(scales[name]) for name in ("x", "y") if name in scales})
+    for element in ElementTree.fromstring(vl_convert.vegalite_to_svg(whole)).iter():
+        if element.tag == f"{SVG}g":
+            _count(element, found)
+        if said := TITLE.match(element.get("aria-label", "")):
+            found.titles[said[1].lower()] = said[2] or ""
+    found.texts.sort()
+    return found
+
+
+def _ends(scale) -> tuple[float, ...]:
+    """The values at the ends of an axis, or how many names it has."""
+    return (len(scale["domain"]),) if scale["type"] in ("band", "point") else tuple(scale["domain"])
+
+
+def _count(group, found: Shown) -> None:
+    named = re.search(r"role-mark ([a-z]+)_\d+_marks", group.get("class", ""))
+    if not named or named[1] in NOT_COUNTED:
+        return
+    kind, marks = named[1], [one for one in group if one.get("opacity") != "0"]
+    if kind in (Kind.TEXTS, Kind.LABELS, Kind.ENDS):
+        found.texts += ["".join(one.itertext()) for one in group.iter(f"{SVG}text")]
+    else:
+        found.marks[kind] = found.marks.get(kind, 0) + len(marks)
