@@ -5,10 +5,11 @@ import json
 import re
 
 import pytest
-from both_ways import Shown, in_files, in_pages
+from both_ways import Shown, in_files, in_pages, rows_of_tables
 from matplotlib import pyplot
 from PIL import Image
 
+from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import draw, vega
 from normalbench.reports.charts.chart import (
     ALL,
@@ -25,6 +26,7 @@ from normalbench.reports.charts.chart import (
     lines_apart,
 )
 
+ROWS = rows_of_tables()
 HOSTILE = "$a\\b\"'</script>"
 
 
@@ -87,6 +89,16 @@ def test_every_kind_of_mark_is_the_same_both_ways():
     across = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "codec"))
     (shown,) = agree(a_chart(rows=rows, x=across, y=names, colour=shades, marks=cells))
     assert shown.marks == {Kind.CELLS: 4} and shown.extents == {"x": (4,), "y": (4,)}
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
+def test_every_chart_of_a_run_is_the_same_both_ways(name):
+    charts = list(TABLES[name].work.charts(ROWS[name]))
+    assert charts and len({chart.name for chart in charts}) == len(charts)
+    for chart in charts:
+        shown = agree(chart)
+        assert sum(count for panel in shown for count in panel.marks.values()) > len(shown)
+        assert chart.title and chart.subtitle and chart.title != chart.subtitle and chart.description.endswith(".")
 
 
 def test_panels_share_an_axis_or_have_their_own():
