@@ -94,25 +94,6 @@ def _ridge(axis: Any, at: int, row: Row, colour: str) -> None:
             axis.plot(max(row[column], LEAST_DEG), at + 0.12, color="#000000", marker=marker, markersize=4.5)
 
 
-def image_chart(rows: Sequence[Row]) -> Any:
-    """The final image beside the normals it was lit by, a line for each codec, the best image on top.
-
-    Args:
-        rows: of the render table: encoding, storage, psnr_db, normal_psnr_db.
-    """
-    ordered = sorted(rows, key=lambda row: row["psnr_db"])
-    image, normals = ([row[column] for row in ordered] for column in ("psnr_db", "normal_psnr_db"))
-    _, axis = _figure((8.2, 1.1 + 0.3 * len(rows)))
-    axis.hlines(range(len(rows)), normals, image, color="#AAAAAA", linewidth=1.5, zorder=1)
-    axis.scatter(normals, range(len(rows)), color=COLOURS[1], marker="s", s=26, label="the normals")
-    axis.scatter(image, range(len(rows)), color=COLOURS[0], s=40, label="the image")
-    axis.set_yticks(range(len(rows)), [codec_label(row) for row in ordered], size=8)
-    axis.set_xlabel("PSNR, dB")
-    axis.grid(axis="x", alpha=0.3)
-    axis.figure.legend(loc="outside upper center", ncols=2, fontsize=8, frameon=False)
-    return axis.figure
-
-
 def effects_chart(rows: Sequence[Row]) -> Any:
     """What an effect makes of an error in the normals: a colour for each effect, a mark for each codec.
 

@@ -136,40 +136,6 @@ def _line_of(row: Row, rows: Sequence[Row]) -> str:
     return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
 
 
-def image_specs(rows: Sequence[Row]) -> list[Spec]:
-    """The final image beside the normals it was lit by, a line for each codec, the best image on top.
-
-    Args:
-        rows: as `charts.image_chart` takes them.
-    """
-    found = [
-        {
-            "codec": CodecKey.of(row).label,
-            "line": _line_of(row, rows),
-            "image": rounded(row["psnr_db"]),
-            "normals": rounded(row["normal_psnr_db"]),
-        }
-        for row in sorted(rows, key=lambda row: -row["psnr_db"])
-    ]
-    y = {"field": "line", "type": "nominal", "sort": list(dict.fromkeys(row["line"] for row in found)), "title": None}
-    x = {"type": "quantitative", "title": "PSNR, dB", "scale": {"zero": False, "padding": 8}}
-    tooltip = tips(line="codec", image="the image, dB", normals="the normals, dB")
-    lit = {"opacity": if_lit(1, 0.2)}
-
-    def dots(name: str, shape: str, colour: str) -> Spec:
-        mark = {"type": "point", "filled": True, "size": 80, "shape": shape}
-        at = x | {"field": name}
-        scale = {"domain": ["the image", "the normals"], "range": [PALETTE[0], PALETTE[1]]}
-        return {"mark": mark, "encoding": {"x": at, "color": {"datum": colour, "scale": scale, "title": None}, **lit}}
-
-    rule: Spec = {"mark": {"type": "rule", "color": "var(--faint)"}}
-    rule["encoding"] = {"x": x | {"field": "image"}, "x2": {"field": "normals"}, **lit}
-    layers = [rule, dots("normals", "square", "the normals"), dots("image", "circle", "the image")]
-    encoding = {"y": y, "tooltip": tooltip}
-    said = "PSNR of the image and of the normals in the G-buffer, a line for each codec."
-    return [spec(found, said, encoding=encoding, layer=layers, height=22 * len(y["sort"]))]
-
-
 def effects_specs(rows: Sequence[Row]) -> list[Spec]:
     """What an effect makes of an error in the normals: a point for each codec, a colour for each effect.
 

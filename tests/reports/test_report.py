@@ -18,10 +18,11 @@ from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.work import beside
 from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.render.charts import image_chart
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import charts, front_specs, pareto, plots, specs
+from normalbench.reports.charts import charts, front_specs, pareto, plots, specs, vega
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
@@ -306,8 +307,9 @@ def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     lines = {row["line"] for row in spec["data"]["values"]}
     assert lines == {"xy rgba8", "xy rgba8 truncate", '$a\\b" rgba8'}
     image = {"encoding": "xy", "storage": "rgba8", "rounding": "nearest", "psnr_db": math.inf, "normal_psnr_db": 50.0}
-    (spec,) = specs.image_specs([image | {"layout": name} for name in ("thin", "wide")])
-    assert [row["line"] for row in spec["data"]["values"]] == ["xy rgba8 thin", "xy rgba8 wide"]
+    chart = image_chart(0, "gloss", [image | {"layout": name} for name in ("thin", "wide")])
+    assert chart.y.names == ("xy rgba8 thin", "xy rgba8 wide")
+    (spec,) = vega.specs(chart)
     panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
     made = [spec, *front_specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
     json.dumps(made, allow_nan=False)
@@ -337,17 +339,15 @@ def test_every_chart_is_one_that_vega_lite_draws():
     depth = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "near": 0.1, "far": 10.0}
     light = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0, "lights": 4, "error": -0.5}
     frame = {"pipeline": "hybrid", "clock": "wall", "ms_frame": 3.0, "ms_frame_spread": 0.5, "ms_lights": 2.0}
-    image = {"encoding": "xy", "storage": "rgba8", "psnr_db": 40.0, "normal_psnr_db": 50.0}
     panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
     made = [
         *specs.histogram_specs([quality_row("xy")]),
-        *specs.image_specs([image]),
         *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
         *specs.depth_specs([depth | {"distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]),
         *specs.lights_specs([light]),
         *specs.passes_specs([frame]),
     ]
-    assert len(made) == 6
+    assert len(made) == 5
     for spec in made:
         compiled = vl_convert.vegalite_to_vega(spec)
         assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
