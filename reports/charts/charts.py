@@ -19,7 +19,6 @@ Row = dict[str, Any]
 LEAST_DEG = 1e-4
 # Perceptually uniform, and the same order to those who do not see all colours.
 SPHERE_COLOURS = "viridis"
-MARKS = "osD^vPX*<>"
 FRAME, EACH, SPREAD = "ms_frame", "ms_frame_each", "_spread"
 
 
@@ -92,30 +91,6 @@ def _ridge(axis: Any, at: int, row: Row, colour: str) -> None:
     for column, marker in (("angle_mean_deg", "|"), ("angle_p99_deg", "d"), ("angle_max_deg", "o")):
         if is_number(row.get(column)):
             axis.plot(max(row[column], LEAST_DEG), at + 0.12, color="#000000", marker=marker, markersize=4.5)
-
-
-def effects_chart(rows: Sequence[Row]) -> Any:
-    """What an effect makes of an error in the normals: a colour for each effect, a mark for each codec.
-
-    Args:
-        rows: of the effects table: effect, encoding, storage, normal_mean_deg, effect_psnr_db.
-    """
-    _, axis = _figure((8.2, 5.4))
-    effects, codecs = (list(dict.fromkeys(of)) for of in ((row["effect"] for row in rows), map(codec_label, rows)))
-    colours = {effect: COLOURS[at % len(COLOURS)] for at, effect in enumerate(effects)}
-    marks = {codec: MARKS[at % len(MARKS)] for at, codec in enumerate(codecs)}
-    for row in rows:
-        place = row["normal_mean_deg"], row["effect_psnr_db"]
-        axis.scatter(*place, color=colours[row["effect"]], marker=marks[codec_label(row)], s=32)
-    shown = [axis.scatter([], [], color=colours[effect], marker="s", label=effect) for effect in effects]
-    shown += [axis.scatter([], [], color="#666666", marker=marks[codec], label=codec) for codec in codecs]
-    axis.set_xscale("log")
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.set_xlabel("mean angle of the normals that it read, degrees")
-    axis.set_ylabel("PSNR of the effect's own image, dB")
-    axis.grid(alpha=0.3)
-    axis.figure.legend(handles=shown, loc="outside upper center", ncols=4, fontsize=8, frameon=False)
-    return axis.figure
 
 
 def vectors_chart(rows: Sequence[Row]) -> Any:

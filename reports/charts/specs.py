@@ -136,34 +136,6 @@ def _line_of(row: Row, rows: Sequence[Row]) -> str:
     return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
 
 
-def effects_specs(rows: Sequence[Row]) -> list[Spec]:
-    """What an effect makes of an error in the normals: a point for each codec, a colour for each effect.
-
-    Args:
-        rows: as `charts.effects_chart` takes them.
-    """
-    found = [
-        {
-            "codec": CodecKey.of(row).label,
-            "effect": " on ".join(str(row[name]) for name in ("effect", "scene")),
-            "x": rounded(row["normal_mean_deg"]),
-            "y": rounded(row["effect_psnr_db"]),
-        }
-        for row in rows
-        if row["normal_mean_deg"] > 0
-    ]
-    x = {"field": "x", "type": "quantitative", "scale": {"type": "log"}, "axis": {"format": "~g"}}
-    x |= {"title": "mean angle of the normals that it read, degrees"}
-    y = {"field": "y", "type": "quantitative", "title": "PSNR of the effect's own image, dB"}
-    y |= {"scale": {"zero": False, "padding": 8}}
-    tooltip = [*tips(codec="codec", x="normals, degrees", y="the effect, dB"), {"field": "effect"}]
-    points: Spec = {"mark": {"type": "point", "filled": True, "size": 55}}
-    points["encoding"] = {"opacity": if_lit(1, 0.2), "tooltip": tooltip}
-    encoding = {"x": x, "y": y, "color": _named("effect")}
-    said = "PSNR of each effect's own image over the mean angle of the normals, a point for each codec."
-    return [spec(found, said, encoding=encoding, layer=[points], height=380)]
-
-
 def mix_specs(rows: Sequence[Row]) -> list[Spec]:
     """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
 
