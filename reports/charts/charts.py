@@ -139,59 +139,6 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
     return lines
 
 
-# Angles from the least to the largest that the colours of mixes tell apart.
-MIX_RANGE = (0.1, 180.0)
-
-
-def mix_cells(rows: Sequence[Row]) -> list[Row]:
-    """Of each codec and operation the largest error of a mix, and its garbage as a text; the codes with the most last.
-
-    Args:
-        rows: as `mix_chart` takes them.
-    """
-    cells = [
-        {"codec": codec_label(row), "operation": row["operation"], "angle": row["angle_max_deg"], "row": row}
-        | {"garbage": row["garbage_percent"], "said": _garbage(row["garbage_percent"])}
-        for row in rows
-    ]
-    total: dict[str, tuple[float, float]] = {}
-    for cell in cells:
-        garbage, angle = total.get(cell["codec"], (0.0, 0.0))
-        total[cell["codec"]] = garbage + cell["garbage"], angle + cell["angle"]
-    return sorted(cells, key=lambda cell: total[cell["codec"]])
-
-
-def _garbage(percent: float) -> str:
-    return "" if not percent else f"{percent:.0f} %" if percent >= 1 else "< 1 %"
-
-
-def mix_chart(rows: Sequence[Row]) -> Any:
-    """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
-
-    Args:
-        rows: of the mix table, one for each codec and operation: encoding, storage, angle_max_deg, garbage_percent.
-    """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LogNorm
-
-    cells, names = mix_cells(rows), list(dict.fromkeys(row["operation"] for row in rows))
-    codecs = list(dict.fromkeys(cell["codec"] for cell in cells))
-    angles = np.full((len(codecs), len(names)), np.nan)
-    figure, axis = _figure((2.4 + 0.85 * len(names), 1.4 + 0.3 * len(codecs)))
-    for cell in cells:
-        down, across = codecs.index(cell["codec"]), names.index(cell["operation"])
-        angles[down, across] = max(cell["angle"], MIX_RANGE[0])
-        ink = "#000000" if cell["angle"] > 10 else "#FFFFFF"
-        axis.text(across, down, cell["said"], ha="center", va="center", size=7, color=ink)
-    axis.imshow(coloured(angles, MIX_RANGE), aspect="auto")
-    axis.set_xticks(range(len(names)), [name.replace("_", " ") for name in names], size=7, rotation=30, ha="right")
-    axis.set_yticks(range(len(codecs)), codecs, size=8)
-    axis.set_xlabel("in a cell: the share of results that are garbage", size=8)
-    scale = ScalarMappable(LogNorm(*MIX_RANGE), SPHERE_COLOURS)
-    figure.colorbar(scale, ax=axis, label="largest error, degrees", format="{x:g}").minorticks_off()
-    return figure
-
-
 def passes_of(row: Row) -> dict[str, float]:
     """A frame's milliseconds by pass, without the frame's own."""
     names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]

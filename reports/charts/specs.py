@@ -12,7 +12,7 @@ from typing import Any
 
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
-from .charts import LEAST_DEG, MIX_RANGE, Row, bins, frame_label, frame_total, mix_cells, passes_of, steps, vector_lines
+from .charts import LEAST_DEG, Row, bins, frame_label, frame_total, passes_of, steps, vector_lines
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
@@ -134,30 +134,6 @@ def _line_of(row: Row, rows: Sequence[Row]) -> str:
     """What tells a row of a chart apart: its codec, and what else differs between the rows."""
     others = [c for c in LINES if len({str(one.get(c)) for one in rows}) > 1]
     return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
-
-
-def mix_specs(rows: Sequence[Row]) -> list[Spec]:
-    """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
-
-    Args:
-        rows: as `charts.mix_chart` takes them.
-    """
-    found = [
-        {"codec": CodecKey.of(cell["row"]).label, "operation": cell["operation"], "said": cell["said"]}
-        | {"angle": rounded(max(cell["angle"], MIX_RANGE[0])), "garbage": rounded(cell["garbage"])}
-        for cell in mix_cells(rows)
-    ]
-    x = {"field": "operation", "type": "nominal", "title": None, "axis": {"labelAngle": -30}}
-    x["sort"] = list(dict.fromkeys(row["operation"] for row in rows))
-    y = {"field": "codec", "type": "nominal", "title": None, "sort": list(dict.fromkeys(row["codec"] for row in found))}
-    scale = {"type": "log", "domain": list(MIX_RANGE), "scheme": "viridis"}
-    colour = {"field": "angle", "type": "quantitative", "scale": scale, "title": "largest error, degrees"}
-    tooltip = tips(codec="codec", operation="operation", angle="largest error, degrees", garbage="garbage, %")
-    text: Spec = {"mark": {"type": "text", "fontSize": 11}, "encoding": {"text": {"field": "said"}}}
-    text["encoding"]["color"] = {"condition": {"test": "datum.angle > 10", "value": "#000000"}, "value": "#ffffff"}
-    layers = [{"mark": "rect", "encoding": {"color": colour, "opacity": if_lit(1, 0.3), "tooltip": tooltip}}, text]
-    said = "The largest error of each operation on mixed codes, a line for each codec, with the share of garbage."
-    return [spec(found, said, encoding={"x": x, "y": y}, layer=layers, height=24 * len(y["sort"]))]
 
 
 def passes_specs(rows: Sequence[Row]) -> list[Spec]:

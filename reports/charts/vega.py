@@ -192,7 +192,7 @@ def _colour(part: Chart, mark: Mark) -> Spec:
     elif isinstance(part.colour, Names) and part.colour.field == mark.colour:
         found = _names(part.colour, PALETTE)
     else:
-        found = {"field": mark.colour, "type": "nominal", "scale": None}
+        found = {"value": {"expr": f"datum.{mark.colour}"}}
     if not mark.rest:
         return found
     faint = {"test": f"datum.{mark.rest}", "value": ROLES[FAINT]}
