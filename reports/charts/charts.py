@@ -19,7 +19,6 @@ Row = dict[str, Any]
 LEAST_DEG = 1e-4
 # Perceptually uniform, and the same order to those who do not see all colours.
 SPHERE_COLOURS = "viridis"
-FRAME, EACH, SPREAD = "ms_frame", "ms_frame_each", "_spread"
 
 
 def _figure(size: tuple[float, float], **layout: Any) -> tuple[Any, Any]:
@@ -137,51 +136,6 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
             ending = f" range {row['range']:g}" if several and row.get("range") else ""
             lines.setdefault(codec_label(row) + ending, []).append(row)
     return lines
-
-
-def passes_of(row: Row) -> dict[str, float]:
-    """A frame's milliseconds by pass, without the frame's own."""
-    names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]
-    return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
-
-
-# A spread beyond this share of the median tells nothing apart.
-NOISY = 0.1
-
-
-def frame_total(row: Row) -> float:
-    """The milliseconds of a frame's passes together."""
-    return sum(passes_of(row).values())
-
-
-def frame_label(row: Row) -> str:
-    """What stands at the end of a frame's bar: its length, and whether it is too noisy to compare."""
-    total, spread = frame_total(row), row.get(f"{FRAME}{SPREAD}")
-    is_noisy = is_number(spread) and spread > NOISY * row[FRAME]
-    return (f"{total:.0f}" if total >= 100 else f"{total:.3g}") + ", too noisy to compare" * is_noisy
-
-
-def passes_chart(rows: Sequence[Row]) -> Any:
-    """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
-
-    Args:
-        rows: of a sweep at one number of objects: pipeline, clock, ms_frame and its spread, ms_<pass>.
-    """
-    stages = list(dict.fromkeys(stage for row in rows for stage in passes_of(row)))
-    figure, axis = _figure((8.2, 1.4 + 0.42 * len(rows)))
-    start = np.zeros(len(rows))
-    for at, stage in enumerate(stages):
-        widths = np.array([passes_of(row).get(stage, 0.0) for row in rows])
-        axis.barh(range(len(rows)), widths, left=start, color=COLOURS[at % len(COLOURS)], label=stage, height=0.7)
-        start += widths
-    for at, row in enumerate(rows):
-        axis.annotate(frame_label(row), (start[at], at), (4, 0), textcoords="offset points", va="center", size=8)
-    axis.set_yticks(range(len(rows)), [str(row["pipeline"]) for row in rows], size=8)
-    axis.invert_yaxis()
-    axis.margins(x=0.28)
-    axis.set_xlabel(f"milliseconds, the medians of a frame's passes, {rows[0].get('clock')}")
-    figure.legend(loc="outside upper center", ncols=5, fontsize=8, frameon=False)
-    return figure
 
 
 Maps = Mapping[str, np.ndarray]

@@ -51,58 +51,6 @@ def save(figure: Any, *files: tuple[Path, str]) -> None:
         pyplot.close(figure)
 
 
-def sweep_figure(rows: Sequence[dict[str, Any]]) -> Any:
-    """Milliseconds a frame over the number of objects, a line for each pipeline, a panel with shadows and one without.
-
-    Args:
-        rows: of a sweep: pipeline, objects, shadow, ms_frame, ms_frame_spread, size, lights, clock, device.
-
-    Returns:
-        a figure for `save`.
-    """
-    pyplot = drawn_off_screen()
-    from matplotlib.ticker import LogLocator, ScalarFormatter
-
-    shadows = sorted({row["shadow"] for row in rows}, reverse=True)
-    # A layout or light buffer tells lines of one pipeline apart where there are several.
-    names = list(dict.fromkeys(_line_name(row, rows) for row in rows))
-    figure, panels = pyplot.subplots(
-        1, len(shadows), figsize=(1.0 + 4.6 * len(shadows), 4.4), sharey=True, squeeze=False, layout="constrained"
-    )
-    for panel, shadow in zip(panels[0], shadows, strict=True):
-        for name, colour in zip(names, COLOURS * len(names), strict=False):
-            line = sorted((r for r in rows if r["shadow"] == shadow and _line_name(r, rows) == name), key=_objects)
-            if line:
-                milliseconds, spread = ([row[c] for row in line] for c in ("ms_frame", "ms_frame_spread"))
-                half = [s / 2 for s in spread]
-                panel.errorbar(
-                    [row["objects"] for row in line],
-                    milliseconds,
-                    half,
-                    label=name,
-                    color=colour,
-                    marker="o",
-                    capsize=3,
-                )
-        panel.set_title("with shadow map" if shadow else "without shadow map")
-        panel.set_xlabel("objects")
-        panel.set_xscale("log")
-        panel.set_yscale("log")
-        panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        panel.yaxis.set_major_formatter(ScalarFormatter())
-        counts = sorted({row["objects"] for row in rows})
-        panel.set_xticks(counts, [str(count) for count in counts])
-        panel.minorticks_off()
-        panel.grid(alpha=0.3)
-    panels[0][0].set_ylabel("ms a frame, median and quartiles")
-    panels[0][-1].legend()
-    first = rows[0]
-    figure.suptitle(
-        f"{first['size']}, {first['lights']} point lights and a sun\n{first['device']}, {first['clock']}", size=9
-    )
-    return figure
-
-
 MARKERS = "osD^v<>PX"
 
 
@@ -169,16 +117,6 @@ def random_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
             lines.setdefault(row["light_buffer"], []).append((row["lights"], row["model_max"], row["bound"]))
     worst = {name: [max(p for p in line if p[0] == n) for n in {p[0] for p in line}] for name, line in lines.items()}
     return "coloured lights with falloff, worst pixel and order", worst
-
-
-def _objects(row: dict[str, Any]) -> int:
-    return row["objects"]
-
-
-def _line_name(row: dict[str, Any], rows: Sequence[dict[str, Any]]) -> str:
-    same = [other for other in rows if other["pipeline"] == row["pipeline"]]
-    varied = [c for c in ("layout", "light_buffer", "light_targets") if len({other[c] for other in same}) > 1]
-    return " ".join([row["pipeline"], *(str(row[column]) for column in varied)])
 
 
 # How lines of one colour are told apart, and how close to each other their names may stand, in points.

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
-from .charts import LEAST_DEG, Row, bins, frame_label, frame_total, passes_of, steps, vector_lines
+from .charts import LEAST_DEG, Row, bins, steps, vector_lines
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
@@ -134,35 +134,6 @@ def _line_of(row: Row, rows: Sequence[Row]) -> str:
     """What tells a row of a chart apart: its codec, and what else differs between the rows."""
     others = [c for c in LINES if len({str(one.get(c)) for one in rows}) > 1]
     return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
-
-
-def passes_specs(rows: Sequence[Row]) -> list[Spec]:
-    """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
-
-    Args:
-        rows: as `charts.passes_chart` takes them.
-    """
-    found = [
-        {"pipeline": row["pipeline"], "pass": name, "ms": rounded(milliseconds), "at": at}
-        for row in rows
-        for at, (name, milliseconds) in enumerate(passes_of(row).items())
-    ]
-    totals = [{"pipeline": row["pipeline"], "said": frame_label(row), "ms": frame_total(row)} for row in rows]
-    y = {"field": "pipeline", "type": "nominal", "sort": None, "title": None}
-    # With room for what stands at the end of the longest bar.
-    scale = {"domainMax": 1.3 * max(total["ms"] for total in totals), "nice": False}
-    x = {"field": "ms", "type": "quantitative", "scale": scale}
-    title = f"milliseconds, the medians of a frame's passes, {rows[0].get('clock')}"
-    colour = {"field": "pass", "type": "nominal", "scale": {"range": PALETTE}, "sort": None, "title": None}
-    bars = {
-        "mark": "bar",
-        "encoding": {"x": x | {"stack": True, "title": title}, "y": y, "color": colour, "order": {"field": "at"}},
-    }
-    bars["encoding"]["tooltip"] = [*tips(pipeline="pipeline", ms="ms"), {"field": "pass"}]
-    text = {"type": "text", "align": "left", "dx": 4, "color": INK}
-    labels = {"data": {"values": totals}, "mark": text, "encoding": {"x": x, "y": y, "text": {"field": "said"}}}
-    said = "Milliseconds of a frame by pass, a bar for each pipeline."
-    return [spec(found, said, layer=[bars, labels], height=34 * len(rows))]
 
 
 def depth_specs(rows: Sequence[Row]) -> list[Spec]:

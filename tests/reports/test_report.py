@@ -338,22 +338,18 @@ def test_every_chart_is_one_that_vega_lite_draws():
     """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
     depth = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "near": 0.1, "far": 10.0}
     light = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0, "lights": 4, "error": -0.5}
-    frame = {"pipeline": "hybrid", "clock": "wall", "ms_frame": 3.0, "ms_frame_spread": 0.5, "ms_lights": 2.0}
     panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
     made = [
         *specs.histogram_specs([quality_row("xy")]),
         *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
         *specs.depth_specs([depth | {"distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]),
         *specs.lights_specs([light]),
-        *specs.passes_specs([frame]),
     ]
-    assert len(made) == 5
+    assert len(made) == 4
     for spec in made:
         compiled = vl_convert.vegalite_to_vega(spec)
         assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
         assert compiled["marks"]
-    assert charts.frame_label(frame) == "2, too noisy to compare"
-    assert charts.frame_label(frame | {"ms_frame_spread": 0.2}) == "2"
 
 
 def test_a_histograms_outline_holds_its_counts():
