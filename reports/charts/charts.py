@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..page.verdict import is_number
-from .plots import COLOURS, DASHES, drawn_off_screen
+from .plots import COLOURS, drawn_off_screen
 
 Row = dict[str, Any]
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
@@ -90,52 +90,6 @@ def _ridge(axis: Any, at: int, row: Row, colour: str) -> None:
     for column, marker in (("angle_mean_deg", "|"), ("angle_p99_deg", "d"), ("angle_max_deg", "o")):
         if is_number(row.get(column)):
             axis.plot(max(row[column], LEAST_DEG), at + 0.12, color="#000000", marker=marker, markersize=4.5)
-
-
-def vectors_chart(rows: Sequence[Row]) -> Any:
-    """The mean error of motion vectors over their speed: a panel for each number of bits, a line for each code.
-
-    Args:
-        rows: of the vectors table, one back end: encoding, storage, bits, speed, error_mean_px.
-    """
-    encodings, all_bits = list(dict.fromkeys(row["encoding"] for row in rows)), sorted({row["bits"] for row in rows})
-    parts = [[row for row in rows if row["bits"] == bits] for bits in all_bits]
-    height = 3.9 + 0.17 * (1 + max(len(vector_lines(part)) for part in parts))
-    figure, panels = _figure((1.4 + 3.6 * len(parts), height), ncols=len(parts), sharey=True, squeeze=False)
-    for axis, part in zip(panels[0], parts, strict=True):
-        storages = list(dict.fromkeys(row["storage"] for row in part))
-        for name, line in vector_lines(part).items():
-            colour = COLOURS[encodings.index(line[0]["encoding"]) % len(COLOURS)]
-            dash = DASHES[storages.index(line[0]["storage"]) % len(DASHES)]
-            errors = [row["error_mean_px"] for row in line]
-            axis.plot([row["speed"] for row in line], errors, color=colour, linestyle=dash, marker=".", label=name)
-        _speeds(axis, sorted({row["speed"] for row in part}), part[0]["bits"])
-    panels[0][0].set_ylabel("mean error, pixels")
-    # The layout takes a legend for a line shorter than it is, in inches.
-    figure.get_layout_engine().set(h_pad=0.15)
-    return figure
-
-
-def _speeds(axis: Any, speeds: list[float], bits: int) -> None:
-    """A panel's axes, and the line of what is lost."""
-    axis.plot(speeds, speeds, color="#999999", linestyle=":", linewidth=1, label="as large as the motion")
-    axis.set(xscale="log", yscale="log", title=f"{bits} bits", xlabel="pixels a frame")
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.grid(alpha=0.3)
-    # Below what the axis says, in its own letters: a share of the panel's height would cut off a long legend.
-    below = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5}
-    axis.legend(fontsize=7, frameon=False, handlelength=5, **below)
-
-
-def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """The rows of each code by its name, by speed; without those of no error, which have no logarithm."""
-    several = len({row.get("range") for row in rows if row.get("range")}) > 1
-    lines: dict[str, list[Row]] = {}
-    for row in sorted(rows, key=lambda row: row["speed"]):
-        if row["error_mean_px"] > 0:
-            ending = f" range {row['range']:g}" if several and row.get("range") else ""
-            lines.setdefault(codec_label(row) + ending, []).append(row)
-    return lines
 
 
 Maps = Mapping[str, np.ndarray]

@@ -20,6 +20,8 @@ LETTERS = 14
 # A page's pixels on an inch, and an inch of what stands around a panel.
 PIXELS, AROUND = 85, 1.1
 ALONE, BESIDE, MOST_ACROSS = 8.2, 4.8, 3
+# Inches that names beside a panel take.
+ENDS = 1.8
 LEGEND = MappingProxyType({"fontsize": 8, "frameon": False})
 
 
@@ -69,7 +71,8 @@ def _size(chart: Chart) -> tuple[float, float]:
     """Inches across and down."""
     across, panels = _across(chart), len(chart.still())
     down = -(-panels // across)
-    return ALONE if across == 1 else BESIDE * across, down * (chart.pixels / PIXELS + AROUND) + 0.6
+    beside = ENDS if any(mark.kind == Kind.ENDS for mark in chart.marks) else 0.0
+    return ALONE if across == 1 else (BESIDE + beside) * across, down * (chart.pixels / PIXELS + AROUND) + 0.6
 
 
 def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:

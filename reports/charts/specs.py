@@ -12,7 +12,7 @@ from typing import Any
 
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
-from .charts import LEAST_DEG, Row, bins, steps, vector_lines
+from .charts import LEAST_DEG, Row, bins, steps
 from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
 
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
@@ -162,39 +162,6 @@ def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
     said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
     title = titled(f"near {near:g}, far {far:g}")
     return spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
-
-
-def vectors_specs(rows: Sequence[Row]) -> list[Spec]:
-    """The mean error of motion vectors over their speed, a chart for each number of bits, a line for each code.
-
-    Args:
-        rows: as `charts.vectors_chart` takes them.
-    """
-    # An encoding has one colour in all charts.
-    colour = _named("encoding")
-    colour["scale"] |= {"domain": list(dict.fromkeys(row["encoding"] for row in rows))}
-    all_bits = sorted({row["bits"] for row in rows})
-    return [_vectors([row for row in rows if row["bits"] == bits], bits, colour) for bits in all_bits]
-
-
-def _vectors(rows: Sequence[Row], bits: int, colour: Spec) -> Spec:
-    found = [
-        {"code": name, "encoding": row["encoding"], "storage": row["storage"]}
-        | {"x": row["speed"], "y": rounded(row["error_mean_px"])}
-        for name, line in vector_lines(rows).items()
-        for row in line
-    ]
-    x = {"field": "x", "type": "quantitative", "scale": {"type": "log"}, "title": "pixels a frame"}
-    y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "title": "mean error, pixels"}
-    encoding: Spec = {"x": x | {"axis": {"format": "~g"}}, "y": y | {"axis": {"format": "~g"}}}
-    encoding |= {"color": colour, "strokeDash": _named("storage"), "detail": {"field": "code"}}
-    encoding["tooltip"] = tips(code="code", x="pixels a frame", y="mean error, pixels")
-    lost: Spec = {"mark": {"type": "line", "strokeDash": [1, 4], "color": MUTED}}
-    lost["data"] = {"values": [{"x": speed} for speed in sorted({row["speed"] for row in rows})]}
-    lost["encoding"] = {"x": encoding["x"], "y": encoding["y"] | {"field": "x"}}
-    layers = [*({**line, "encoding": encoding} for line in (_line(strokeWidth=2), _line(**HIDDEN))), lost]
-    said = f"The mean error of motion vectors over their speed, {bits} bits, a line for each code."
-    return spec(found, said, layer=layers, height=360, title=titled(f"{bits} bits"))
 
 
 def _named(column: str) -> Spec:

@@ -178,7 +178,8 @@ def _ticks(axis: Axis) -> Spec:
         return shown | ({"labelExpr": said} if said else {"format": "~g"})
     ends = axis.domain or (0.0, 0.0)
     counts = {"values": [count for count in COUNTS if count <= ends[1]]} if axis.scale == Scale.COUNT else {}
-    return {"format": "~g", **counts}
+    # Thousands on a linear axis are no powers of ten.
+    return counts if axis.scale == Scale.LINEAR else {"format": "~g", **counts}
 
 
 def _is_word(tick: tuple[float, str]) -> bool:
