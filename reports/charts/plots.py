@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -117,84 +116,3 @@ def random_lines(rows: Sequence[dict[str, Any]]) -> tuple[str, Lines]:
             lines.setdefault(row["light_buffer"], []).append((row["lights"], row["model_max"], row["bound"]))
     worst = {name: [max(p for p in line if p[0] == n) for n in {p[0] for p in line}] for name, line in lines.items()}
     return "coloured lights with falloff, worst pixel and order", worst
-
-
-# How lines of one colour are told apart, and how close to each other their names may stand, in points.
-DASHES = ("-", "--", ":", "-.", (0, (1, 3)), (0, (7, 2, 1, 2, 1, 2)), (0, (9, 3)))
-LABEL_SIZE, LABEL_GAP = 8, 9.5
-
-
-def depth_figure(rows: Sequence[dict[str, Any]]) -> Any:
-    """The worst position error over the distance, a line for each depth code in its storage, its name at its end, a
-    panel for each near and far plane.
-
-    Args:
-        rows: of depth codes: depth, storage, rebuilt, near, far, distance, error_max, fov, backend, device.
-
-    Returns:
-        a figure for `save`.
-    """
-    pyplot = drawn_off_screen()
-
-    ranges = list(dict.fromkeys((row["near"], row["far"]) for row in rows))
-    figure, panels = pyplot.subplots(
-        1, len(ranges), figsize=(0.5 + 6.6 * len(ranges), 5.6), sharey=True, squeeze=False, layout="constrained"
-    )
-    depths, storages = (list(dict.fromkeys(row[column] for row in rows)) for column in ("depth", "storage"))
-    for panel, (near, far) in zip(panels[0], ranges, strict=True):
-        ends = []
-        for name, line in _depth_lines([row for row in rows if (row["near"], row["far"]) == (near, far)]).items():
-            colour = COLOURS[depths.index(line[0]["depth"]) % len(COLOURS)]
-            dash = DASHES[storages.index(line[0]["storage"]) % len(DASHES)]
-            errors = [row["error_max"] for row in line]
-            panel.plot([row["distance"] for row in line], errors, color=colour, linestyle=dash, linewidth=1.6)
-            ends.append((errors[-1], name, colour))
-        panel.set_title(f"near {near:g}, far {far:g}")
-        panel.set_xlabel("distance")
-        panel.set_xscale("log")
-        panel.set_yscale("log")
-        panel.set_xlim(near, far)
-        panel.grid(alpha=0.3)
-        figure.draw_without_rendering()
-        _name_at_ends(panel, ends)
-    panels[0][0].set_ylabel("worst position error, same unit")
-    first = rows[0]
-    figure.suptitle(f"field of view {first['fov']:g} degrees; {first['backend']}, {first['device']}", size=9)
-    return figure
-
-
-def _depth_lines(rows: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """The rows of each line by its name, in order of the distance; rows whose error is not a number are left out."""
-    several = len({(row["depth"], row["rebuilt"]) for row in rows}) > len({row["depth"] for row in rows})
-    lines: dict[str, list[dict[str, Any]]] = {}
-    for row in sorted(rows, key=lambda row: row["distance"]):
-        if math.isfinite(row["error_max"]) and row["error_max"] > 0:
-            words = (row["depth"], row["storage"], row["rebuilt"] if several else "")
-            lines.setdefault(" ".join(filter(None, words)).replace("_", " "), []).append(row)
-    return lines
-
-
-def _name_at_ends(panel: Any, ends: Sequence[tuple[float, str, str]]) -> None:
-    """Names beside the right ends of lines, moved apart where they would lie upon each other."""
-    height = panel.get_window_extent().height * 72 / panel.figure.dpi
-    low, high = (math.log(limit) for limit in panel.get_ylim())
-    wanted = sorted(((math.log(value) - low) / (high - low) * height, name, colour) for value, name, colour in ends)
-    placed = [at for at, _, _ in wanted]
-    for _ in range(len(placed) ** 2):
-        for i in range(len(placed) - 1):
-            overlap = LABEL_GAP - (placed[i + 1] - placed[i])
-            if overlap > 1e-3:
-                placed[i], placed[i + 1] = placed[i] - overlap / 2, placed[i + 1] + overlap / 2
-    for at, (end, name, colour) in zip(placed, wanted, strict=True):
-        panel.annotate(
-            name,
-            (1, end / height),
-            xycoords="axes fraction",
-            xytext=(14, at - end),
-            textcoords="offset points",
-            va="center",
-            size=LABEL_SIZE,
-            color=colour,
-            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "relpos": (0, 0.5), "shrinkB": 0},
-            annotation_clip=False,
-        )

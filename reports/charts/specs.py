@@ -136,34 +136,6 @@ def _line_of(row: Row, rows: Sequence[Row]) -> str:
     return " ".join([CodecKey.of(row).label, *(str(row.get(column)) for column in others)])
 
 
-def depth_specs(rows: Sequence[Row]) -> list[Spec]:
-    """The worst position error over the distance, a line for each depth code in its storage, a chart for each range.
-
-    Args:
-        rows: as `plots.depth_figure` takes them.
-    """
-    ranges = dict.fromkeys((row["near"], row["far"]) for row in rows)
-    return [_depth([row for row in rows if (row["near"], row["far"]) == one], *one) for one in ranges]
-
-
-def _depth(rows: Sequence[Row], near: float, far: float) -> Spec:
-    columns = ("depth", "storage", "rebuilt")
-    found = [
-        {name: row[name] for name in columns} | {"x": row["distance"], "y": rounded(row["error_max"])}
-        for row in sorted(rows, key=lambda row: row["distance"])
-        if row["error_max"] > 0
-    ]
-    scale = {"type": "log", "domain": [near, far], "nice": False}
-    x = {"field": "x", "type": "quantitative", "scale": scale, "title": "distance", "axis": {"format": "~g"}}
-    y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "title": "worst position error, same unit"}
-    detail = [{"field": name} for name in columns]
-    encoding = {"x": x, "y": y | {"axis": {"format": "~e"}}, "color": _named("depth"), "strokeDash": _named("storage")}
-    encoding |= {"detail": detail, "tooltip": [*detail, *tips(x="distance", y="error")]}
-    said = f"The worst position error over the distance, near {near:g}, far {far:g}, a line for each depth code."
-    title = titled(f"near {near:g}, far {far:g}")
-    return spec(found, said, encoding=encoding, layer=[_line(strokeWidth=2), _line(**HIDDEN)], height=420, title=title)
-
-
 def _named(column: str) -> Spec:
     """One of several names, by its colour or its dashes."""
     scale = {"range": PALETTE} if column != "storage" else {}

@@ -226,7 +226,7 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     _, read = reported(run, a_run(tmp_path / "run", tables))
     assert "The rows of quality are not those of this version" in read.text
     assert "does not know these tables, which are in the run's folder: colours" in read.text
-    assert "The chart 'depth' cannot be drawn from these rows" in read.text
+    assert "The charts of depth cannot be drawn from these rows" in read.text
     assert "octahedral" in read.text and "its rows keep no histograms" in read.text
 
 
@@ -336,16 +336,14 @@ def test_no_two_elements_share_an_id_and_charts_use_the_pages_colours(results):
 
 def test_every_chart_is_one_that_vega_lite_draws():
     """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
-    depth = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "near": 0.1, "far": 10.0}
     light = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0, "lights": 4, "error": -0.5}
     panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
     made = [
         *specs.histogram_specs([quality_row("xy")]),
         *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
-        *specs.depth_specs([depth | {"distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]),
         *specs.lights_specs([light]),
     ]
-    assert len(made) == 4
+    assert len(made) == 3
     for spec in made:
         compiled = vl_convert.vegalite_to_vega(spec)
         assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
