@@ -13,7 +13,7 @@ from typing import Any
 from ..page.codec_key import CodecKey
 from ..page.verdict import is_number
 from .charts import LEAST_DEG, Row, bins, steps
-from .plots import COLOURS, LEAST_ERROR, Lines, equal_lines, random_lines
+from .plots import COLOURS
 
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
 SHAPES = ["circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "triangle-left", "triangle-right"]
@@ -140,40 +140,3 @@ def _named(column: str) -> Spec:
     """One of several names, by its colour or its dashes."""
     scale = {"range": PALETTE} if column != "storage" else {}
     return {"field": column, "type": "nominal", "sort": None, "legend": {"columns": 4}, "scale": scale}
-
-
-def lights_specs(rows: Sequence[Row]) -> list[Spec]:
-    """What is lost over the number of lights, a line for each light buffer: of equal lights, and of coloured ones.
-
-    Args:
-        rows: as `plots.lights_figure` takes them.
-    """
-    return [_lights(title, lines) for title, lines in (equal_lines(rows), random_lines(rows)) if lines]
-
-
-def _lights(title: str, lines: Lines) -> Spec:
-    found = [
-        {
-            "light_buffer": name,
-            "x": count,
-            "y": max(rounded(error) or 0.0, LEAST_ERROR),
-            "bound": rounded(bound) or None,
-        }
-        for name, line in lines.items()
-        for count, error, bound in sorted(line)
-    ]
-    x = {"field": "x", "type": "quantitative", "scale": {"type": "log", "base": 2}, "title": "lights"}
-    y = {"field": "y", "type": "quantitative", "scale": {"type": "log"}, "axis": {"format": "~e"}}
-    y["title"] = "error in light, by the model"
-    encoding = {"x": x, "color": _named("light_buffer")}
-    tooltip = tips(light_buffer="light buffer", x="lights", y="error", bound="the most it can be")
-    layers = [
-        {"mark": {"type": "line", "strokeWidth": 1.8, "point": True}, "encoding": {"y": y, "tooltip": tooltip}},
-        {
-            "transform": [{"filter": "isValid(datum.bound)"}],
-            "mark": {"type": "line", "strokeDash": [2, 3], "opacity": 0.6},
-            "encoding": {"y": y | {"field": "bound"}},
-        },
-    ]
-    said = f"Error over the number of lights: {title}. Dotted: the most it can be. Errors below 1e-6 are drawn at 1e-6."
-    return spec(found, said, encoding=encoding, layer=layers, height=380, title=titled(title))

@@ -336,14 +336,12 @@ def test_no_two_elements_share_an_id_and_charts_use_the_pages_colours(results):
 
 def test_every_chart_is_one_that_vega_lite_draws():
     """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
-    light = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0, "lights": 4, "error": -0.5}
     panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
     made = [
         *specs.histogram_specs([quality_row("xy")]),
         *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
-        *specs.lights_specs([light]),
     ]
-    assert len(made) == 3
+    assert len(made) == 2
     for spec in made:
         compiled = vl_convert.vegalite_to_vega(spec)
         assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
@@ -375,13 +373,6 @@ def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     assert len(drawn) == 3 and drawn[1] == plots.DPI
     with Image.open(tmp_path / "chart.png") as image:
         assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
-
-
-def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
-    row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
-    figure = plots.lights_figure([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])
-    assert list(figure.axes[0].get_lines()[0].get_ydata()) == [0.5, 0.25]
-    plots.save(figure)
 
 
 def test_maps_are_in_the_page_with_means_by_area(results):
