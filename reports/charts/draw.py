@@ -15,8 +15,8 @@ from .labels import label_ends, label_points, write_ends
 from .looks import MARKERS, as_text, colour_of, marker_of, places, plain, shade, stroke, stroke_of
 from .plots import drawn_off_screen, save
 
-# How many letters an inch of a title holds.
-LETTERS = 14
+# How many letters an inch of a title holds, and a panel's name a line.
+LETTERS, PANEL_LETTERS = 14, 64
 # A page's pixels on an inch, and an inch of what stands around a panel.
 PIXELS, AROUND = 85, 1.1
 ALONE, BESIDE, MOST_ACROSS = 8.2, 4.8, 3
@@ -82,7 +82,7 @@ def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:
     drawn = [(part, axes) for (_, part), axes in zip(parts, grid.flat, strict=False)]
     for (name, part), axes in zip(parts, grid.flat, strict=False):
         _panel(axes, part)
-        axes.set_title(as_text(name), size=9)
+        axes.set_title(plain(textwrap.fill(name, PANEL_LETTERS)), size=9)
     for axes in grid.flat[len(parts) :]:
         axes.remove()
     _title(place, chart)
@@ -171,7 +171,9 @@ def _lines(axes: Any, part: Chart, mark: Mark, rows: Sequence[Row]) -> None:
     step = "steps-post" if mark.is_stepped else "default"
     for line in mark.groups(rows):
         style = {"color": colour_of(part, mark, line[0]), "linestyle": stroke_of(part, mark, line[0])}
-        axes.plot(*places(part, mark, line), linewidth=1.4, drawstyle=step, **style)
+        # What is dotted is beside the point.
+        width = {"linewidth": 0.9, "alpha": 0.6} if mark.dash == "dotted" else {"linewidth": 1.4}
+        axes.plot(*places(part, mark, line), drawstyle=step, **style, **width)
 
 
 def _areas(axes: Any, part: Chart, mark: Mark, rows: Sequence[Row]) -> None:
@@ -251,7 +253,7 @@ def _legend(place: Any, chart: Chart) -> None:
 
 def _look(chart: Chart, named: Mapping[str, Names], at: int) -> dict[str, Any]:
     """A line of the legend: a colour, a shape or a dash, or several of them."""
-    kinds = {mark.kind for mark in chart.marks}
+    kinds = {mark.kind for mark in chart.marks if mark.colour in {names.field for names in named.values()}}
     colour = named["colour"].of(COLOURS)[at] if "colour" in named else "#555555"
     if "shape" in named:
         return {"color": colour, "marker": MARKERS[named["shape"].of(SHAPES)[at]], "linestyle": "", "markersize": 5}

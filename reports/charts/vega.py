@@ -177,9 +177,10 @@ def _ticks(axis: Axis) -> Spec:
         shown: Spec = {"values": [at for at, _ in axis.ticks], "grid": not said, "domain": not said, "ticks": not said}
         return shown | ({"labelExpr": said} if said else {"format": "~g"})
     ends = axis.domain or (0.0, 0.0)
-    counts = {"values": [count for count in COUNTS if count <= ends[1]]} if axis.scale == Scale.COUNT else {}
+    if axis.scale == Scale.COUNT:
+        return {"values": [count for count in COUNTS if count <= ends[1]], "format": "d"}
     # Thousands on a linear axis are no powers of ten.
-    return counts if axis.scale == Scale.LINEAR else {"format": "~g", **counts}
+    return {"format": "~g"} if axis.scale == Scale.LOG else {}
 
 
 def _is_word(tick: tuple[float, str]) -> bool:
@@ -250,7 +251,9 @@ def _points(part: Chart, mark: Mark) -> Iterator[Spec]:
 def _lines(part: Chart, mark: Mark) -> Iterator[Spec]:
     across = {"interpolate": "step-after"} if mark.is_stepped else {}
     looks = {"color": _colour(part, mark), "strokeDash": _dash(part, mark), "detail": _detail(mark)}
-    yield _layer(part, mark, {"type": "line", "strokeWidth": 1.6, **across}, {**_places(part, mark), **looks})
+    # What is dotted is beside the point.
+    width = {"strokeWidth": 1, "strokeOpacity": 0.6} if mark.dash == "dotted" else {"strokeWidth": 1.6}
+    yield _layer(part, mark, {"type": "line", **width, **across}, {**_places(part, mark), **looks})
     if mark.tips:
         looks.pop("strokeDash")
         hits = _layer(part, mark, {"type": "line", **across, **HIDDEN}, {**_places(part, mark), **looks})
