@@ -5,14 +5,12 @@ Each takes rows and gives a figure for `plots.save`.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ..page.verdict import is_number
-from .plots import COLOURS, drawn_off_screen
+from .plots import drawn_off_screen
 
 Row = dict[str, Any]
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
@@ -24,72 +22,6 @@ SPHERE_COLOURS = "viridis"
 def _figure(size: tuple[float, float], **layout: Any) -> tuple[Any, Any]:
     """A figure and its axes."""
     return drawn_off_screen().subplots(figsize=size, layout="constrained", **layout)
-
-
-def bins(text: Any) -> list[tuple[float, float, int]]:
-    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
-    try:
-        pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
-    except ValueError:
-        return []
-    # A bin is an eighth of its octave wide; the first begins at 0.
-    return [(edge, edge + 2.0 ** math.floor(math.log2(edge)) / 8 if edge > 0 else 0.0, n) for edge, n in pairs]
-
-
-def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
-    """A histogram's outline: edges from LEAST_DEG on, and between them how many normals lie in an octave."""
-    below = sum(count for low, _, count in found if low < LEAST_DEG)
-    edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
-    for low, high, count in found:
-        if low >= LEAST_DEG:
-            if low > edges[-1] * 1.001:  # rows round edges
-                edges, heights = [*edges, low], [*heights, 0.0]
-            edges, heights = [*edges, high], [*heights, count / math.log2(high / edges[-1])]
-    return edges, heights
-
-
-def codec_label(row: Row) -> str:
-    """A codec's name in a chart."""
-    return " ".join(str(row.get(name)) for name in ("encoding", "storage"))
-
-
-def histogram_chart(rows: Sequence[Row]) -> Any:
-    """How often which angle: a ridge for each codec, the best mean on top; its mean, 99 % and largest angle marked.
-
-    Args:
-        rows: of the quality table, one back end and set: encoding, storage, bits, angle_counts and angles.
-    """
-    ordered = sorted(rows, key=lambda row: row["angle_mean_deg"])
-    all_bits = sorted({row["bits"] for row in rows})
-    _, axis = _figure((8.2, 1.3 + 0.36 * len(rows)))
-    for at, row in enumerate(reversed(ordered)):
-        colour = COLOURS[all_bits.index(row["bits"]) % len(COLOURS)]
-        _ridge(axis, at, row, colour)
-    for at, bits in enumerate(all_bits):
-        axis.plot([], [], color=COLOURS[at % len(COLOURS)], linewidth=6, alpha=0.5, label=f"{bits} bits")
-    for marker, name in (("|", "mean"), ("d", "99 %"), ("o", "largest")):
-        axis.plot([], [], color="#000000", linestyle="", marker=marker, markersize=5, label=name)
-    axis.set_xscale("log")
-    # As plain text, which matplotlib lays out much faster than powers of ten.
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.xaxis.set_minor_formatter("")
-    axis.set_xlim(LEAST_DEG, 200)
-    axis.set_ylim(-0.3, len(rows) + 0.2)
-    axis.set_yticks(range(len(rows)), [codec_label(row) for row in reversed(ordered)], size=8)
-    axis.set_xlabel(f"angle between normal and decode on {rows[0]['normals']}, degrees")
-    axis.grid(axis="x", alpha=0.3)
-    axis.figure.legend(loc="outside upper center", ncols=len(all_bits) + 3, fontsize=8, frameon=False)
-    return axis.figure
-
-
-def _ridge(axis: Any, at: int, row: Row, colour: str) -> None:
-    """A codec's histogram by logarithm of the angle, the highest as high as the others'."""
-    edges, heights = steps(bins(row["angle_counts"]))
-    above = at + 0.85 * np.array(heights) / max(heights)
-    axis.stairs(above, edges, baseline=at, fill=True, color=colour, alpha=0.5)
-    for column, marker in (("angle_mean_deg", "|"), ("angle_p99_deg", "d"), ("angle_max_deg", "o")):
-        if is_number(row.get(column)):
-            axis.plot(max(row[column], LEAST_DEG), at + 0.12, color="#000000", marker=marker, markersize=4.5)
 
 
 Maps = Mapping[str, np.ndarray]

@@ -240,7 +240,7 @@ def _legend(place: Any, chart: Chart) -> None:
     if any(mark.kind == Kind.ENDS for mark in chart.marks):
         return
     handles = [
-        Line2D([], [], label=as_text(str(value)), **_look(chart, named, at))
+        Line2D([], [], label=as_text(f"{value} {names.title}".strip()), **_look(chart, named, at))
         for named in scales.values()
         for names in [next(iter(named.values()))]
         for at, value in enumerate(names.values)

@@ -172,7 +172,7 @@ def _place(axis: Axis, field: str) -> Spec:
 
 def _ticks(axis: Axis) -> Spec:
     if axis.ticks:
-        names = {str(rounded(float(at))): name for at, name in axis.ticks}
+        names = {f"{at:g}": name for at, name in axis.ticks}
         said = f"{json.dumps(names)}[toString(datum.value)]" if any(_is_word(tick) for tick in axis.ticks) else ""
         shown: Spec = {"values": [at for at, _ in axis.ticks], "grid": not said, "domain": not said, "ticks": not said}
         return shown | ({"labelExpr": said} if said else {"format": "~g"})

@@ -23,12 +23,13 @@ TITLE = re.compile(r"([XY])-axis (?:titled '(.*)' )?for a")
 
 @dataclass
 class Shown:
-    """A panel: how many marks of each kind, where its axes end, the titles of its axes, and its labels."""
+    """A panel: how many marks of each kind, where its axes end, their titles, what is at their ticks, and labels."""
 
     marks: dict[str, int] = field(default_factory=dict)
     extents: dict[str, tuple[float, ...]] = field(default_factory=dict)
     titles: dict[str, str] = field(default_factory=dict)
     texts: list[str] = field(default_factory=list)
+    ticks: set[str] = field(default_factory=set)
 
 
 def in_files(chart: Chart) -> list[Shown]:
@@ -57,6 +58,7 @@ def _in_axes(axes, part: Chart) -> Shown:
     for name, said, ends in (("x", part.x, axes.get_xlim()), ("y", part.y, axes.get_ylim())):
         found.extents[name] = (len(said.names),) if said.scale == Scale.NAMES else ends
     found.titles = {"x": axes.get_xlabel(), "y": axes.get_ylabel()}
+    found.ticks = {label.get_text() for label in (*axes.get_xticklabels(), *axes.get_yticklabels())}
     return found
 
 
@@ -85,6 +87,8 @@ def _in_svg(spec) -> Shown:
     for element in ElementTree.fromstring(vl_convert.vegalite_to_svg(whole)).iter():
         if element.tag == f"{SVG}g":
             _count(element, found)
+            if "role-axis-label" in element.get("class", ""):
+                found.ticks |= {"".join(one.itertext()) for one in element.iter(f"{SVG}text")}
         if said := TITLE.match(element.get("aria-label", "")):
             found.titles[said[1].lower()] = said[2] or ""
     found.texts.sort()

@@ -43,8 +43,10 @@ def agree(chart: Chart) -> list[Shown]:
     """Panels of a chart that both renderers show alike."""
     files, pages = in_files(chart), in_pages(chart)
     assert len(files) == len(pages)
+    named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
     for file, page in zip(files, pages, strict=True):
         same(file, page)
+        assert named <= file.ticks and named <= page.ticks, (named - file.ticks, named - page.ticks)
     return files
 
 

@@ -16,13 +16,14 @@ from PIL import Image
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.quality.charts import bins, histogram_chart, steps
 from normalbench.bench.tables.quality.work import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.charts import image_chart
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import charts, front_specs, pareto, plots, specs, vega
+from normalbench.reports.charts import draw, front_specs, pareto, plots, vega
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
@@ -303,7 +304,8 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
 def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     """Roundings, layouts and names of users' files; no infinity in what a browser reads."""
     rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
-    (spec,) = specs.histogram_specs(rows)
+    chart = histogram_chart(0, rows)
+    (spec,) = vega.specs(chart)
     lines = {row["line"] for row in spec["data"]["values"]}
     assert lines == {"xy rgba8", "xy rgba8 truncate", '$a\\b" rgba8'}
     image = {"encoding": "xy", "storage": "rgba8", "rounding": "nearest", "psnr_db": math.inf, "normal_psnr_db": 50.0}
@@ -331,17 +333,16 @@ def test_no_two_elements_share_an_id_and_charts_use_the_pages_colours(results):
     ids = [attributes["id"] for _, attributes in Read(text).tags if "id" in attributes]
     assert len(ids) == len(set(ids)) > 30
     css = (page.WEB / "page.css").read_text()
-    assert all(f"{name[4:-1]}:" in css for name in specs.PALETTE)
+    assert all(f"{name[4:-1]}:" in css for name in vega.PALETTE)
 
 
 def test_every_chart_is_one_that_vega_lite_draws():
     """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
     panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
     made = [
-        *specs.histogram_specs([quality_row("xy")]),
         *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
     ]
-    assert len(made) == 2
+    assert len(made) == 1
     for spec in made:
         compiled = vl_convert.vegalite_to_vega(spec)
         assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
@@ -349,24 +350,18 @@ def test_every_chart_is_one_that_vega_lite_draws():
 
 
 def test_a_histograms_outline_holds_its_counts():
-    found = charts.bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
+    found = bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
     assert found[2] == (0.125, 0.140625, 10) and found[4] == (0.25, 0.28125, 4)
-    edges, heights = charts.steps(found)
+    edges, heights = steps(found)
     octaves = np.diff(np.log2(edges))
     assert np.dot(octaves, heights) == pytest.approx(41) and heights[0] * octaves[0] == pytest.approx(7)
     assert (np.diff(edges) > 0).all() and 0.0 in heights, "what is between is empty"
-    assert charts.bins("nonsense") == [] == charts.bins(None)
-
-
-def test_a_histogram_says_its_unit():
-    figure = charts.histogram_chart([quality_row("xy")])
-    assert figure.axes[0].get_xlabel().endswith(", degrees")
-    plots.save(figure)
+    assert bins("nonsense") == [] == bins(None)
 
 
 def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     """And laid out in the first one."""
-    figure = charts.histogram_chart([quality_row("xy")])
+    figure = draw.figure([histogram_chart(0, [quality_row("xy")])])
     drawn, draw = [], type(figure).draw
     monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or draw(self, renderer))
     plots.save(figure, *((tmp_path / f"chart.{ending}", ending) for ending in ("svg", "png", "pdf")))
