@@ -362,8 +362,8 @@ def test_a_histograms_outline_holds_its_counts():
 def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     """And laid out in the first one."""
     figure = draw.figure([histogram_chart(0, [quality_row("xy")])])
-    drawn, draw = [], type(figure).draw
-    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or draw(self, renderer))
+    drawn, painted = [], type(figure).draw
+    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or painted(self, renderer))
     plots.save(figure, *((tmp_path / f"chart.{ending}", ending) for ending in ("svg", "png", "pdf")))
     assert len(drawn) == 3 and drawn[1] == plots.DPI
     with Image.open(tmp_path / "chart.png") as image:
