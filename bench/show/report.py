@@ -292,7 +292,8 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
 def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[drawings.Drawing]:
     try:
         kept = whole(rows)
-        return [*table.work.drawings(found, kept), *map(drawings.of, table.work.charts(kept))]
+        charts = [*table.work.charts(kept), *table.work.joined(found)]
+        return [*table.work.drawings(found, kept), *map(drawings.of, charts)]
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []
@@ -434,7 +435,7 @@ def _panels(
             points = list(_points(rows, operation, errors, lost))
             if points:
                 title = f"{operation}: instructions for {machine}, {usual_stage(family)} shaders"
-                unit = f"instructions to {operation}, with its storage's"
+                unit = "instructions, with its storage's"
                 about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
                 yield Panel(title, unit, points, **about)
 

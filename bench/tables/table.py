@@ -217,7 +217,8 @@ class Work:
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
         charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
         plotted: the charts that --plot draws where they are not `charts` of the rows.
-        drawings: charts of the page, from its contents and the table's rows.
+        joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
+        drawings: charts of the page that are not values, from its contents and the table's rows.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
@@ -242,6 +243,7 @@ class Work:
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
     charts: Callable[[Sequence[Row]], Iterable[Any]] = _nothing
     plotted: Callable[[Measured], Iterable[Any]] | None = None
+    joined: Callable[[Any], Iterable[Any]] = _nothing
     drawings: Callable[..., Iterator[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing

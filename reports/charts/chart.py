@@ -194,6 +194,12 @@ class Mark:
     is_stepped: bool = False
     tips: tuple[tuple[str, str], ...] = ()
 
+    @property
+    def fields(self) -> set[str]:
+        """The fields of rows that it reads."""
+        named = (self.x, self.y, self.x2, self.y2, self.text, self.colour, self.shape, self.dash, self.rest)
+        return {*named, *self.by, *(field for field, _ in self.tips)}
+
     def groups(self, rows: Sequence[Row]) -> list[list[Row]]:
         """The rows of each line, area or end."""
         found: dict[Hashable, list[Row]] = {}

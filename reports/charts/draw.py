@@ -82,7 +82,7 @@ def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:
     drawn = [(part, axes) for (_, part), axes in zip(parts, grid.flat, strict=False)]
     for (name, part), axes in zip(parts, grid.flat, strict=False):
         _panel(axes, part)
-        axes.set_title(plain(textwrap.fill(name, PANEL_LETTERS)), size=9)
+        axes.set_title(plain("\n".join(textwrap.fill(line, PANEL_LETTERS) for line in name.splitlines())), size=9)
     for axes in grid.flat[len(parts) :]:
         axes.remove()
     _title(place, chart)

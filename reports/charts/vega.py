@@ -129,7 +129,8 @@ def _layer(part: Chart, mark: Mark, shown: Spec, encoding: Spec, rows: Sequence[
     layer: Spec = {"name": str(mark.kind), "mark": shown, "encoding": encoding}
     drawn = part.rows_of(mark) if rows is None else rows
     if drawn != part.rows:
-        layer["data"] = {"values": _plain(drawn)}
+        kept = {*mark.fields, "codec", "label", "right", *([part.switch.field] if part.switch else [])}
+        layer["data"] = {"values": _plain([{k: v for k, v in row.items() if k in kept} for row in drawn])}
     if part.switch:
         field = part.switch.field
         # Rows without the field are shown whatever is chosen.

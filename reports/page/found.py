@@ -30,7 +30,7 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error, as `pareto.pareto_figure` takes them: panels for each GPU family."""
+    """Cost against error: panels for each GPU family."""
 
     error: Error
     panels: Sequence[Panel]

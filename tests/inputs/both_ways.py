@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
 import vl_convert
 from matplotlib import pyplot
 from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
@@ -118,3 +119,23 @@ def rows_of_tables() -> dict[str, list[dict]]:
     """
     kept = json.loads((Path(__file__).parent / "charted_rows.json").read_text())
     return {name: [dict(zip(t["columns"], row, strict=True)) for row in t["rows"]] for name, t in kept.items()}
+
+
+def same(file: Shown, page: Shown) -> None:
+    """A file and the page agree; the page names points of the rest only when they are picked."""
+    assert file.marks == page.marks
+    assert set(page.texts) <= set(file.texts) and len(set(page.texts)) == len(page.texts), (file.texts, page.texts)
+    assert file.titles == page.titles and set(file.extents) == {"x", "y"}
+    for name, ends in file.extents.items():
+        assert ends == pytest.approx(page.extents[name], rel=1e-6), name
+
+
+def agree(chart: Chart) -> list[Shown]:
+    """Panels of a chart that both renderers show alike."""
+    files, pages = in_files(chart), in_pages(chart)
+    assert len(files) == len(pages)
+    named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
+    for file, page in zip(files, pages, strict=True):
+        same(file, page)
+        assert named <= file.ticks and named <= page.ticks, (named - file.ticks, named - page.ticks)
+    return files

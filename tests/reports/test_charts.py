@@ -5,7 +5,7 @@ import json
 import re
 
 import pytest
-from both_ways import Shown, in_files, in_pages, rows_of_tables
+from both_ways import agree, rows_of_tables
 from matplotlib import pyplot
 from PIL import Image
 
@@ -28,26 +28,6 @@ from normalbench.reports.charts.chart import (
 
 ROWS = rows_of_tables()
 HOSTILE = "$a\\b\"'</script>"
-
-
-def same(file: Shown, page: Shown) -> None:
-    """A file and the page agree; the page names points of the rest only when they are picked."""
-    assert file.marks == page.marks
-    assert set(page.texts) <= set(file.texts) and len(set(page.texts)) == len(page.texts), (file.texts, page.texts)
-    assert file.titles == page.titles and set(file.extents) == {"x", "y"}
-    for name, ends in file.extents.items():
-        assert ends == pytest.approx(page.extents[name], rel=1e-6), name
-
-
-def agree(chart: Chart) -> list[Shown]:
-    """Panels of a chart that both renderers show alike."""
-    files, pages = in_files(chart), in_pages(chart)
-    assert len(files) == len(pages)
-    named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
-    for file, page in zip(files, pages, strict=True):
-        same(file, page)
-        assert named <= file.ticks and named <= page.ticks, (named - file.ticks, named - page.ticks)
-    return files
 
 
 def a_chart(**more) -> Chart:

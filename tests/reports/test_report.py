@@ -15,6 +15,7 @@ from PIL import Image
 
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.cost.charts import front_chart
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.charts import bins, histogram_chart, steps
 from normalbench.bench.tables.quality.work import beside
@@ -23,7 +24,7 @@ from normalbench.bench.tables.render.charts import image_chart
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import draw, front_specs, pareto, plots, vega
+from normalbench.reports.charts import draw, pareto, plots, vega
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
@@ -313,7 +314,8 @@ def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     assert chart.y.names == ("xy rgba8 thin", "xy rgba8 wide")
     (spec,) = vega.specs(chart)
     panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
-    made = [spec, *front_specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
+    front = front_chart("cost-0", HOSTILE, [panel], pareto.decibels('PSNR of "a\\"'))
+    made = [spec, *vega.specs(front)]
     json.dumps(made, allow_nan=False)
     assert all(vl_convert.vegalite_to_vega(one)["marks"] for one in made)
 
@@ -334,19 +336,6 @@ def test_no_two_elements_share_an_id_and_charts_use_the_pages_colours(results):
     assert len(ids) == len(set(ids)) > 30
     css = (page.WEB / "page.css").read_text()
     assert all(f"{name[4:-1]}:" in css for name in vega.PALETTE)
-
-
-def test_every_chart_is_one_that_vega_lite_draws():
-    """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
-    panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
-    made = [
-        *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
-    ]
-    assert len(made) == 1
-    for spec in made:
-        compiled = vl_convert.vegalite_to_vega(spec)
-        assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
-        assert compiled["marks"]
 
 
 def test_a_histograms_outline_holds_its_counts():
