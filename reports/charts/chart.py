@@ -79,6 +79,12 @@ class Axis:
     names: tuple[str, ...] = ()
     is_shared: bool = True
 
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Where a scale of counts is marked, within its domain; empty for others."""
+        low, high = self.domain or (0.0, 0.0)
+        return tuple(count for count in COUNTS if low <= count <= high) if self.scale == Scale.COUNT else ()
+
     def along(self, value: float) -> float:
         """A value on the axis where equal steps have equal lengths."""
         if self.scale == Scale.LOG:

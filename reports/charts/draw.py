@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from .chart import COLOURS, COUNTS, DASHES, SHAPES, Axis, Chart, Kind, Mark, Names, Row, Scale, Shades
+from .chart import COLOURS, DASHES, SHAPES, Axis, Chart, Kind, Mark, Names, Row, Scale, Shades
 from .labels import label_ends, label_points, write_ends
 from .looks import MARKERS, as_text, colour_of, marker_of, places, plain, shade, stroke, stroke_of
 from .plots import drawn_off_screen, save
@@ -143,9 +143,7 @@ def _ticks(axis: Any, said: Axis) -> None:
     from matplotlib.ticker import LogLocator
 
     assert said.domain
-    ticks = said.ticks or tuple(
-        (count, str(count)) for count in COUNTS if said.scale == Scale.COUNT and count <= said.domain[1]
-    )
+    ticks = said.ticks or tuple((float(count), str(count)) for count in said.counts)
     if ticks:
         axis.set_ticks([at for at, _ in ticks], [as_text(name) for _, name in ticks], size=8)
         axis.set_ticks([], minor=True)

@@ -16,7 +16,6 @@ from ..page.verdict import is_number
 from .chart import (
     ALL,
     COLOURS,
-    COUNTS,
     DASHES,
     FAINT,
     INK,
@@ -177,9 +176,8 @@ def _ticks(axis: Axis) -> Spec:
         said = f"{json.dumps(names)}[toString(datum.value)]" if any(_is_word(tick) for tick in axis.ticks) else ""
         shown: Spec = {"values": [at for at, _ in axis.ticks], "grid": not said, "domain": not said, "ticks": not said}
         return shown | ({"labelExpr": said} if said else {"format": "~g"})
-    ends = axis.domain or (0.0, 0.0)
     if axis.scale == Scale.COUNT:
-        return {"values": [count for count in COUNTS if count <= ends[1]], "format": "d"}
+        return {"values": list(axis.counts), "format": "d"}
     # Thousands on a linear axis are no powers of ten.
     return {"format": "~g"} if axis.scale == Scale.LOG else {}
 
