@@ -64,11 +64,13 @@ CONFIG = {
     # On a phone there is no room for two legends beside each other.
     | {"layout": {"top": {"anchor": "start", "direction": "vertical"}}},
 }
-# Whether names of lines have room beside a panel, how many pixels they take, and a line of them.
-ROOMY, ENDS_WIDTH, LABEL_LINE = "roomy", 215, 13
+# How many pixels a chart has across. Names of lines stand beside a panel that is wide enough.
+ACROSS = {"name": "across", "expr": "containerSize()[0]"}
+LEAST_PANEL = 330
+# Pixels that a letter takes, what is beside the letters of a legend and beside the legend, and a line of labels.
+LETTER, SYMBOL, SIDE, LABEL_LINE = 6.5, 40, 70, 13
 # Labels of points beyond this share of the axis stand to the left of them.
 TURNS_AT = 0.55
-LEGEND_LETTERS = 75
 
 
 def specs(chart: Chart) -> list[Spec]:
@@ -90,12 +92,8 @@ def rows_of(spec: Spec) -> Iterator[Row]:
 def _spec(name: str, part: Chart) -> Spec:
     layers = [layer for mark in part.marks if part.rows_of(mark) for layer in LAYERS[mark.kind](part, mark)]
     layers = [layer | {"name": f"{layer['name']}_{at}"} for at, layer in enumerate(layers)]
-    params: list[Spec] = [PICKED]
+    params: list[Spec] = [PICKED, ACROSS]
     said: Spec = {"description": " ".join(filter(None, (part.title, part.description, name)))}
-    if any(mark.kind == Kind.ENDS for mark in part.marks):
-        params.append({"name": ROOMY, "expr": f"containerSize()[0] > {2 * ENDS_WIDTH + 100}"})
-        sides = f"{{left: 5, top: 5, bottom: 5, right: {ROOMY} ? {ENDS_WIDTH} : 5}}"
-        said["padding"] = {"expr": sides}
     if part.switch:
         switch = {"param": part.switch.field, "label": part.switch.label, "options": list(part.switch.values)}
         params.append({"name": part.switch.field, "value": part.switch.usual})
@@ -104,6 +102,18 @@ def _spec(name: str, part: Chart) -> Spec:
         said["title"] = {"text": title, "color": ROLES[MUTED], "fontWeight": "normal", "anchor": "start"}
     said |= {"width": "container", "height": part.pixels, "config": CONFIG, "params": params}
     return said | {"data": {"values": _plain(part.rows)}, "layer": layers}
+
+
+def _ends_width(part: Chart) -> int:
+    """How many pixels the names of lines take."""
+    marks = [mark for mark in part.marks if mark.kind == Kind.ENDS]
+    longest = max((len(str(row[mark.text])) for mark in marks for row in part.rows_of(mark)), default=0)
+    return 20 + int(LETTER * longest)
+
+
+def _has_room(part: Chart) -> str:
+    """Whether names of lines have room beside a panel, as an expression."""
+    return f"across > {LEAST_PANEL + _ends_width(part)}"
 
 
 def _title(name: str, part: Chart) -> Any:
@@ -203,9 +213,9 @@ def _colour(part: Chart, mark: Mark) -> Spec:
 def _names(names: Names, looks: Sequence[Any]) -> Spec:
     """Names by what they look like."""
     longest = max((len(str(value)) for value in names.values), default=1)
-    columns = max(1, min(len(names.values), LEGEND_LETTERS // (longest + 5)))
+    columns = f"max(1, min({len(names.values)}, floor((across - {SIDE}) / {SYMBOL + LETTER * longest})))"
     scale = {"domain": list(names.values), "range": names.of(looks)}
-    legend = {"columns": columns}
+    legend = {"columns": {"expr": columns}}
     return {
         "field": names.field,
         "type": "nominal",
@@ -338,12 +348,14 @@ def _ends(part: Chart, mark: Mark) -> Iterator[Spec]:
     rows = [{**row, "label": part.y.at(share)} for row, share in zip(lasts, shares, strict=True)]
     colour = _colour(part, mark)
     colour.pop("legend", None)
-    roomy: Spec = {"opacity": {"condition": {"test": ROOMY, "value": 1}, "value": 0}, "color": colour}
+    # A name that is there and not seen would take room from the panel.
+    room = {"filter": _has_room(part)}
     at = _places(part, mark)
-    leader = {**at, "x2": {"value": {"expr": "width + 12"}}, "y2": {"field": "label"}, **roomy}
-    yield _leader(part, mark, leader, rows)
+    leader = {**at, "x2": {"value": {"expr": "width + 12"}}, "y2": {"field": "label"}, "color": colour}
     text = {"x": {"value": {"expr": "width + 15"}}, "y": at["y"] | {"field": "label"}, "text": {"field": mark.text}}
-    yield _layer(part, mark, {"type": "text", "align": "left", "fontSize": 11}, {**text, **roomy}, rows)
+    shown = {"type": "text", "align": "left", "fontSize": 11}
+    for layer in (_leader(part, mark, leader, rows), _layer(part, mark, shown, {**text, "color": colour}, rows)):
+        yield layer | {"transform": [*layer.get("transform", ()), room]}
 
 
 LAYERS = MappingProxyType(
