@@ -20,9 +20,10 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import MARK
 from ...encodings.storages.storage import Storage, storage_of
-from ...reports.charts import drawings
+from ...reports.charts import drawings, vega
+from ...reports.charts.looks import as_text
 from ...reports.charts.pareto import Panel, Point, decibels
-from ...reports.page import embedded, library, markdown, page, several
+from ...reports.page import embedded, markdown, page, several
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
 from ...reports.page.live import Live
@@ -167,7 +168,7 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
 
 def _library() -> str:
     """What draws interactive charts. Bundling it takes seconds, so it is kept."""
-    return cache.kept(cache.key_of(library.name()), lambda: {"script": library.script()})["script"]
+    return cache.kept(cache.key_of(vega.library_name()), lambda: {"script": vega.library()})["script"]
 
 
 def draw_ahead(folder: Path) -> dict[str, str]:
@@ -376,7 +377,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
         errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
         panels = list(_panels(costs, errors, usual_family(tables), lost))
         if panels:
-            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
+            yield Front(decibels(f"PSNR of {what} {as_text(where)}"), panels)
     if costs:
         remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
 
@@ -430,7 +431,7 @@ def _panels(
     """Instructions on each GPU family, to encode and to decode; `lost` is told which codecs have no place, by the
     reason."""
     for family, rows in costs.items():
-        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else drawings.as_text(family)
+        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else as_text(family)
         for operation in OPERATIONS:
             points = list(_points(rows, operation, errors, lost))
             if points:
@@ -452,7 +453,7 @@ def _points(
         except LeftOutError as reason:
             lost.setdefault(str(reason), {})[label] = None
             continue
-        name = drawings.as_text(codec.encoding.name)
+        name = as_text(codec.encoding.name)
         yield Point(name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
 
 

@@ -12,6 +12,7 @@ from .chart import Chart
 from .draw import figure, settings
 from .looks import as_text
 from .plots import save
+from .vega import rows_of as rows_of
 from .vega import specs
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .charts import Row
+from .chart import Row
 from .plots import COLOURS, MARKERS, drawn_off_screen
 from .specs import PALETTE, Spec, rounded, spec, tips
 

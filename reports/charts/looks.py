@@ -76,3 +76,13 @@ def shade(shades: Shades) -> Any:
     from matplotlib.colors import LogNorm
 
     return ScalarMappable(LogNorm(shades.low, shades.high, clip=True), SHADES)
+
+
+def colour_map(count: int = 33) -> list[str]:
+    """Viridis from dark to bright, as many colours, evenly spaced: even steps to the eye, also for those who do not
+    see all colours."""
+    import matplotlib
+    import numpy as np
+    from matplotlib.colors import to_hex
+
+    return [to_hex(colour) for colour in matplotlib.colormaps[SHADES](np.linspace(0, 1, count))]

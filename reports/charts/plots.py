@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from .chart import COLOURS as COLOURS
+
 FORMATS = ("png", "svg", "pdf")
 DPI = 120
-# Okabe and Ito's colours, told apart by most people who do not see all of them.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999", "#8C564B")
 
 
 class PlotError(Exception):

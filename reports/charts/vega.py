@@ -1,5 +1,9 @@
 """Charts as the page draws them: specifications of Vega-Lite.
 
+Vega-Lite was chosen because a chart is data instead of code, its expressions are interpreted so that a page needs no
+`eval`, and its marks are SVG with labels that screen readers read. Packed, the bundle that vl-convert carries takes
+0.4 MB; Plotly's smallest takes 0.5 MB.
+
 Each has a parameter `picked`, the codec that the page highlights, empty for none. Colours are page.css's, so that they
 follow its theme.
 """
@@ -9,6 +13,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
 from types import MappingProxyType
 from typing import Any
 
@@ -34,6 +39,8 @@ from .chart import (
 )
 
 Spec = dict[str, Any]
+# The package that carries the library.
+PACKAGE = "vl-convert-python"
 PALETTE = ["var(--ink)" if colour == "#000000" else f"var(--chart-{at})" for at, colour in enumerate(COLOURS)]
 ROLES = MappingProxyType({role: f"var(--{role})" for role in (INK, MUTED, FAINT)})
 STROKES: Mapping[str, list[float]] = MappingProxyType({"solid": [], "dashed": [5, 4], "dotted": [1, 3]})
@@ -71,6 +78,18 @@ LEAST_PANEL = 330
 LETTER, SYMBOL, SIDE, LABEL_LINE = 6.5, 40, 70, 13
 # Labels of points beyond this share of the axis stand to the left of them.
 TURNS_AT = 0.55
+
+
+def library_name() -> str:
+    """The library that draws specifications, and its version."""
+    return f"{PACKAGE} {version(PACKAGE)}"
+
+
+def library() -> str:
+    """The library as a script that defines `vegaEmbed`. Takes seconds."""
+    import vl_convert
+
+    return f"(() => {{{vl_convert.javascript_bundle('window.vegaEmbed=vegaEmbed')}}})();"
 
 
 def specs(chart: Chart) -> list[Spec]:
@@ -146,13 +165,13 @@ def _layer(part: Chart, mark: Mark, shown: Spec, encoding: Spec, rows: Sequence[
         test = f"{field} == '{ALL}' || !isValid(datum.{field}) || toString(datum.{field}) == {field}"
         layer["transform"] = [{"filter": test}]
     if any("codec" in row for row in drawn[:1]) and "opacity" not in encoding and "opacity" not in shown:
-        encoding["opacity"] = _if_lit(1, 0.15)
+        encoding["opacity"] = if_lit(1, 0.15)
     if mark.tips:
         encoding.setdefault("tooltip", [{"field": name, "title": title} for name, title in mark.tips])
     return layer
 
 
-def _if_lit(lit: float, other: float) -> Spec:
+def if_lit(lit: float, other: float) -> Spec:
     """A value for what is highlighted, and one for the rest; where nothing is, everything is."""
     return {"condition": {"test": IS_LIT, "value": lit}, "value": other}
 

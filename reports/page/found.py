@@ -19,7 +19,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class SphereMap:
-    """A codec's errors over the sphere; see `charts.sphere_chart` for the arrays."""
+    """A codec's errors over the sphere; see `sphere_chart` for the arrays."""
 
     key: CodecKey
     bits: int

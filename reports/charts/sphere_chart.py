@@ -1,7 +1,4 @@
-"""Charts of a run: histograms of angles, images beside normals, passes, maps of the sphere.
-
-Each takes rows and gives a figure for `plots.save`.
-"""
+"""Maps of angles over the sphere, which are pictures and no marks."""
 
 from __future__ import annotations
 
@@ -12,7 +9,6 @@ import numpy as np
 
 from .plots import drawn_off_screen
 
-Row = dict[str, Any]
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
 LEAST_DEG = 1e-4
 # Perceptually uniform, and the same order to those who do not see all colours.
