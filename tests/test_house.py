@@ -74,7 +74,7 @@ def test_only_the_folder_of_opengl_imports_moderngl():
     assert using == {Path("gbuffer/gl")}, f"moderngl is imported in {sorted(using)}"
 
 
-# Who draws with matplotlib: draw.py and its parts draw charts as values; maps of the sphere and error sheets are pictures.
+# Who draws with matplotlib: draw.py and its parts draw values; maps of the sphere and error sheets are pictures.
 # The last two draw tables whose charts are no values.
 DRAWN_BY = {
     "draw.py",
