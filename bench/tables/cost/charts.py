@@ -91,7 +91,7 @@ def _finding(panels: Sequence[Panel], error: Error) -> str:
     """How many codecs of each panel are beaten by no other, on the machine that is shown first."""
     said = []
     for panel in (panel for panel in panels if panel.is_usual):
-        where = f" to {panel.kind}" if panel.kind else ""
-        said.append(f"{len(pareto_front(panel.points, error))} of {len(panel.points)} codecs{where}")
+        front, operation = pareto_front(panel.points, error), _kind(panel).partition(",")[0]
+        said.append(f"{len(front)} of {len(panel.points)} codecs to {operation}")
     machine = next((panel.machine for panel in panels if panel.is_usual and panel.machine), "")
     return f"No other beats {', '.join(said)}{f', on {machine}' if machine else ''}"
