@@ -109,7 +109,9 @@ def rows_of(spec: Spec) -> Iterator[Row]:
 
 
 def _spec(name: str, part: Chart) -> Spec:
-    layers = [layer for mark in part.marks if part.rows_of(mark) for layer in LAYERS[mark.kind](part, mark)]
+    # Axes are there without anything between them, too.
+    marks = [mark for mark in part.marks if part.rows_of(mark)] or part.marks[:1]
+    layers = [layer for mark in marks for layer in LAYERS[mark.kind](part, mark)]
     layers = [layer | {"name": f"{layer['name']}_{at}"} for at, layer in enumerate(layers)]
     params: list[Spec] = [PICKED, ACROSS]
     said: Spec = {"description": " ".join(filter(None, (part.title, part.description, name)))}

@@ -111,6 +111,8 @@ def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest():
 
 
 def test_a_chart_without_rows_is_an_empty_one(tmp_path):
+    (shown,) = agree(a_chart(rows=()))
+    assert shown.marks == {} and shown.titles == {"x": "pixels", "y": "error, degrees"}
     draw.write([], (tmp_path / "none.png", "png"))
     draw.write([a_chart(rows=())], (tmp_path / "empty.svg", "svg"))
     assert "A finding" in (tmp_path / "empty.svg").read_text()
