@@ -74,6 +74,31 @@ def test_only_the_folder_of_opengl_imports_moderngl():
     assert using == {Path("gbuffer/gl")}, f"moderngl is imported in {sorted(using)}"
 
 
+# Who draws with matplotlib: draw.py and its parts draw values; maps of the sphere and error sheets are pictures.
+# The last two draw tables whose charts are no values.
+DRAWN_BY = {
+    "draw.py",
+    "labels.py",
+    "looks.py",
+    "plots.py",
+    "sphere_chart.py",
+    "pictures.py",
+    "growth.py",
+    "throughput.py",
+}
+
+
+def test_only_the_renderers_of_charts_know_matplotlib_and_vega():
+    """All others say a chart as a value."""
+    charts = ROOT / "reports" / "charts"
+    drawing = {path for path in SOURCES if any(name.split(".")[0] == "matplotlib" for name in imported(path))}
+    assert drawing <= {charts / name for name in DRAWN_BY}
+    naming = {
+        path for path in SOURCES if re.search(r"vega-?lite|vl_convert|vegaembed", path.read_text(), re.IGNORECASE)
+    }
+    assert naming == {charts / "vega.py"}
+
+
 def test_a_folder_of_the_renderer_is_read_at_a_glance():
     """A pass beside its shaders counts as one thing; no folder holds more than thirteen."""
     for folder in (path for path in (ROOT / "gbuffer").rglob("*") if path.is_dir() and path.name != "__pycache__"):

@@ -15,7 +15,7 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
-from ...reports.charts import charts
+from ...reports.charts.sphere_chart import sphere_chart
 from ..ground.output.errors import UsageError, pick_one, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
 from ..subjects.codecs.names import storages_named
@@ -150,5 +150,5 @@ def _picture(codec: Codec, found: Examined) -> Any:
     name, shown = codec.name, sphere_map(codec).mean_deg
     halves = ("z >= 0, towards the viewer", "z < 0")
     if found.domain.is_turned:
-        return charts.sphere_chart({name: shown}, halves=(found.domain.text, ""))
-    return charts.sphere_chart({name: shown}, {name: np.array(found.bad).reshape(-1, 3)}, halves)
+        return sphere_chart({name: shown}, halves=(found.domain.text, ""))
+    return sphere_chart({name: shown}, {name: np.array(found.bad).reshape(-1, 3)}, halves)

@@ -15,7 +15,7 @@ from ..ground.machine.memory import keep_what_is_freed
 from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.sources import sources
-from ..ground.output.writing import check_writable, say
+from ..ground.output.writing import check_plot, check_writable, say, whole_file
 from ..keep.plain import plain
 from ..keep.runs import Done, facts_of
 from ..run.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
@@ -48,6 +48,7 @@ def table_command(
     for path in filter(None, (output, report)):
         check_writable(path)
         _check_not_read(path, options)
+    check_plot(getattr(outputs, "plot", None))
     scratch = tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("")
     with scratch as folder, place(on) as where:
         ask = asked(table, options, in_folder(table, outputs, Path(folder)) if report else outputs)
@@ -118,7 +119,23 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
     failed = say_lines(work.failures(done.rows))
     show(table, done, format, output)
     work.write(done, lambda _: None)
+    _plot(table, done)
     return failed
+
+
+def _plot(table: Table, done: Measured) -> None:
+    """Draw the table's charts into the file of --plot, where there is one. Raises UsageError where there are none."""
+    path, work = getattr(done.outputs, "plot", None), table.work
+    if not path or not work.has_charts:
+        return
+    charts = list(work.plotted(done) if work.plotted else work.charts(done.rows))
+    if charts:
+        from ...reports.charts import draw
+
+        with whole_file(path) as partial:
+            draw.write(charts, (partial, path.suffix[1:].lower()))
+    elif not table.lacking(done):
+        raise UsageError("--plot: there is nothing to draw; see why above")
 
 
 def _bring(table: Table, outputs: Any, folder: Path) -> None:

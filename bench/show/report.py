@@ -21,9 +21,10 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import MARK
 from ...encodings.storages.storage import Storage, storage_of
-from ...reports.charts import drawings
+from ...reports.charts import drawings, vega
+from ...reports.charts.looks import as_text
 from ...reports.charts.pareto import Panel, Point, decibels
-from ...reports.page import embedded, library, markdown, page, several
+from ...reports.page import embedded, markdown, page, several
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.found import Found, Front, Listing, SphereMap, plain_text
 from ...reports.page.live import Live
@@ -166,7 +167,7 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
 
 def _library() -> str:
     """What draws interactive charts. Bundling it takes seconds, so it is kept."""
-    return cache.kept(cache.key_of(library.name()), lambda: {"script": library.script()})["script"]
+    return cache.kept(cache.key_of(vega.library_name()), lambda: {"script": vega.library()})["script"]
 
 
 def draw_ahead(folder: Path) -> dict[str, str]:
@@ -288,7 +289,9 @@ def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Shee
 
 def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[drawings.Drawing]:
     try:
-        return list(table.work.drawings(found, whole(rows)))
+        kept = whole(rows)
+        charts = [*table.work.charts(kept), *table.work.joined(found)]
+        return [*table.work.drawings(found, kept), *map(drawings.of, charts)]
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []
@@ -378,7 +381,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator
         errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
         panels = list(_panels(costs, errors, usual_family(tables), lost))
         if panels:
-            yield Front(decibels(f"PSNR of {what} {drawings.as_text(where)}"), panels)
+            yield Front(decibels(f"PSNR of {what} {as_text(where)}"), panels)
     if costs:
         remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
 
@@ -432,12 +435,12 @@ def _panels(
     """Instructions on each GPU family, to encode and to decode; `lost` is told which codecs have no place, by the
     reason."""
     for family, rows in costs.items():
-        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else drawings.as_text(family)
+        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else as_text(family)
         for operation in OPERATIONS:
             points = list(_points(rows, operation, errors, lost))
             if points:
                 title = f"{operation}: instructions for {machine}, {usual_stage(family)} shaders"
-                unit = f"instructions to {operation}, with its storage's"
+                unit = "instructions, with its storage's"
                 about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
                 yield Panel(title, unit, points, **about)
 
@@ -454,7 +457,7 @@ def _points(
         except LeftOutError as reason:
             lost.setdefault(str(reason), {})[label] = None
             continue
-        name = drawings.as_text(codec.encoding.name)
+        name = as_text(codec.encoding.name)
         yield Point(name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
 
 

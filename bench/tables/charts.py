@@ -8,9 +8,14 @@ from functools import partial
 from typing import Any
 
 from ...reports.charts.drawings import Drawing, for_drawing
+from ...reports.page.codec_key import CodecKey
 from ...reports.page.verdict import BACKENDS, is_number
 from .table import Row
 
+# A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
+LEAST_DEG = 1e-4
+# What may tell rows of one codec apart, in the order of their names.
+LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "exposure")
 # Text that a chart reads and does not show.
 NOT_SHOWN = ("angle_counts", "ms_frame_each")
 
@@ -18,6 +23,12 @@ NOT_SHOWN = ("angle_counts", "ms_frame_each")
 def having(rows: Sequence[Row], *columns: str) -> list[Row]:
     """Rows with a finite figure in each of the columns."""
     return [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
+
+
+def lines_of(rows: Sequence[Row]) -> list[str]:
+    """What tells each row of a chart apart: its codec, and what else differs between the rows."""
+    others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
+    return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
 
 
 def drawing(

@@ -215,7 +215,10 @@ class Work:
         warnings: a line for each row that is measured but odd.
         failures: a line for each row that makes the command fail.
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
-        drawings: charts of the page, from its contents and the table's rows.
+        charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
+        plotted: the charts that --plot draws where they are not `charts` of the rows.
+        joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
+        drawings: charts of the page that are not values, from its contents and the table's rows.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
@@ -238,6 +241,9 @@ class Work:
     warnings: Callable[[Sequence[Row]], Iterable[str]] = _nothing
     failures: Callable[[Sequence[Row]], Iterable[str]] = _nothing
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
+    charts: Callable[[Sequence[Row]], Iterable[Any]] = _nothing
+    plotted: Callable[[Measured], Iterable[Any]] | None = None
+    joined: Callable[[Any], Iterable[Any]] = _nothing
     drawings: Callable[..., Iterator[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
@@ -248,6 +254,11 @@ class Work:
     needs: Callable[[Step], frozenset[str]] = _by_backend
     is_timed: Callable[[Step], bool] = _by_repeats
     stays: bool = False
+
+    @property
+    def has_charts(self) -> bool:
+        """Whether its charts are values."""
+        return self.charts is not _nothing or self.plotted is not None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from .chart import Chart
+from .draw import figure, settings
+from .looks import as_text
 from .plots import save
-
-# How many letters of a name a chart has room for.
-LONGEST = 48
+from .vega import rows_of as rows_of
+from .vega import specs
 
 
 @dataclass(frozen=True)
@@ -34,29 +35,16 @@ class Drawing:
     specs: Callable[[], Sequence[dict[str, Any]]] | None = None
 
 
-@contextmanager
-def _settings(name: str) -> Iterator[None]:
-    """Text stays text, names in the file are the same each time, and a letter that a font lacks is the reader's."""
-    import matplotlib
-
-    # Without a height for titles matplotlib lays out all labels anew at each drawing, to see what is in the way.
-    chosen: Any = {"svg.fonttype": "none", "svg.hashsalt": name, "axes.titley": 1.0}
-    with warnings.catch_warnings(), matplotlib.rc_context(chosen):
-        warnings.filterwarnings("ignore", message=".*missing from.*font")
-        warnings.filterwarnings("ignore", message="constrained_layout not applied")
-        yield
+def of(chart: Chart) -> Drawing:
+    """A chart, to be drawn."""
+    said = f"{chart.subtitle}. {chart.description}"
+    return Drawing(chart.name, chart.title, said, partial(figure, (chart,)), partial(specs, chart))
 
 
 def write(drawing: Drawing, *files: tuple[Path, str]) -> None:
     """Writes a chart to each path as its format, one of plots.FORMATS. Raises OSError."""
-    with _settings(drawing.name):
+    with settings(drawing.name):
         save(drawing.draw(), *files)
-
-
-def as_text(text: str) -> str:
-    """Text as a chart has room for it, whose dollars it does not read as mathematics."""
-    short = text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
-    return short.replace("$", r"\$")
 
 
 def for_drawing(rows: Sequence[dict[str, Any]], but: Sequence[str] = ()) -> list[dict[str, Any]]:

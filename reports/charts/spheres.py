@@ -12,8 +12,9 @@ import numpy as np
 
 from ..page.embedded import small_uri
 from ..page.found import SphereMap
-from . import charts
-from .drawings import Drawing, as_text
+from . import sphere_chart
+from .drawings import Drawing
+from .looks import as_text
 
 # How finely a rim's cells are parted.
 FINE = 8
@@ -54,7 +55,7 @@ def globes(maps: Sequence[SphereMap]) -> list[Globes]:
 
 
 def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
-    limits = charts.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _planes(m)})
+    limits = sphere_chart.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _planes(m)})
     made = []
     for one in maps:
         mean, largest = (small_uri(_discs(plane, limits)) for _, plane in _planes(one))
@@ -80,13 +81,13 @@ def _planes(one: SphereMap) -> list[tuple[str, np.ndarray]]:
 
 
 def _discs(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    return charts.coloured(np.concatenate([plane[0], plane[1]], axis=1), limits)
+    return sphere_chart.coloured(np.concatenate([plane[0], plane[1]], axis=1), limits)
 
 
 def colour_strip() -> str:
     """The scale's colours from the least to the largest, as a picture."""
     steps = np.exp(np.linspace(0, 1, 256))[None]
-    return small_uri(charts.coloured(steps, (1.0, math.e)))
+    return small_uri(sphere_chart.coloured(steps, (1.0, math.e)))
 
 
 def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
@@ -99,4 +100,4 @@ def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
 
 
 def _draw(maps: Sequence[SphereMap]) -> Any:
-    return charts.sphere_chart({as_text(one.key.label): one.mean_deg for one in maps})
+    return sphere_chart.sphere_chart({as_text(one.key.label): one.mean_deg for one in maps})

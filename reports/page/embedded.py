@@ -15,6 +15,7 @@ from urllib.parse import quote
 import numpy as np
 from PIL import Image
 
+from ..charts.looks import colour_map
 from ..charts.pictures import GAIN, POWER
 from .pixels import LEAST_LOG2, NOT_A_NUMBER, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
 
@@ -54,15 +55,6 @@ class Gallery:
         angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE, "not_a_number": NOT_A_NUMBER}
         articles = {"gain": GAIN, "power": POWER}
         return {"subjects": self.subjects, "angle": angle, "articles": articles, "colours": colour_map()}
-
-
-def colour_map(count: int = 33) -> list[str]:
-    """Viridis from dark to bright, as many colours, evenly spaced: even steps to the eye, also for those who do not
-    see all colours."""
-    import matplotlib
-    from matplotlib.colors import to_hex
-
-    return [to_hex(colour) for colour in matplotlib.colormaps["viridis"](np.linspace(0, 1, count))]
 
 
 def data_uri(pixels: Image.Image) -> str:

@@ -19,7 +19,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class SphereMap:
-    """A codec's errors over the sphere; see `charts.sphere_chart` for the arrays."""
+    """A codec's errors over the sphere; see `sphere_chart` for the arrays."""
 
     key: CodecKey
     bits: int
@@ -30,7 +30,7 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error, as `pareto.pareto_figure` takes them: panels for each GPU family."""
+    """Cost against error: panels for each GPU family."""
 
     error: Error
     panels: Sequence[Panel]

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from ..charts.looks import colour_map
 from .codec_key import CodecKey
-from .embedded import colour_map, small_uri
+from .embedded import small_uri
 
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.

@@ -14,10 +14,11 @@ from typing import Any
 
 from .. import tables
 from ..charts import spheres
-from ..charts.drawings import Drawing
-from . import embedded, library, live
+from ..charts.drawings import Drawing, rows_of
+from . import embedded, live
 from .codec_key import CodecKey
 from .found import Found, Row
+from .packing import packed
 from .sections import Section, Sheet, whole
 from .verdict import agreement, is_number
 
@@ -202,7 +203,7 @@ def template(name: str) -> Any:
 def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
     """Every codec that the page shows, by name."""
     named = {one.codec for subject in found.subjects for one in subject.codecs if one.codec}
-    drawn = (row for several in specs.values() for spec in several for row in spec["data"]["values"])
+    drawn = (row for several in specs.values() for spec in several for row in rows_of(spec))
     named |= {row["codec"] for row in drawn if "codec" in row}
     encodings = found.encodings
     rows = [row for section in found.sections for row in section.rows]
@@ -239,11 +240,11 @@ def html(
         gallery=gallery,
         picture_data=data_block(gallery.data) if gallery.subjects else "",
         codecs=codecs(found, specs),
-        library=library.packed(library_script) if specs else "",
-        specs=library.packed(json.dumps(specs)) if specs else "",
+        library=packed(library_script) if specs else "",
+        specs=packed(json.dumps(specs)) if specs else "",
         live=found.live,
-        live_script=library.packed(laboratory) if found.live else "",
-        live_data=library.packed(found.live.data(about(found))) if found.live else "",
+        live_script=packed(laboratory) if found.live else "",
+        live_data=packed(found.live.data(about(found))) if found.live else "",
         **base(SCRIPTS, [library_script, laboratory], is_beside=bool(gallery.files)),
     )
 

@@ -5,6 +5,7 @@ import math
 from itertools import combinations, pairwise
 
 import pytest
+from both_ways import agree
 from browsing import DESKTOP, PHONE, Opened
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,9 +13,11 @@ from test_report import a_run, quality_row, reported
 
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.show.report import gathered
+from normalbench.bench.tables.cost.charts import HEIGHT, front_chart
 from normalbench.bench.tables.registry import TABLES
-from normalbench.reports.charts import front_specs
-from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
+from normalbench.reports.charts import vega
+from normalbench.reports.charts.chart import Axis, Scale, lines_apart
+from normalbench.reports.charts.pareto import Panel, Point, decibels
 
 # Instructions to encode and to decode (normalbench cost --isa --family navi31,dg2), and PSNR in rgba8 (quality).
 CODECS = {
@@ -33,28 +36,28 @@ def points(family: int = 0, operation: int = 0) -> list[Point]:
 
 @given(st.lists(st.floats(10, 110), min_size=1, max_size=24, unique=True))
 def test_no_two_names_stand_on_one_line_and_they_keep_the_order_of_their_points(errors):
-    error, made = decibels("PSNR"), [Point(str(at), at, error, 16) for at, error in enumerate(errors)]
-    places = front_specs.label_places(made, error, (0, 120))
-    ordered = sorted(made, key=lambda point: point.error)
-    pixels = [places[point] * front_specs.HEIGHT / 120 for point in ordered]
-    assert all(b - a >= front_specs.LINE_HEIGHT - 1e-6 for a, b in pairwise(pixels))
+    axis = Axis(title="PSNR, dB", domain=(0, 120))
+    places = dict(zip(errors, lines_apart(axis, errors, HEIGHT, vega.LABEL_LINE), strict=True))
+    pixels = [places[error] * HEIGHT for error in sorted(errors)]
+    assert all(b - a >= vega.LABEL_LINE - 1e-6 for a, b in pairwise(pixels))
 
 
 def test_names_far_apart_stand_beside_their_points():
-    for error in (decibels("PSNR"), ERRORS["max"][1]):
-        made = [Point("a", 1, 0.1, 16), Point("b", 2, 5.0, 16)]
-        places = front_specs.label_places(made, error, (0.05, 6.0))
-        assert [places[point] for point in made] == pytest.approx([0.1, 5.0])
+    for scale in (Scale.LINEAR, Scale.LOG):
+        axis = Axis(title="error", scale=scale, domain=(0.05, 6.0))
+        places = lines_apart(axis, [0.1, 5.0], HEIGHT, 1.0)
+        assert [axis.at(share) for share in places] == pytest.approx([0.1, 5.0])
 
 
 def test_the_dearest_codec_leaves_the_others_room():
-    """octahedral_precise takes 120 instructions where the others take up to 15: they have over half of the axis."""
+    """octahedral_precise takes 120 instructions where the others take up to 15: they have over a third of the axis."""
     panel = Panel("encode", "instructions", points(), is_counted=True)
-    assert front_specs._share(panel, 15, 120) > 0.35
-    assert front_specs._share(Panel("encode", "ms", points()), 15, 120) == 0.125
-    (spec,) = front_specs.pareto_specs([panel], decibels("PSNR"))
-    assert spec["encoding"]["x"]["scale"]["type"] == "symlog"
-    assert spec["encoding"]["x"]["axis"]["values"] == [0, 2, 5, 10, 20, 50, 100]
+    chart = front_chart("cost-0", "Instructions", [panel], decibels("PSNR"))
+    ((_, part),) = chart.parts()
+    assert part.x.share(15) - part.x.share(0) > 0.35
+    (spec,) = vega.specs(chart)
+    x = spec["layer"][0]["encoding"]["x"]
+    assert x["scale"]["type"] == "symlog" and x["axis"]["values"] == [0, 2, 5, 10, 20, 50, 100]
 
 
 def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
@@ -62,12 +65,24 @@ def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
         Panel(f"encode on {name}", "instructions", points(at), "encode", name, is_usual=name == "dg2")
         for at, name in enumerate(FAMILIES)
     ]
-    (spec,) = front_specs.pareto_specs(panels, decibels("PSNR"))
+    (spec,) = vega.specs(front_chart("cost-0", "Instructions", panels, decibels("PSNR")))
     assert spec["usermeta"]["switch"]["options"] == list(FAMILIES)
     assert {"name": "machine", "value": "dg2"} in spec["params"]
     assert {row["machine"] for row in spec["data"]["values"]} == set(FAMILIES)
-    (alone,) = front_specs.pareto_specs(panels[:1], decibels("PSNR"))
+    (alone,) = vega.specs(
+        front_chart("cost-0", "Instructions", [Panel("encode on navi31", "i", points())], decibels("P"))
+    )
     assert "usermeta" not in alone and alone["title"]["text"] == "encode on navi31"
+
+
+def test_a_file_and_the_page_show_the_same_of_the_usual_gpu():
+    panels = [
+        Panel("", "instructions", points(at, side), kind, name, is_counted=True, is_usual=name == "dg2")
+        for at, name in enumerate(FAMILIES)
+        for side, kind in enumerate(("encode", "decode"))
+    ]
+    shown = agree(front_chart("cost-0", "Instructions", panels, decibels("PSNR")))
+    assert [panel.marks["points"] for panel in shown] == [5, 5]
 
 
 def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
@@ -96,7 +111,8 @@ def without_figures(name: str, why: str) -> dict:
 def charted(folder, quality: list[dict], codecs) -> tuple[list[dict], list[str]]:
     """What the page's chart of one GPU shows of encoding, and what the page says of the codecs that are not in it."""
     found = gathered(folder, read_run(a_run(folder, {"quality": quality, "cost": costs_of(codecs, "navi31")})))
-    encode, _ = front_specs.pareto_specs(found.fronts[0].panels, found.fronts[0].error)
+    (chart,) = TABLES["cost"].work.joined(found)
+    encode, _ = vega.specs(chart)
     return encode["data"]["values"], [said for said in found.remarks if "cost against error" in said]
 
 
@@ -107,7 +123,7 @@ def test_a_users_encoding_has_its_place_by_glsl_where_it_has_no_twin(tmp_path):
     rows += [quality_row("octahedral", backend="glsl", psnr_db=53.0), quality_row("octahedral", psnr_db=51.0)]
     rows += [quality_row("mine:arithmetic=half", psnr_db=40.0), quality_row("xy", psnr_db=20.0)]
     points, said = charted(tmp_path / "run", rows, counts)
-    shown = {point["codec"]: (point["cost"], point["error"], point["best"]) for point in points}
+    shown = {point["codec"]: (point["x"], point["y"], not point["rest"]) for point in points}
     assert said == [] and shown == {
         "xy rgba8": (2, 20.0, True),
         "mine rgba8": (9, 52.0, True),

@@ -15,13 +15,16 @@ from PIL import Image
 
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.cost.charts import front_chart
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.quality.charts import bins, histogram_chart, steps
 from normalbench.bench.tables.quality.work import beside
 from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.render.charts import image_chart
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import charts, front_specs, pareto, plots, specs
+from normalbench.reports.charts import draw, pareto, plots, vega
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
@@ -236,7 +239,7 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     assert "The rows of quality are not those of this version, and shown as they are; measure them again: " in read.text
     assert "normalbench run --tables quality." in read.text
     assert "Rows of colours are left out, because this version has no such table." in read.text
-    assert "The chart 'depth' cannot be drawn from these rows" in read.text
+    assert "The charts of depth cannot be drawn from these rows" in read.text
     assert "octahedral" in read.text and "its rows keep no histograms" in read.text
 
 
@@ -323,14 +326,17 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
 def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     """Roundings, layouts and names of users' files; no infinity in what a browser reads."""
     rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
-    (spec,) = specs.histogram_specs(rows)
+    chart = histogram_chart(0, rows)
+    (spec,) = vega.specs(chart)
     lines = {row["line"] for row in spec["data"]["values"]}
     assert lines == {"xy rgba8", "xy rgba8 truncate", '$a\\b" rgba8'}
     image = {"encoding": "xy", "storage": "rgba8", "rounding": "nearest", "psnr_db": math.inf, "normal_psnr_db": 50.0}
-    (spec,) = specs.image_specs([image | {"layout": name} for name in ("thin", "wide")])
-    assert [row["line"] for row in spec["data"]["values"]] == ["xy rgba8 thin", "xy rgba8 wide"]
+    chart = image_chart(0, "gloss", [image | {"layout": name} for name in ("thin", "wide")])
+    assert chart.y.names == ("xy rgba8 thin", "xy rgba8 wide")
+    (spec,) = vega.specs(chart)
     panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
-    made = [spec, *front_specs.pareto_specs([panel], pareto.decibels('PSNR of "a\\"'))]
+    front = front_chart("cost-0", HOSTILE, [panel], pareto.decibels('PSNR of "a\\"'))
+    made = [spec, *vega.specs(front)]
     json.dumps(made, allow_nan=False)
     assert all(vl_convert.vegalite_to_vega(one)["marks"] for one in made)
 
@@ -350,65 +356,28 @@ def test_no_two_elements_share_an_id_and_charts_use_the_pages_colours(results):
     ids = [attributes["id"] for _, attributes in Read(text).tags if "id" in attributes]
     assert len(ids) == len(set(ids)) > 30
     css = (page.WEB / "page.css").read_text()
-    assert all(f"{name[4:-1]}:" in css for name in specs.PALETTE)
-
-
-def test_every_chart_is_one_that_vega_lite_draws():
-    """Of each kind one; Vega-Lite itself compiles it, and every row has the fields that marks are placed by."""
-    depth = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "near": 0.1, "far": 10.0}
-    light = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0, "lights": 4, "error": -0.5}
-    frame = {"pipeline": "hybrid", "clock": "wall", "ms_frame": 3.0, "ms_frame_spread": 0.5, "ms_lights": 2.0}
-    image = {"encoding": "xy", "storage": "rgba8", "psnr_db": 40.0, "normal_psnr_db": 50.0}
-    panel = pareto.Panel("encode", "instructions", [pareto.Point("xy", 3, 40.0, 16, codec="xy rgba8")])
-    made = [
-        *specs.histogram_specs([quality_row("xy")]),
-        *specs.image_specs([image]),
-        *front_specs.pareto_specs([panel], pareto.decibels("PSNR")),
-        *specs.depth_specs([depth | {"distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]),
-        *specs.lights_specs([light]),
-        *specs.passes_specs([frame]),
-    ]
-    assert len(made) == 6
-    for spec in made:
-        compiled = vl_convert.vegalite_to_vega(spec)
-        assert any(signal["name"] == "picked" for signal in compiled["signals"]), spec["description"]
-        assert compiled["marks"]
-    assert charts.frame_label(frame) == "2, too noisy to compare"
-    assert charts.frame_label(frame | {"ms_frame_spread": 0.2}) == "2"
+    assert all(f"{name[4:-1]}:" in css for name in vega.PALETTE)
 
 
 def test_a_histograms_outline_holds_its_counts():
-    found = charts.bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
+    found = bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
     assert found[2] == (0.125, 0.140625, 10) and found[4] == (0.25, 0.28125, 4)
-    edges, heights = charts.steps(found)
+    edges, heights = steps(found)
     octaves = np.diff(np.log2(edges))
     assert np.dot(octaves, heights) == pytest.approx(41) and heights[0] * octaves[0] == pytest.approx(7)
     assert (np.diff(edges) > 0).all() and 0.0 in heights, "what is between is empty"
-    assert charts.bins("nonsense") == [] == charts.bins(None)
-
-
-def test_a_histogram_says_its_unit():
-    figure = charts.histogram_chart([quality_row("xy")])
-    assert figure.axes[0].get_xlabel().endswith(", degrees")
-    plots.save(figure)
+    assert bins("nonsense") == [] == bins(None)
 
 
 def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     """And laid out in the first one."""
-    figure = charts.histogram_chart([quality_row("xy")])
-    drawn, draw = [], type(figure).draw
-    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or draw(self, renderer))
+    figure = draw.figure([histogram_chart(0, [quality_row("xy")])])
+    drawn, painted = [], type(figure).draw
+    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or painted(self, renderer))
     plots.save(figure, *((tmp_path / f"chart.{ending}", ending) for ending in ("svg", "png", "pdf")))
     assert len(drawn) == 3 and drawn[1] == plots.DPI
     with Image.open(tmp_path / "chart.png") as image:
         assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
-
-
-def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
-    row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
-    figure = plots.lights_figure([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])
-    assert list(figure.axes[0].get_lines()[0].get_ydata()) == [0.5, 0.25]
-    plots.save(figure)
 
 
 def test_maps_are_in_the_page_with_means_by_area(results):

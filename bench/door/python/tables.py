@@ -12,6 +12,7 @@ import pandas as pd
 
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage
+from ....reports.charts.drawings import of
 from ...ground.options.option import checked_options, fields_of
 from ...ground.options.words import Words
 from ...ground.output.errors import UsageError
@@ -48,8 +49,9 @@ class Rows(pd.DataFrame):
 
 
 def _drawings(table: Table, done: Measured) -> list[Any]:
+    rows = [dict(row) for row in done.rows]
     try:
-        return list(table.work.drawings(None, [dict(row) for row in done.rows]))
+        return [*table.work.drawings(None, rows), *map(of, table.work.charts(rows))]
     except AttributeError:  # of charts that a whole run is needed for
         return []
 

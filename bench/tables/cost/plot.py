@@ -6,17 +6,17 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
-from pathlib import Path
 from types import MappingProxyType
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage
-from ....reports.charts import pareto, plots
+from ....reports.charts import pareto
+from ....reports.charts.chart import Chart
 from ...ground.output.errors import tell
-from ...ground.output.writing import whole_file
 from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
+from .charts import front_chart
 from .codec_costs import Costs, LeftOutError, Where
 from .measure import Row
 
@@ -43,15 +43,23 @@ class Wanted:
         return " ".join(filter(None, (self.storage.name, self.normals.name, *where, self.operation)))
 
 
-def draw(
-    rows: Sequence[Row],
-    encodings: Sequence[Encoding],
-    chosen: Sequence[Storage],
-    sets: Sequence[NormalSet],
-    error: str,
-    path: Path,
-) -> bool:
-    """A panel for each storage, normal set, measure, family, stage and operation; whether there is anything to draw.
+def charts(
+    rows: Sequence[Row], encodings: Sequence[Encoding], chosen: Sequence[Storage], sets: Sequence[NormalSet], error: str
+) -> list[Chart]:
+    """A chart for each measure; none where there is nothing to draw."""
+    made = panels(rows, encodings, chosen, sets, error)
+    about = pareto.ERRORS[error][1]
+    subtitle = f"Cost against {about.label}"
+    return [
+        front_chart("cost", subtitle, [panel for panel in made if panel.unit == unit], about)
+        for unit in dict.fromkeys(panel.unit for panel in made)
+    ]
+
+
+def panels(
+    rows: Sequence[Row], encodings: Sequence[Encoding], chosen: Sequence[Storage], sets: Sequence[NormalSet], error: str
+) -> list[pareto.Panel]:
+    """A panel for each storage, normal set, measure, family, stage and operation.
 
     What is left out is said on standard error.
     """
@@ -60,11 +68,7 @@ def draw(
     made = [panel for want in wanted[: pareto.MOST_PANELS] if (panel := drawing.panel(want)).points]
     for line in (*drawing.left_out(), *_beyond(wanted[pareto.MOST_PANELS :])):
         tell(f"--plot: {line}")
-    if not made:
-        return False
-    with whole_file(path) as partial:
-        plots.save(pareto.pareto_figure(made, pareto.ERRORS[error][1]), (partial, path.suffix.lower()[1:]))
-    return True
+    return made
 
 
 def _wanted(rows: Sequence[Row], chosen: Sequence[Storage], sets: Sequence[NormalSet]) -> Iterator[Wanted]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +16,18 @@ from ....encodings.storages.storage import STORAGES, Storage, storage_of
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto
-from ....reports.charts.drawings import Drawing
-from ....reports.charts.front_specs import pareto_specs
+from ....reports.charts.chart import Chart
 from ...ground.options import gpu_families as families
 from ...ground.options import listing
 from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
 from ...ground.output.errors import MissingError, UsageError, pick
-from ...ground.output.writing import check_folder, check_plot, whole_file
+from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
 from ...subjects.codecs.user_encodings import encodings_named
 from ..families_named import families_named
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
+from .charts import front_chart
 from .measure import file_name
 from .table import TABLE, CostOptions, CostOutputs
 
@@ -151,7 +151,6 @@ def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
 def _check(asked: Costing, outputs: CostOutputs) -> None:
     """Raises UsageError for what cannot be written, before anything is measured."""
     chosen = measures(asked.options)
-    check_plot(outputs.plot)
     if outputs.disassembly:
         check_folder(outputs.disassembly)
         if "isa" not in chosen:
@@ -272,17 +271,22 @@ def _write(done: Measured, _: Tick) -> None:
     if done.outputs.disassembly:
         write_listings(done.outputs.disassembly, _texts(done))
         write_sources(done.outputs.disassembly / SOURCES, done.steps[0].case.asked.encodings)
-    if done.outputs.plot and not _plot(done) and not _lacking(done):
-        raise UsageError("--plot: there is nothing to draw; see why above")
 
 
-def _plot(done: Measured) -> bool:
+def _plotted(done: Measured) -> Iterable[Chart]:
     from ...subjects.normals.normal_sets import NORMAL_SETS
-    from .plot import draw
+    from .plot import charts
 
     options, asked = done.options, done.steps[0].case.asked
     sets = [make(options.count, options.seed) for make in pick("normal set", options.normals, NORMAL_SETS)]
-    return draw(done.rows, asked.encodings, asked.drawn_storages, sets, options.error, done.outputs.plot)
+    return charts(done.rows, asked.encodings, asked.drawn_storages, sets, options.error)
+
+
+def _joined(found: Any) -> Iterator[Chart]:
+    """Instructions against each error of a run."""
+    for at, front in enumerate(found.fronts):
+        subtitle = f"Instructions against {front.error.label.removesuffix(', dB')}"
+        yield front_chart(f"cost-{at}", subtitle, front.panels, front.error)
 
 
 def _listing(step: Step, row: Row) -> str | None:
@@ -305,19 +309,6 @@ def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
                 partial.write_text(encoding.glsl.read_text(encoding="utf-8"), encoding="utf-8")
 
 
-def _drawings(found: Any, _: Sequence[Row]) -> Iterator[Drawing]:
-    for at, front in enumerate(found.fronts):
-        title = f"Instructions against {front.error.label.removesuffix(', dB')}"
-        said = (
-            "Each codec by the instructions of encoding or decoding it and its storage, and by its error; grey where "
-        )
-        said += "another is no dearer, no worse and takes no more bits. The figures are in the tables."
-        # The page's chart has a switch between GPUs; a file shows the one that the page speaks of.
-        usual = [panel for panel in front.panels if panel.is_usual]
-        draws = partial(pareto.pareto_figure, usual, front.error), partial(pareto_specs, front.panels, front.error)
-        yield Drawing(f"cost-{at}", title, said, *draws)
-
-
 NEEDS = {"isa": frozenset({COMPILERS}), "time": frozenset({GL})}
 
 
@@ -337,7 +328,8 @@ WORK = Work(
     summary=_summary,
     warnings=_warnings,
     write=_write,
-    drawings=_drawings,
+    plotted=_plotted,
+    joined=_joined,
     listing=_listing,
     lacking=_lacking,
     missing=_missing,

@@ -22,17 +22,18 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import rendering
 from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.setting import Setting
-from ....reports.charts import pictures, plots, specs
-from ....reports.charts.drawings import Drawing
+from ....reports.charts import pictures
+from ....reports.charts.chart import Chart
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import what_is_left
 from ...ground.output.errors import UsageError, pick
-from ...ground.output.writing import check_folder, check_plot, save_plot, whole_file
-from ..charts import drawing, having, one_backend
+from ...ground.output.writing import check_folder, whole_file
+from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
+from .charts import charts, depth_chart
 from .table import TABLE, DepthOptions, DepthOutputs
 
 # Nothing nearer or farther; float32 has room on both sides.
@@ -120,7 +121,6 @@ def _numbers(option: str, text: str) -> tuple[float, ...]:
 
 def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
     made = cases(options)
-    check_plot(outputs.plot)
     if outputs.images:
         _scene(outputs.images, made)
     return [Step(_key(case), case, case.name) for case in made]
@@ -133,13 +133,16 @@ def _key(case: measure.Case) -> Row:
 
 
 def _write(done: Measured, tick: Tick) -> None:
-    """The pictures and the plot, where they were asked for."""
-    made = [step.case for step in done.steps]
-    chosen, outputs = _for_drawing(made), done.outputs
-    if outputs.images:
-        _write_pictures(chosen, _scene(outputs.images, made), outputs.images, tick)
-    if outputs.plot:
-        save_plot(outputs.plot, plots.depth_figure([row for case in chosen for row in _curve(case, tick)]))
+    """The pictures, where they were asked for."""
+    made, folder = [step.case for step in done.steps], done.outputs.images
+    if folder:
+        _write_pictures(_for_drawing(made), _scene(folder, made), folder, tick)
+
+
+def _plotted(done: Measured) -> list[Chart]:
+    """The chart of many distances, close to each other."""
+    rows = [row for case in _for_drawing([step.case for step in done.steps]) for row in _curve(case)]
+    return [depth_chart(usable)] if (usable := having(rows, "distance", "error_max")) else []
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
@@ -162,15 +165,6 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 def _is_at(row: Row, near: float, far: float) -> bool:
     return (row["near"], row["far"]) == (near, far) and row["distance"] is not None and row["error_max"] is not None
-
-
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = one_backend(having(rows, "distance", "error_max", "near", "far", "fov"))
-    if usable:
-        said = "The largest distance between true and rebuilt position over the distance from the eye, both on "
-        said += "logarithmic scales, a line for each depth code in its storage. The figures are in the table."
-        title = "Position error over distance"
-        yield drawing("depth", title, said, usable, plots.depth_figure, specs.depth_specs)
 
 
 def _beside(rows: Sequence[Row]) -> list[Row]:
@@ -202,12 +196,11 @@ def _for_drawing(cases: Iterable[measure.Case]) -> list[measure.Case]:
     return [case for case in cases if case in chosen.values()]
 
 
-def _curve(case: measure.Case, tick: Callable[[str], None]) -> list[Row]:
+def _curve(case: measure.Case) -> list[Row]:
     """A case's rows at many distances, close to each other; by JAX where the device cannot."""
     distances = np.geomspace(case.camera.near, case.camera.far, CURVE).tolist()
     fine = replace(case, distances=tuple(distances), count=CURVE_COUNT)
     rows = measure.measure(fine)
-    tick(case.name)
     return measure.measure(replace(fine, backend="jax")) if rows[0]["skipped"] else rows
 
 
@@ -301,5 +294,6 @@ WORK = Work(
     shown=_shown,
     summary=_summary,
     write=_write,
-    drawings=_drawings,
+    charts=charts,
+    plotted=_plotted,
 )

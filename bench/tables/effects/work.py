@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import DepthCodec
@@ -19,8 +18,6 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
-from ....reports.charts import charts, specs
-from ....reports.charts.drawings import Drawing
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
@@ -31,11 +28,11 @@ from ...ground.output.writing import check_folder
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
-from ..charts import drawing, having
 from ..plans import attempt, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Row, Sheet, Step, Work
 from . import pictures
+from .charts import charts
 from .measure import Bench, Case, group_of, in_order
 from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
 
@@ -164,21 +161,12 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             yield Sheet(f"{effect} on {scene} by {pipeline}", shown, keys={"effect": effect, "scene": scene})
 
 
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = having([row for row in rows if not row["depth"]], "effect_psnr_db", "normal_mean_deg")
-    if usable:
-        said = "PSNR in dB of each effect's own image over the mean angle of the normals that it read. The figures are "
-        said += "in the table below."
-        title = "What effects make of an error in the normals"
-        yield drawing("effects", title, said, usable, charts.effects_chart, specs.effects_specs)
-
-
 WORK = Work(
     steps=_steps,
     measure=by_shots(pictures.write),
     finish=in_order,
     summary=_summary,
     warnings=_warnings,
-    drawings=_drawings,
+    charts=charts,
     subjects=pictures.subjects,
 )

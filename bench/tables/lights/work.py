@@ -15,18 +15,17 @@ from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....reports.charts import pictures, plots, specs
-from ....reports.charts.drawings import Drawing
+from ....reports.charts import pictures
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.options.light_names import MOST_LIGHT, light_buffers_named
 from ...ground.options.scene_names import scenes_named
 from ...ground.options.targets import TARGETS, checked_setting, checked_target
 from ...ground.output.errors import MissingError, UsageError, pick
-from ...ground.output.writing import check_folder, check_plot, save_plot, whole_file
-from ..charts import drawing, having
-from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from ...ground.output.writing import check_folder, whole_file
+from ..table import Row, Sheet, Step, Work, each
 from . import measure
+from .charts import charts
 from .images import Shot
 from .table import TABLE, LightsOptions, LightsOutputs
 
@@ -99,8 +98,7 @@ class Album:
 
 
 def _check(outputs: LightsOutputs, names: Sequence[str]) -> None:
-    """Raises UsageError for what cannot be written, and PlotError."""
-    check_plot(outputs.plot)
+    """Raises UsageError for what cannot be written."""
     if outputs.plot and not PLOTTED & set(names):
         raise UsageError("--plot draws the experiments equal and random; ask for one of them")
     if outputs.images:
@@ -208,11 +206,6 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
     return measure.sorted_rows(list(rows))
 
 
-def _write(done: Measured, _: Tick) -> None:
-    if done.outputs.plot:
-        save_plot(done.outputs.plot, plots.lights_figure(done.rows))
-
-
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     equal: dict[tuple[str, str], Row] = {}
     for row in rows:
@@ -233,21 +226,10 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title, [{name: row[name] for name in names} for row in part])
 
 
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
-    random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
-    if equal or random:
-        said = "What is lost of the sum over the number of lights, by the model, a line for each light buffer; dotted: "
-        said += "the most it can be. The figures are in the rows of the experiments equal and random."
-        title = "Error over the number of lights"
-        yield drawing("lights", title, said, equal + random, plots.lights_figure, specs.lights_specs)
-
-
 WORK = Work(
     steps=_steps,
     measure=each(lambda rows: rows()),
     finish=_finish,
-    write=_write,
     summary=_summary,
-    drawings=_drawings,
+    charts=charts,
 )

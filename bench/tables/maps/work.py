@@ -6,24 +6,23 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.encoding import Encoding
-from ....reports.charts import maps as charts
-from ....reports.charts.drawings import Drawing
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.targets import what_is_left
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import MissingError, UsageError, leave_out, pick
-from ...ground.output.writing import check_folder, check_plot, save_plot
+from ...ground.output.writing import check_folder
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.user_encodings import encodings_named
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
-from ..charts import drawing, having
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure, pictures
+from .charts import charts
 from .formats import FORMATS, SWIZZLES, BlockFormat, swizzles_of
 from .measure import Case
+from .order import group_of, in_order
 from .sets import MAPS
 from .table import TABLE, MapsOptions, MapsOutputs
 
@@ -111,7 +110,6 @@ def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
 
 def _steps(options: MapsOptions, outputs: MapsOutputs) -> list[Step]:
     made = cases(options)
-    check_plot(outputs.plot)
     if outputs.images:
         check_folder(outputs.images)
     return [Step(_key(case), case, case.name) for case in made]
@@ -120,21 +118,6 @@ def _steps(options: MapsOptions, outputs: MapsOutputs) -> list[Step]:
 def _key(case: Case) -> Row:
     key: Row = {"encoding": case.encoding.name, "block": case.block.name, "swizzle": case.swizzle.name}
     return key | {"normals": case.normal_set.name, "decoder": case.decoder, "encoder": case.block.encoder.name}
-
-
-def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by set and decoder, the least RMS angle first; those without figures last."""
-    groups = list(dict.fromkeys(_group(row) for row in rows))
-
-    def place(row: Row) -> tuple[int, bool, float]:
-        rms = row["angle_rms_deg"]
-        return groups.index(_group(row)), rms is None, rms or 0.0
-
-    return sorted(rows, key=place)
-
-
-def _group(row: Row) -> tuple[str, str]:
-    return row["normals"], row["decoder"]
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
@@ -146,31 +129,17 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "block", "swizzle", "bits_per_texel", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg")
     names += ("angle_max_deg", "psnr_db")
-    for normals, decoder in dict.fromkeys(_group(row) for row in rows):
-        part = [row for row in in_order(rows) if _group(row) == (normals, decoder) and row["angle_rms_deg"] is not None]
+    known = [row for row in in_order(rows) if row["angle_rms_deg"] is not None]
+    for normals, decoder in dict.fromkeys(map(group_of, rows)):
+        part = [row for row in known if group_of(row) == (normals, decoder)]
         if part:
             shown = [{name: row[name] for name in names} for row in part]
             yield Sheet(f"{normals} in blocks, decoded by {decoder}", shown, keys={"normals": normals})
 
 
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = having(rows, "angle_mean_deg", "angle_p99_deg", "angle_max_deg")
-    for at, group in enumerate(dict.fromkeys(_group(row) for row in usable)):
-        part = [row for row in in_order(usable) if _group(row) == group]
-        title = f"What blocks lose of {group[0]}, decoded by {group[1]}"
-        said = (
-            "The mean angle, the angle that 99 % are below, and the largest, in degrees, for each code and format. The "
-        )
-        said += "figures are in the table below."
-        yield drawing(f"maps-{at}", title, said, part, charts.maps_chart, charts.maps_specs)
-
-
 def _write(done: Measured, _: Any) -> None:
     if done.outputs.images:
         pictures.write([step.case for step in done.steps], done.outputs.images)
-    if done.outputs.plot:
-        usable = having(in_order(done.rows), "angle_mean_deg", "angle_p99_deg", "angle_max_deg")
-        save_plot(done.outputs.plot, charts.maps_chart(usable))
 
 
 def _missing() -> str:
@@ -188,7 +157,7 @@ WORK = Work(
     summary=_summary,
     warnings=_warnings,
     write=_write,
-    drawings=_drawings,
+    charts=charts,
     missing=_missing,
     is_timed=lambda _: True,
 )

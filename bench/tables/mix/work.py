@@ -6,18 +6,17 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
-from ....reports.charts import charts, specs
-from ....reports.charts.drawings import Drawing
+from ....reports.charts.chart import Chart
 from ...ground.machine.devices import found_device, require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.output.errors import UsageError, leave_out, pick
-from ...ground.output.writing import check_plot, save_plot
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.normals.normal_names import normal_sets_named
-from ..charts import backends_of, drawing, having, one_backend
+from ..charts import having, one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
+from .charts import mix_chart
 from .measure import Case
 from .patches import Patches, mixes_of, patches_of
 from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
@@ -90,8 +89,7 @@ def _samples(asked: int, backends: Sequence[str]) -> dict[str, int]:
     return {name: gl.given_samples(asked) if gl and name == "glsl" else asked for name in backends}
 
 
-def _steps(options: MixOptions, outputs: MixOutputs) -> list[Step]:
-    check_plot(outputs.plot)
+def _steps(options: MixOptions, _: MixOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in cases(options)]
 
 
@@ -178,25 +176,14 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
 
 
+def _charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    return mix_chart(_charted(rows))
+
+
 def _charted(rows: Sequence[Row]) -> list[Row]:
     """The worst of the rows that decide, or of all where none does, as a chart takes them."""
     usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
     return [row | {"rounding": NEAREST} for row in _worst([row for row in usable if decides(row)] or usable)]
-
-
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    if chosen := _charted(rows):
-        said = (
-            "The largest error of each operation and the share of garbage, of the rows that decide the verdicts. The "
-        )
-        said += "figures are in the tables below."
-        title = f"What mixing makes of each code, by {backends_of(chosen)}"
-        yield drawing("mix", title, said, chosen, charts.mix_chart, specs.mix_specs)
-
-
-def _write(done: Measured, _: Any) -> None:
-    if done.outputs.plot:
-        save_plot(done.outputs.plot, charts.mix_chart(_charted(done.rows)))
 
 
 WORK = Work(
@@ -206,6 +193,5 @@ WORK = Work(
     shown=_shown,
     summary=_summary,
     warnings=_warnings,
-    write=_write,
-    drawings=_drawings,
+    charts=_charts,
 )

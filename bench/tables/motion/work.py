@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.gl.device import Device
 from ....gbuffer.scenes.scene import TURNS
-from ....reports.charts import motion as chart
-from ....reports.charts.drawings import Drawing
+from ....reports.charts.chart import Chart
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, by_reason, pick, tell
-from ...ground.output.writing import check_folder, check_plot, save_plot
+from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
-from ..charts import drawing, having
+from ..charts import having
 from ..shots import Shot, by_shots
-from ..table import Measured, Row, Sheet, Step, Tick, Work
+from ..table import Row, Sheet, Step, Work
 from . import pictures, turning
+from .charts import wobble_chart
 from .code_wobble import Motion
 from .measure import PICTURE_SWING_DEG, Bench, Case, FrameSequence
 from .table import TABLE, MotionOptions, MotionOutputs
@@ -113,7 +112,6 @@ def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
     made = cases(options, device)
     if not device and picture_turns(options):
         tell(f"no frames are rendered, so columns of highlights and images stay empty: {missing}")
-    check_plot(outputs.plot)
     if outputs.images:
         check_folder(outputs.images)
     bench = Bench(device, outputs.images is not None)
@@ -171,24 +169,14 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet("highlights and the displayed image", images)
 
 
-def _write(done: Measured, _: Tick) -> None:
-    if done.outputs.plot:
-        save_plot(done.outputs.plot, chart.motion_chart(_plotted(done.rows)))
-
-
 def _plotted(rows: Sequence[Row]) -> list[Row]:
     """Rows in lines over the turn, less those of codes that stay: on a logarithmic axis they would squash the rest."""
     return [row for line in _lines(rows) if any((row["ratio"] or 0) > LEAST_PLOTTED for row in line) for row in line]
 
 
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
+def _charts(rows: Sequence[Row]) -> Iterator[Chart]:
     if usable := _plotted(rows):
-        said = "RMS change of a code's error from one frame to the next over the degrees that the camera or the object "
-        said += (
-            "turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
-        )
-        said += "are in the table below."
-        yield drawing("motion", "How much codes wobble", said, usable, chart.motion_chart, chart.motion_specs)
+        yield wobble_chart(usable)
 
 
 WORK = Work(
@@ -197,7 +185,7 @@ WORK = Work(
     measure=by_shots(pictures.write),
     summary=_summary,
     warnings=_warnings,
-    write=_write,
-    drawings=_drawings,
+    charts=_charts,
+    plotted=lambda done: [wobble_chart(_plotted(done.rows))],
     films=pictures.films,
 )

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
-from ....reports.charts import charts, specs
-from ....reports.charts.drawings import Drawing
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
@@ -19,9 +17,10 @@ from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.normals.normal_names import normal_sets_named
-from ..charts import backends_of, drawing, having, one_backend
+from ..charts import backends_of, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
+from .charts import charts
 from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
@@ -232,19 +231,6 @@ def _write(done: Measured, _: Tick) -> None:
         pictures.write_scenes([step.case for step in done.steps], done.outputs.live)
 
 
-def histograms(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    """A chart for each set of normals; none where rows keep no histogram."""
-    usable = [r for r in having(rows, "bits", "angle_mean_deg") if charts.bins(r.get("angle_counts"))]
-    for at, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
-        part = one_backend([row for row in usable if str(row.get("normals")) == normals])
-        title = f"Angles on {normals}, by {backends_of(part)}"
-        said = (
-            "The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the tables "
-        )
-        said += "of what normals lose."
-        yield drawing(f"angles-{at}", title, said, part, charts.histogram_chart, specs.histogram_specs)
-
-
 def _worst(step: Step) -> Any:
     return measure.worst(step.case)
 
@@ -265,7 +251,7 @@ WORK = Work(
     summary=_summary,
     warnings=_warnings,
     failures=_failures,
-    drawings=histograms,
+    charts=charts,
     write=_write,
     subjects=pictures.subjects,
     worst=_worst,

@@ -12,8 +12,6 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
-from ....reports.charts import charts, specs
-from ....reports.charts.drawings import Drawing
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
@@ -25,11 +23,11 @@ from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
-from ..charts import drawing, having
 from ..plans import suited, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
+from .charts import charts
 from .measure import Bench, Case, described, in_order, ranked, says_little, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
@@ -184,16 +182,6 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(f"the image: {where}, dB as displayed", shown)
 
 
-def _drawings(_: Any, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = having(rows, "psnr_db", "normal_psnr_db")
-    for at, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
-        part = [row for row in usable if shown_scene(row) == scene]
-        said = "PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The figures "
-        said += "are in the table below."
-        title = f"The image of {scene} and the normals it was lit by"
-        yield drawing(f"image-{at}", title, said, part, charts.image_chart, specs.image_specs)
-
-
 def _finish(rows: Sequence[Row]) -> list[Row]:
     return in_order(ranked(list(rows)))
 
@@ -209,7 +197,7 @@ WORK = Work(
     shown=_shown,
     summary=_summary,
     warnings=_warnings,
-    drawings=_drawings,
+    charts=charts,
     subjects=pictures.subjects,
     worst=_worst,
 )

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from ....reports.charts import roofline as charts
-from ....reports.charts.drawings import Drawing
 from ...ground.options.counts import checked_numbers, checked_sides
 from ...ground.options.targets import that_fit
 from ...ground.output.errors import UsageError
-from ...ground.output.writing import check_plot, save_plot
 from ...shaders.isa import spirv
 from ...subjects.codecs.names import codecs_named
-from ..charts import drawing, having
-from ..table import COMPILERS, Measured, Row, Sheet, Step, Tick, Work, each
+from ..table import COMPILERS, Measured, Row, Sheet, Step, Work, each
 from . import measure
 from .answers import answers
+from .charts import charts
 from .measure import Case, Frame
 from .rates import RANGES, gpus_named
 from .table import TABLE, RooflineOptions, RooflineOutputs
@@ -49,10 +46,6 @@ def _key(case: Case) -> Row:
     about |= {name: getattr(case.rates, name) for name in ("family", *RANGES)}
     frames = [[*frame.size, frame.reads, frame.overdraw, frame.cache_share] for frame in case.frames]
     return {**about, "codecs": [codec.name for codec in case.codecs], "frames": frames}
-
-
-def _check(outputs: RooflineOutputs, _: Sequence[Step]) -> None:
-    check_plot(outputs.plot)
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
@@ -130,27 +123,6 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         said = ()
 
 
-def _write(done: Measured, _: Tick) -> None:
-    if done.outputs.plot:
-        rows = having(done.rows, "instructions", "bytes_per_pixel")
-        if not rows:
-            raise UsageError("--plot: there is nothing to draw; see why above")
-        save_plot(done.outputs.plot, charts.roofline_chart(rows))
-
-
-def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = having(rows, "instructions", "bytes_per_pixel")
-    if usable:
-        said = (
-            "Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the first size. "
-            "Above the GPU's line a code's bytes take longer than its instructions, below it the instructions do. The "
-            "dashed line is for codes that the cache holds. The figures are in the table."
-        )
-        yield drawing(
-            "roofline", "Bytes against instructions", said, usable, charts.roofline_chart, charts.roofline_specs
-        )
-
-
 def _lacking(done: Measured) -> list[str]:
     return list(dict.fromkeys(row["skipped"] for row in done.rows if row["skipped"]))
 
@@ -161,13 +133,11 @@ def _missing() -> str:
 
 WORK = Work(
     steps=_steps,
-    check=_check,
     measure=each(lambda case: list(case.rows())),
     finish=measure.ranked,
     shown=_shown,
     summary=_summary,
-    write=_write,
-    drawings=_drawings,
+    charts=charts,
     lacking=_lacking,
     missing=_missing,
     needs=lambda _: frozenset({COMPILERS}),

@@ -8,16 +8,15 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import MOTION_ENCODINGS
 from ....encodings.codecs.motion_codec import MotionCodec
 from ....encodings.storages.storage import MOTION_STORAGES
-from ....reports.charts import charts, specs
-from ....reports.charts.drawings import Drawing
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
 from ...ground.options.targets import that_fit
 from ...ground.output.errors import pick
-from ..charts import drawing, having, one_backend
+from ..charts import one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
+from .charts import charts
 from .paths import Paths
 from .table import VectorsOptions
 
@@ -87,11 +86,6 @@ def _line(row: Row) -> tuple:
     return tuple(row[name] for name in LINE)
 
 
-def _place(row: Row) -> tuple[int, ...]:
-    """Where a code stands in the catalogues."""
-    return [*MOTION_ENCODINGS].index(row["encoding"]), [*MOTION_STORAGES].index(row["storage"])
-
-
 def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:
     """A line for each code with a figure at each speed, after some of its columns."""
     lines: dict[tuple, Row] = {}
@@ -128,25 +122,11 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title, _by_speed(measured, "error_mean_px", names))
 
 
-def _drawings(_: object, rows: Sequence[Row]) -> Iterator[Drawing]:
-    usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=_place)
-    if usable:
-        said = (
-            "The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic scales, "
-        )
-        said += (
-            "a line for each code in its storage. The dotted line is an error as large as the motion: what lies on it "
-        )
-        said += "is lost. The figures are in the table."
-        title = "Error of motion vectors over speed"
-        yield drawing("vectors", title, said, usable, charts.vectors_chart, specs.vectors_specs)
-
-
 WORK = Work(
     steps=_steps,
     measure=each(measure.measure),
     finish=in_order,
     shown=_shown,
     summary=_summary,
-    drawings=_drawings,
+    charts=charts,
 )

@@ -62,9 +62,8 @@ function control(spec, views) {
 
 // As it is shown: with what is highlighted and the bits that are chosen.
 async function png(spec, shown, width, name) {
-  const made = await vegaEmbed(document.createElement("div"), { ...withColours(spec), width }, { ...OPTIONS, renderer: "canvas" });
-  for (const { name: signal } of spec.params) made.view.signal(signal, shown.signal(signal));
-  await made.view.runAsync();
+  const params = spec.params.map(({ name: param }) => ({ name: param, value: shown.signal(param) }));
+  const made = await vegaEmbed(document.createElement("div"), { ...withColours({ ...spec, params }), width }, { ...OPTIONS, renderer: "canvas" });
   save(`${name}.png`, await made.view.toImageURL("png", 2));
   made.finalize();
 }

@@ -152,7 +152,7 @@ def test_the_plot_is_drawn(run, tmp_path):
         assert (tmp_path / name).read_bytes().startswith(head)
     svg = (tmp_path / "plot.svg").read_text()
     labels = ("linear packed16 eye ray", "window depth32f projection terms", "near 1, far 100")
-    assert all(f"<!-- {label} -->" in svg for label in labels), svg[:500]
+    assert all(f">{label}</text>" in svg for label in labels), svg[:500]
 
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):

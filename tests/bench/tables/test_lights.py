@@ -11,6 +11,7 @@ from slowly import all_but
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
+from normalbench.bench.tables.lights.charts import charts
 from normalbench.bench.tables.lights.images import Lit, Resolves, Shot, targets_of, with_power
 from normalbench.bench.tables.lights.sums import (
     ORDERS,
@@ -317,6 +318,12 @@ def test_tables_are_one_for_each_experiment(run):
         "lights", *QUICK, "--light-buffer", "linear", "--experiment", "equal,banding", "--format", "csv"
     )
     assert tuple(next(csv.reader(out.splitlines()))) == tuple(TABLES["lights"].empty())
+
+
+def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
+    row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
+    (chart,) = charts([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])
+    assert [(point["x"], point["y"]) for point in chart.rows] == [(4, 0.5), (8, 0.25)]
 
 
 @pytest.mark.slow

@@ -327,12 +327,11 @@ def test_pick_leaves_out_what_does_not_survive(run):
 
 def test_the_page_has_a_chart_and_the_summary_the_verdicts(rows):
     work = TABLES["mix"].work
-    (chart,) = work.drawings(None, rows)
-    figure, (spec,) = chart.draw(), chart.specs()
-    axis = figure.axes[0]
-    assert [label.get_text() for label in axis.get_xticklabels()] == [name.replace("_", " ") for name in OPERATIONS]
-    assert len(spec["data"]["values"]) == 3 * len(OPERATIONS)
-    assert sum("%" in text.get_text() for text in axis.texts) >= 8
+    (chart,) = work.charts(rows)
+    assert list(chart.x.names) == [name.replace("_", " ") for name in OPERATIONS]
+    assert len(chart.rows) == 3 * len(OPERATIONS)
+    assert sum("%" in cell["said"] for cell in chart.rows) >= 8
+    assert "of 3 codes give no garbage" in chart.title
     (sheet,) = work.summary(rows)
     assert {line["encoding"]: line["filterable"] for line in sheet.rows}["octahedral"] == "no"
     assert any("octahedral/rgba8: normals 5 degrees apart on axes" in note for note in sheet.notes)

@@ -367,8 +367,8 @@ def test_a_code_that_stays_is_not_drawn():
     table = TABLES["motion"]
     options = table.options(picture_turn="none", count=4096, frames=4)
     done = measured(asked(table, options, table.outputs()), Nothing())
-    (one,) = table.work.drawings(None, done.rows)
-    shown = {point["line"] for spec in one.specs() for point in spec["data"]["values"]}
+    (chart,) = table.work.charts(done.rows)
+    shown = {point["line"] for point in chart.rows}
     assert shown == {"octahedral rg8", "spheremap rg8"}
 
 

@@ -13,9 +13,9 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.isa import spirv
 from normalbench.bench.tables.roofline import measure
 from normalbench.bench.tables.roofline.answers import answers
+from normalbench.bench.tables.roofline.charts import points, ridge_lines
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
 from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named
-from normalbench.reports.charts import roofline
 
 FULL_HD = (1920, 1080)
 ONE = Rates("of one lane", "navi21", 1, 1.0, 1.0)
@@ -80,8 +80,8 @@ def test_a_point_lies_above_its_line_where_memory_takes_longer():
         about = {"encoding": f"e{at}", "storage": "s", "gpu": "g", "size": "1920x1080", "reads": 1, "overdraw": 1.0}
         rows.append(about | measure._figures(work, frame(1), rates))
     assert [row["in_cache"] for row in rows] == [True, True, False, False]
-    found = roofline.points(rows)
-    lines = roofline.ridge_lines(found, "g")
+    found = points(rows)
+    lines = ridge_lines(found, "g")
     for row, point in zip(rows, found, strict=True):
         on_line = min(lines[row["in_cache"]], key=lambda place: abs(place[0] - point["x"]))
         slope = on_line[1] / on_line[0]

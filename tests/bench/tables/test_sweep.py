@@ -17,6 +17,7 @@ from normalbench.bench.run.measuring import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.measure import STAGES
 from normalbench.bench.tables.sweep import measure as sweep
+from normalbench.bench.tables.sweep.charts import charts, frame_label
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
@@ -47,6 +48,19 @@ def test_a_sweep_counts_what_each_pass_draws(run):
         assert row["triangles_geometry"] == general + special
         assert row["triangles_material"] == special + (general if row["pipeline"] == "prepass" else 0)
         assert (row["triangles_shadow_map"] > 0) == row["shadow"]
+
+
+def test_a_bar_says_its_length_and_whether_it_is_too_noisy_to_compare():
+    frame = {"pipeline": "hybrid", "clock": "wall", "ms_frame": 3.0, "ms_frame_spread": 0.5, "ms_lights": 2.0}
+    assert frame_label(frame) == "2, too noisy to compare"
+    assert frame_label(frame | {"ms_frame_spread": 0.2}) == "2"
+
+
+def test_pipelines_of_one_name_have_bars_of_their_own():
+    """With a shadow map and without; both stood at one name of the page's chart, one upon the other."""
+    frame = {"pipeline": "hybrid", "clock": "wall", "objects": 100, "ms_frame": 3.0, "ms_frame_spread": 0.5}
+    (chart,) = charts([frame | {"shadow": shadow, "ms_lights": 2.0} for shadow in (True, False)])
+    assert chart.y.names == ("hybrid with shadow map", "hybrid without shadow map")
 
 
 @pytest.mark.slow

@@ -11,12 +11,12 @@ from normalbench.bench.ground.machine import devices
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.vectors import measure as vectors
 from normalbench.bench.tables.vectors import work
+from normalbench.bench.tables.vectors.charts import vector_lines
 from normalbench.bench.tables.vectors.paths import FRAMES, POINTS, Paths
 from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.storages.storage import MOTION_STORAGES
 from normalbench.gbuffer.gl.device import NoDeviceError
-from normalbench.reports.charts import charts, specs
 
 WIDTH, HEIGHT = SIZE = (1920, 1080)
 QUICK = ["vectors", "--backend", "jax", "--count", "256", "--format", "json"]
@@ -211,12 +211,10 @@ def test_the_sheets_have_a_line_for_each_code_and_speeds_side_by_side(run):
 
 def test_the_chart_has_a_line_for_each_code_that_is_not_exact():
     rows = [row(codec, speed) for codec in ("linear/rgba32f", "linear/rg16", "sqrt/rg8") for speed in (1.0, 16.0)]
-    lines = charts.vector_lines(rows)
+    lines = vector_lines(rows)
     assert {name: len(line) for name, line in lines.items()} == {"linear rg16": 2, "sqrt rg8": 2}
-    made = specs.vectors_specs(rows)
-    assert [spec["title"]["text"] for spec in made] == ["16 bits", "32 bits", "64 bits"]
-    (usual,) = work.WORK.drawings(None, rows)
-    assert usual.name == "vectors"
+    (chart,) = work.WORK.charts(rows)
+    assert [panel for panel, _ in chart.parts()] == ["16 bits", "32 bits", "64 bits"] and chart.name == "vectors"
 
 
 BAD = {

@@ -5,16 +5,18 @@ import math
 import warnings
 
 import pytest
+from matplotlib.collections import LineCollection
 
 from normalbench.bench.subjects.normals.normal_sets import axes
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost import plot as cost_plot
+from normalbench.bench.tables.cost.charts import front_chart
 from normalbench.bench.tables.cost.codec_costs import Costs, LeftOutError, Where
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.charts import pareto
+from normalbench.reports.charts import draw, labels, pareto
 from normalbench.reports.charts.pareto import ERRORS, Panel, Point, decibels
 
 WHERE = Where("isa", "navi21", "fragment")
@@ -124,27 +126,29 @@ def drawn():
     """Draws panels; the figure is gone afterwards."""
     from matplotlib import pyplot
 
-    yield lambda *panels, error=None: pareto.pareto_figure(panels, error or decibels("PSNR"))
+    yield lambda *panels, error=None: draw.figure([front_chart("cost", "Cost", panels, error or decibels("PSNR"))])
     pyplot.close("all")
 
 
 def test_labels_lie_over_no_point_line_or_other_label(drawn):
     (axis,) = drawn(Panel("title", "instructions", POINTS)).axes
-    boxes = [pareto._extent(text) for text in axis.texts]
+    boxes = [labels.extent(text) for text in axis.texts]
     assert len(boxes) == len(POINTS)
     assert not [1 for a, b in itertools.combinations(boxes, 2) if a.overlaps(b)]
     for x, y in axis.transData.transform([(p.cost, p.error) for p in POINTS]):
         assert not [box for box in boxes if box.contains(x, y)]
     for line in axis.lines:
-        corners = axis.transData.transform(line.get_xydata())
-        steps = [step for a, b in itertools.pairwise(corners) for step in pareto._along(a, b, 0)]
+        places = [tuple(place) for place in line.get_xydata()]
+        corners = [places[0], *(corner for a, b in itertools.pairwise(places) for corner in ((b[0], a[1]), b))]
+        corners = axis.transData.transform(corners)
+        steps = [step for a, b in itertools.pairwise(corners) for step in labels.along(a, b, 0)]
         assert not [1 for box, step in itertools.product(boxes, steps) if box.overlaps(step)]
 
 
 def test_no_point_lies_within_the_legends_box(drawn):
     """Nor does the legend cover any of an axis."""
     figure = drawn(Panel("a", "instructions", POINTS), Panel("b", "instructions", POINTS[::-1]))
-    (legend,) = figure.legends
+    ((legend,),) = [part.legends for part in figure.subfigs]
     box = legend.get_window_extent()
     for axis in figure.axes:
         assert axis.get_legend() is None and not box.overlaps(axis.get_window_extent())
@@ -168,26 +172,29 @@ def test_one_point_is_a_plot_without_a_warning(drawn):
 
 def test_spreads_are_bars(drawn):
     (axis,) = drawn(Panel("title", "ms a megapixel", [Point("a", 3, 48.5, 16, 0.5), Point("b", 4, 50.0, 16)])).axes
-    (bars, *_) = [c for c in axis.containers if c.has_xerr]
-    (segments, *_) = bars.lines[2]
-    assert [float(s[1][0] - s[0][0]) for s in segments.get_segments()] == [0.5, 0.0]
+    (bars,) = [one for one in axis.collections if isinstance(one, LineCollection)]
+    assert [float(s[1][0] - s[0][0]) for s in bars.get_segments()] == [0.5]
 
 
-def plotted(rows, tmp_path, capsys, monkeypatch, *storages: str) -> tuple[list[Panel], str]:
+def test_instructions_and_times_are_charts_of_their_own(monkeypatch):
+    made = [Panel("a", "instructions", POINTS, is_counted=True), Panel("b", "ms a megapixel", POINTS)]
+    monkeypatch.setattr(cost_plot, "panels", lambda *_: made)
+    assert [chart.x.title for chart in cost_plot.charts([], [], [], [], "psnr")] == ["instructions", "ms a megapixel"]
+    monkeypatch.setattr(cost_plot, "panels", lambda *_: [])
+    assert cost_plot.charts([], [], [], [], "psnr") == []
+
+
+def plotted(rows, capsys, *storages: str) -> tuple[list[Panel], str]:
     """The panels that rows make on a few directions, and what is said."""
-    panels: list[Panel] = []
-    monkeypatch.setattr(cost_plot.pareto, "pareto_figure", lambda made, _: panels.extend(made))
-    monkeypatch.setattr(cost_plot.plots, "save", lambda _, file: file[0].write_text("drawn"))
     encodings = [ENCODINGS[name] for name in dict.fromkeys(r["encoding"] for r in rows if r["encoding"])]
     chosen = [STORAGES[name] for name in storages or ("rgba8",)]
-    cost_plot.draw(rows, encodings, chosen, [axes()], "psnr", tmp_path / "p.png")
-    return panels, capsys.readouterr().err
+    return cost_plot.panels(rows, encodings, chosen, [axes()], "psnr"), capsys.readouterr().err
 
 
-def test_what_is_left_out_is_said_with_its_reason(tmp_path, capsys, monkeypatch):
+def test_what_is_left_out_is_said_with_its_reason(capsys):
     rows = [r for r in ROWS if r["storage"] != "rgba8 signed depth 8:8:8"]
     rows.append(row("octahedral", "encode", 14, loops=1))
-    (panel,), said = plotted(rows, tmp_path, capsys, monkeypatch)
+    (panel,), said = plotted(rows, capsys)
     assert {p.name: p.cost for p in panel.points} == {"xy": 21, "xyz": 32}
     assert panel.title.endswith("navi21, fragment, Mesa 1.2.3")
     assert said.splitlines() == [
@@ -196,13 +203,13 @@ def test_what_is_left_out_is_said_with_its_reason(tmp_path, capsys, monkeypatch)
     ]
 
 
-def test_every_family_stage_and_storage_has_a_panel_and_what_has_none_is_said(tmp_path, capsys, monkeypatch):
+def test_every_family_stage_and_storage_has_a_panel_and_what_has_none_is_said(capsys):
     rows = [r | {"family": f, "stage": s} for f in "abcdefg" for s in ("fragment", "compute") for r in ROWS]
     rows += [row("rgba8_snorm 8:8", "pack", 0) | {"family": f, "stage": "fragment"} for f in "abcdefg"]
-    panels, said = plotted(rows[: 4 * len(ROWS)], tmp_path, capsys, monkeypatch)
+    panels, said = plotted(rows[: 4 * len(ROWS)], capsys)
     titles = [panel.title.splitlines()[1] for panel in panels]
     assert titles == [f"{f}, {s}, Mesa 1.2.3" for f in "ab" for s in ("fragment", "compute")] and said == ""
-    panels, said = plotted(rows, tmp_path, capsys, monkeypatch, "rgba8", "rgba8_snorm")
+    panels, said = plotted(rows, capsys, "rgba8", "rgba8_snorm")
     assert len(panels) == pareto.MOST_PANELS
     (line,) = said.splitlines()
     assert (
@@ -210,23 +217,22 @@ def test_every_family_stage_and_storage_has_a_panel_and_what_has_none_is_said(tm
     )
 
 
-def test_times_are_milliseconds_with_their_spread_and_say_that_they_are_of_software(tmp_path, capsys, monkeypatch):
+def test_times_are_milliseconds_with_their_spread_and_say_that_they_are_of_software(capsys):
     timed = {"measure": "time", "family": None, "stage": None, "software": True, "device": "llvmpipe", "driver": "GL"}
     rows = [r | timed | {"ns_per_megapixel": r["instructions"] * 1e6, "spread": 2e5} for r in ROWS]
-    (panel,), said = plotted(rows, tmp_path, capsys, monkeypatch)
+    (panel,), said = plotted(rows, capsys)
     assert said == "" and panel.unit == "ms a megapixel" and panel.title.endswith("llvmpipe, in software")
     assert {p.name: (p.cost, round(p.spread, 9)) for p in panel.points}["xy"] == (21.0, 0.4)
 
 
-def test_what_loses_nothing_has_no_place(tmp_path, capsys, monkeypatch):
+def test_what_loses_nothing_has_no_place(capsys, monkeypatch):
     monkeypatch.setattr(cost_plot.quality, "measure", lambda _: {"psnr_db": math.inf})
-    panels, said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], tmp_path, capsys, monkeypatch)
+    panels, said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], capsys)
     assert panels == [] and said == "normalbench: --plot: left out, nothing is lost on axes: xyz\n"
-    assert not list(tmp_path.iterdir())
 
 
-def test_the_error_of_an_encoding_without_a_twin_is_glsls(tmp_path, capsys, monkeypatch):
+def test_the_error_of_an_encoding_without_a_twin_is_glsls(capsys, monkeypatch):
     by_backend = {"jax": None, "glsl": 48.0}
     monkeypatch.setattr(cost_plot.quality, "measure", lambda case: {"psnr_db": by_backend[case.backend]})
-    (panel,), said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], tmp_path, capsys, monkeypatch)
+    (panel,), said = plotted([row("xyz", "encode", 0), row("rgba8 8:8:8", "pack", 3)], capsys)
     assert [(point.name, point.error) for point in panel.points] == [("xyz", 48.0)] and said == ""

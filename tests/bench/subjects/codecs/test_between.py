@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mistakes import PLAIN, program
 
+from normalbench.bench.door import examine
 from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.reports.charts import charts
 
 pytestmark = pytest.mark.usefixtures("gl")
 RIGHT = PLAIN.replace("BEFORE", "")
@@ -194,13 +194,13 @@ def test_the_picture_marks_each_direction_that_is_lost(run, tmp_path, monkeypatc
     """sign(0) loses directions between those of any grid; each has a mark, and both halves have a name."""
     path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.svg"
     path.write_text(program("octahedral", "sign(0)", 8))
-    made, draw = [], charts.sphere_chart
+    made, draw = [], examine.sphere_chart
 
     def drawn(*given):
         made.append(draw(*given))
         return made[-1]
 
-    monkeypatch.setattr(charts, "sphere_chart", drawn)
+    monkeypatch.setattr(examine, "sphere_chart", drawn)
     assert run("doctor", str(path), "--plot", str(picture), "--storage", "rg16")[0] == 1
     axis, *_ = made[0].axes
     (marks,) = axis.collections

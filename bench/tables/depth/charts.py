@@ -1,0 +1,77 @@
+"""The chart of depth codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.charts.chart import Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ..charts import having, one_backend
+from ..table import Row
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """The worst position error over the distance."""
+    usable = one_backend(having(rows, "distance", "error_max", "near", "far", "fov"))
+    if usable:
+        yield depth_chart(usable)
+
+
+def depth_chart(rows: Sequence[Row]) -> Chart:
+    """The worst position error over the distance, a line for each depth code in its storage, a panel for each range.
+
+    Args:
+        rows: of depth codes, whose distances are numbers.
+    """
+    points = [
+        {name: row[name] for name in ("depth", "storage", "rebuilt")}
+        | {"line": _line(row, rows), "range": _range(row), "x": row["distance"], "y": row["error_max"]}
+        for row in sorted(rows, key=lambda row: row["distance"])
+        if row["error_max"] > 0
+    ]
+    looks: dict[str, Any] = {"by": ("line", "range"), "colour": "depth"}
+    tips = (("depth", "depth"), ("storage", "storage"), ("rebuilt", "rebuilt"), ("x", "distance"), ("y", "error"))
+    first = rows[0]
+    return Chart(
+        name="depth",
+        title=_finding(points),
+        subtitle=f"Position error over distance; field of view {first['fov']:g} degrees; "
+        f"{first['backend']}, {first['device']}",
+        description="The largest distance between true and rebuilt position over the distance from the eye, both on "
+        "logarithmic scales, a line for each depth code in its storage. The figures are in the table.",
+        x=Axis(title="distance", scale=Scale.LOG, is_shared=False),
+        y=Axis(title="worst position error, same unit", scale=Scale.LOG),
+        rows=tuple(points),
+        colour=Names("depth", distinct(rows, "depth")),
+        dash=Names("storage", distinct(rows, "storage")),
+        panels=Names("range", tuple(dict.fromkeys(map(_range, rows)))),
+        height=420,
+        marks=(
+            Mark(kind=Kind.LINES, **looks, dash="storage", tips=tips),
+            Mark(kind=Kind.ENDS, **looks, text="line"),
+        ),
+    )
+
+
+def _range(row: Row) -> str:
+    return f"near {row['near']:g}, far {row['far']:g}"
+
+
+def _line(row: Row, rows: Sequence[Row]) -> str:
+    """What a line is called; with the way to its positions where codes have several."""
+    several = len({(one["depth"], one["rebuilt"]) for one in rows}) > len({one["depth"] for one in rows})
+    words = (row["depth"], row["storage"], row["rebuilt"] if several else "")
+    return " ".join(filter(None, words)).replace("_", " ")
+
+
+def _finding(points: Sequence[Row]) -> str:
+    """Which line is the best and the worst at the greatest distance."""
+    if not points:
+        return "Nothing is lost"
+    farthest = max(point["x"] for point in points)
+    last = sorted((point for point in points if point["x"] == farthest), key=lambda point: point["y"])
+    best, worst = last[0], last[-1]
+    return (
+        f"At a distance of {farthest:g} {best['line']} is off by {best['y']:.2g} at most, {worst['line']} by "
+        f"{worst['y']:.2g}"
+    )

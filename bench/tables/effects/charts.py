@@ -1,0 +1,50 @@
+"""The chart of effects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ....reports.page.codec_key import CodecKey
+from ..charts import having
+from ..table import Row
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """What an effect makes of an error in the normals: a colour for each effect, a shape for each codec."""
+    usable = having([row for row in rows if not row["depth"]], "effect_psnr_db", "normal_mean_deg")
+    points = [
+        {
+            "codec": CodecKey.of(row).label,
+            "effect": " on ".join(str(row[name]) for name in ("effect", "scene")),
+            "x": row["normal_mean_deg"],
+            "y": row["effect_psnr_db"],
+        }
+        for row in usable
+        if row["normal_mean_deg"] > 0
+    ]
+    tips = (("codec", "codec"), ("x", "normals, degrees"), ("y", "the effect, dB"), ("effect", "effect"))
+    if points:
+        yield Chart(
+            name="effects",
+            title=_finding(points),
+            subtitle="What effects make of an error in the normals",
+            description="PSNR in dB of each effect's own image over the mean angle of the normals that it read. The "
+            "figures are in the table below.",
+            x=Axis(title="mean angle of the normals that it read, degrees", scale=Scale.LOG),
+            y=Axis(title="PSNR of the effect's own image, dB"),
+            rows=tuple(points),
+            colour=Names("effect", distinct(points, "effect")),
+            shape=Names("codec", distinct(points, "codec")),
+            marks=(Mark(kind=Kind.POINTS, colour="effect", shape="codec", tips=tips),),
+        )
+
+
+def _finding(points: Sequence[Row]) -> str:
+    """Which effect suffers the most, and by which codec."""
+    worst = min(points, key=lambda point: point["y"])
+    best = max(points, key=lambda point: point["y"])
+    return (
+        f"{worst['effect']} loses the most, {worst['y']:.1f} dB with {worst['codec']}; "
+        f"{best['effect']} the least, {best['y']:.1f} dB with {best['codec']}"
+    )

@@ -1,0 +1,82 @@
+"""The chart of light buffers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.charts.chart import Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ..charts import having
+from ..table import Row
+
+# A logarithmic axis has no zero: what is exact is drawn at its foot.
+LEAST_ERROR = 1e-6
+RANDOM = "coloured lights with falloff, worst pixel and order"
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """What is lost over the number of lights, of the experiments equal and random."""
+    equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
+    random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
+    points = [*_equal(equal), *_random(random)]
+    if points:
+        yield lights_chart(points, distinct([*equal, *random], "light_buffer"))
+
+
+def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
+    """A line for each light buffer, a panel of equal lights and one of coloured ones; dotted: the most it can be."""
+    looks: dict[str, Any] = {"by": ("light_buffer", "panel"), "colour": "light_buffer"}
+    tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "the most it can be"))
+    counts = sorted({point["x"] for point in points})
+    return Chart(
+        name="lights",
+        title=_finding(points),
+        subtitle="Error over the number of lights; dotted: blends times half a step; errors below 1e-6 are drawn at "
+        "1e-6",
+        description="What is lost of the sum over the number of lights, by the model, a line for each light buffer; "
+        "dotted: the most it can be. The figures are in the rows of the experiments equal and random.",
+        x=Axis(title="lights", scale=Scale.LOG, ticks=tuple((count, str(count)) for count in counts)),
+        y=Axis(title="error in light, by the model", scale=Scale.LOG),
+        rows=tuple(points),
+        colour=Names("light_buffer", buffers),
+        panels=Names("panel", distinct(points, "panel")),
+        marks=(
+            Mark(kind=Kind.LINES, **looks, y="bound", dash="dotted"),
+            Mark(kind=Kind.LINES, **looks, tips=tips),
+            Mark(kind=Kind.POINTS, colour="light_buffer", tips=tips),
+            Mark(kind=Kind.ENDS, **looks, text="light_buffer"),
+        ),
+    )
+
+
+def _equal(rows: Sequence[Row]) -> list[Row]:
+    """Of equal lights of the least sum: each buffer's worst channel."""
+    total = min((row["sum"] for row in rows), default=0.0)
+    panel = f"equal lights that sum to {total:g}, worst channel"
+    return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
+
+
+def _random(rows: Sequence[Row]) -> list[Row]:
+    """Of coloured lights: the largest error of the worst order."""
+    return _worst(RANDOM, [(row, row["model_max"]) for row in rows])
+
+
+def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
+    """A point for each buffer and number of lights, of the largest error, by the number."""
+    found: dict[tuple[str, int], tuple[float, float]] = {}
+    for row, error in errors:
+        key = (row["light_buffer"], row["lights"])
+        found[key] = max(found.get(key, (0.0, 0.0)), (error, row["bound"]))
+    return [
+        {"light_buffer": name, "panel": panel, "x": count, "y": max(error, LEAST_ERROR), "error": error, "bound": bound}
+        for (name, count), (error, bound) in sorted(found.items(), key=lambda item: item[0][1])
+    ]
+
+
+def _finding(points: Sequence[Row]) -> str:
+    """Which buffers lose the least and the most of the most lights, in the last panel."""
+    panel, most = points[-1]["panel"], max(point["x"] for point in points)
+    last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
+    best, worst = last[0], last[-1]
+    said = f"Of {most} lights {best['light_buffer']} loses the least, {best['error']:.2g}"
+    return f"{said}, and {worst['light_buffer']} the most, {worst['error']:.2g}"

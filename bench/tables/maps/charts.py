@@ -1,0 +1,67 @@
+"""The charts of compressed normal maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import FAINT, Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ..charts import LEAST_DEG, having
+from ..table import Row
+from .order import group_of, in_order
+
+# What is marked of each line: the column, what it is called, and its shape.
+MARKED = (
+    ("angle_mean_deg", "mean", "circle"),
+    ("angle_p99_deg", "99 %", "diamond"),
+    ("angle_max_deg", "largest", "square"),
+)
+COLUMNS = [column for column, *_ in MARKED]
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """A chart for each image and decoder."""
+    usable = in_order(having(rows, *COLUMNS))
+    for at, group in enumerate(dict.fromkeys(map(group_of, usable))):
+        yield _chart(at, group, [row for row in usable if group_of(row) == group])
+
+
+def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
+    """Angles of each code in each format, a line for each, in the order of the rows, the first on top."""
+    lines = [
+        {"codec": f"{row['encoding']} {row['block']}", "line": _label(row)}
+        | {column: max(row[column], LEAST_DEG) for column in COLUMNS}
+        for row in rows
+    ]
+    points = tuple(line | {"what": name, "x": line[column]} for line in lines for column, name, _ in MARKED)
+    names, shapes = tuple(name for _, name, _ in MARKED), tuple(shape for *_, shape in MARKED)
+    tips = (("line", "code"), ("what", "angle"), ("x", "degrees"))
+    return Chart(
+        name=f"maps-{at}",
+        title=_finding(group[0], rows),
+        subtitle=f"What blocks lose of {group[0]}, decoded by {group[1]}",
+        description="The mean angle, the angle that 99 % are below, and the largest, in degrees, for each code and "
+        "format. The figures are in the table below.",
+        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG),
+        y=Axis(title="", scale=Scale.NAMES, names=distinct(lines, "line")),
+        rows=points,
+        colour=Names("what", names),
+        shape=Names("what", names, looks=shapes),
+        marks=(
+            Mark(kind=Kind.RULES, rows=tuple(lines), x=COLUMNS[0], x2=COLUMNS[-1], y="line", colour=FAINT),
+            Mark(kind=Kind.POINTS, y="line", colour="what", shape="what", tips=tips),
+        ),
+    )
+
+
+def _finding(name: str, rows: Sequence[Row]) -> str:
+    """Which code and format of each number of bits lose the least."""
+    best: dict[float, Row] = {}
+    for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
+        best.setdefault(row["bits_per_texel"], row)
+    said = [f"{_label(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
+    return f"The smallest mean angles on {name}, in degrees, have {'; '.join(said)}"
+
+
+def _label(row: Row) -> str:
+    """What a line is called: the code, the format, its swizzle, and its bits."""
+    return f"{row['encoding']} {row['block']} {row['swizzle']}, {row['bits_per_texel']} bits"

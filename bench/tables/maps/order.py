@@ -1,0 +1,23 @@
+"""The order of the rows of compressed normal maps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..table import Row
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by set and decoder, the least RMS angle first; those without figures last."""
+    groups = list(dict.fromkeys(group_of(row) for row in rows))
+
+    def place(row: Row) -> tuple[int, bool, float]:
+        rms = row["angle_rms_deg"]
+        return groups.index(group_of(row)), rms is None, rms or 0.0
+
+    return sorted(rows, key=place)
+
+
+def group_of(row: Row) -> tuple[str, str]:
+    """The set and the decoder of a row."""
+    return row["normals"], row["decoder"]

@@ -1,0 +1,78 @@
+"""The chart of mixed codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.charts.chart import Axis, Chart, Kind, Mark, Scale, Shades, distinct
+from ....reports.page.codec_key import CodecKey
+from ..charts import backends_of
+from ..table import Row
+
+# Angles from the least to the largest that the colours of mixes tell apart, and from where a cell is bright.
+LEAST, MOST, BRIGHT = 0.1, 180.0, 10.0
+
+
+def mix_chart(rows: Sequence[Row]) -> Iterator[Chart]:
+    """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
+
+    Args:
+        rows: of the mix table, one for each codec and operation; none give no chart.
+    """
+    cells = mix_cells(rows)
+    tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error, degrees"))
+    if cells:
+        place: dict[str, Any] = {"x": "operation", "y": "codec"}
+        yield Chart(
+            name="mix",
+            title=_finding(cells),
+            subtitle=f"What mixing makes of each code, by {backends_of(rows)}; "
+            "in a cell: the share of results that are garbage",
+            description="The largest error of each operation and the share of garbage, of the rows that decide the "
+            "verdicts. The figures are in the tables below.",
+            x=Axis(title="", scale=Scale.NAMES, names=tuple(dict.fromkeys(_operation(row) for row in rows))),
+            y=Axis(title="", scale=Scale.NAMES, names=distinct(cells, "codec")),
+            rows=tuple(cells),
+            colour=Shades("angle", "largest error, degrees", LEAST, MOST),
+            marks=(
+                Mark(kind=Kind.CELLS, **place, colour="angle", tips=(*tips, ("garbage", "garbage, %"))),
+                Mark(kind=Kind.TEXTS, **place, text="said", colour="on"),
+            ),
+        )
+
+
+def mix_cells(rows: Sequence[Row]) -> list[Row]:
+    """Of each codec and operation the largest error of a mix, and its garbage as a text; the codes with the most last.
+
+    Args:
+        rows: as `mix_chart` takes them.
+    """
+    cells: list[Row] = [
+        {"codec": CodecKey.of(row).label, "operation": _operation(row), "angle": max(row["angle_max_deg"], LEAST)}
+        | {"garbage": row["garbage_percent"], "said": _garbage(row["garbage_percent"])}
+        | {"on": "#000000" if row["angle_max_deg"] > BRIGHT else "#FFFFFF"}
+        for row in rows
+    ]
+    total: dict[str, tuple[float, float]] = {}
+    for cell in cells:
+        garbage, angle = total.get(cell["codec"], (0.0, 0.0))
+        total[cell["codec"]] = garbage + cell["garbage"], angle + cell["angle"]
+    return sorted(cells, key=lambda cell: total[cell["codec"]])
+
+
+def _operation(row: Row) -> str:
+    return str(row["operation"]).replace("_", " ")
+
+
+def _garbage(percent: float) -> str:
+    return "" if not percent else f"{percent:.0f} %" if percent >= 1 else "< 1 %"
+
+
+def _finding(cells: Sequence[Row]) -> str:
+    """How many codes survive all mixing, and which suffers the most."""
+    codecs = distinct(cells, "codec")
+    bad = {cell["codec"] for cell in cells if cell["garbage"]}
+    worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))
+    said = f"{len(codecs) - len(bad)} of {len(codecs)} codes give no garbage"
+    return f"{said}; {worst['codec']} the most, {worst['said']} by {worst['operation']}" if bad else said

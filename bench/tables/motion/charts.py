@@ -1,0 +1,65 @@
+"""The chart of how much codes wobble."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ....reports.charts.chart import DASHES, Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ....reports.page.codec_key import CodecKey
+from ..table import Row
+
+# What may tell lines of one codec apart.
+CONDITIONS = ("space", "moves", "axis")
+
+
+def wobble_chart(rows: Sequence[Row]) -> Chart:
+    """The wobble over the turn, a line for each code, its colour the codec's.
+
+    Args:
+        rows: of the motion table; none make an empty chart.
+    """
+    points = [
+        {"codec": CodecKey.of(row).label, "line": _line(row, rows), "x": row["turn_deg"], "y": row["wobble_deg"]}
+        | {"how": _conditions(row, rows), "ratio": row.get("ratio")}
+        for row in sorted(rows, key=lambda row: row["turn_deg"])
+        if row["wobble_deg"] > 0
+    ]
+    looks: dict[str, Any] = {"by": ("line",), "colour": "codec"}
+    tips = (("line", "code"), ("x", "turn, degrees a frame"), ("y", "wobble, degrees"), ("ratio", "ratio"))
+    ways = distinct(sorted(points, key=lambda point: point["how"]), "how")
+    return Chart(
+        name="motion",
+        title=_finding(points),
+        subtitle="How much codes wobble",
+        description="RMS change of a code's error from one frame to the next over the degrees that the camera or the "
+        "object turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
+        "are in the table below.",
+        x=Axis(title="turn, degrees a frame", scale=Scale.LOG),
+        y=Axis(title="wobble, degrees", scale=Scale.LOG),
+        rows=tuple(points),
+        colour=Names("codec", distinct(sorted(points, key=lambda point: point["codec"]), "codec")),
+        dash=Names("how", ways, looks=DASHES) if len(ways) > 1 else None,
+        marks=(
+            Mark(kind=Kind.LINES, **looks, dash="how" if len(ways) > 1 else "solid", tips=tips),
+            Mark(kind=Kind.POINTS, colour="codec", tips=tips),
+            Mark(kind=Kind.ENDS, **looks, text="line"),
+        ),
+    )
+
+
+def _line(row: Row, rows: Sequence[Row]) -> str:
+    return " ".join(filter(None, (CodecKey.of(row).label, _conditions(row, rows))))
+
+
+def _conditions(row: Row, rows: Sequence[Row]) -> str:
+    """What tells lines of one codec apart; empty where nothing does."""
+    return " ".join(str(row.get(name)) for name in CONDITIONS if len({one.get(name) for one in rows}) > 1)
+
+
+def _finding(points: Sequence[Row]) -> str:
+    """Which code wobbles the most."""
+    if not points:
+        return "No code wobbles"
+    worst = max(points, key=lambda point: point["y"])
+    return f"{worst['line']} wobbles the most: {worst['y']:.2g} degrees at {worst['x']:g} degrees a frame"

@@ -1,0 +1,120 @@
+"""The charts of angles: how often which."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.charts.chart import ALL, INK, Axis, Chart, Kind, Mark, Names, Scale, Switch
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.verdict import is_number
+from ..charts import LEAST_DEG, backends_of, having, lines_of, one_backend
+from ..table import Row
+
+# Of a line's pixels, the share that the highest histogram takes, and where its figures are marked.
+HIGHEST, MARKED = 0.85, 0.12
+FIGURES = (
+    ("angle_mean_deg", "mean", "tick"),
+    ("angle_p99_deg", "99 %", "diamond"),
+    ("angle_max_deg", "largest", "circle"),
+)
+MOST_DEG = 200.0
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """A chart for each set of normals; none where rows keep no histogram."""
+    usable = [r for r in having(rows, "bits", "angle_mean_deg") if bins(r.get("angle_counts"))]
+    for at, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
+        part = one_backend([row for row in usable if str(row.get("normals")) == normals])
+        yield histogram_chart(at, sorted(part, key=lambda row: row["angle_mean_deg"]))
+
+
+def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
+    """How often which angle: a histogram for each codec, the best mean on top; mean, 99 % and largest angle marked.
+
+    Args:
+        at: its place among the charts of the table.
+        rows: of the quality table, one set, in that order: encoding, storage, bits, angle_counts and angles.
+    """
+    lines = lines_of(rows)
+    feet = [float(len(rows) - 1 - at) for at in range(len(rows))]
+    abouts = [_about(row, line) for row, line in zip(rows, lines, strict=True)]
+    outlines = [
+        {**about, **point} for row, about, foot in zip(rows, abouts, feet, strict=True) for point in _outline(row, foot)
+    ]
+    figures = [
+        {**about, "figure": name, "x": max(row[column], LEAST_DEG), "y": foot + MARKED}
+        for row, about, foot in zip(rows, abouts, feet, strict=True)
+        for column, name, _ in FIGURES
+        if is_number(row.get(column))
+    ]
+    all_bits = tuple(sorted({row["bits"] for row in rows}))
+    tips = (("codec", "codec"), ("bits", "bits"), ("mean", "mean, degrees"), ("largest", "largest, degrees"))
+    return Chart(
+        name=f"angles-{at}",
+        title=_finding(rows),
+        subtitle=f"Angles on {rows[0]['normals']}, by {backends_of(rows)}",
+        description="The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the "
+        "tables of what normals lose.",
+        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG, domain=(LEAST_DEG, MOST_DEG)),
+        y=Axis(title="", domain=(-0.3, len(rows) + 0.2), ticks=tuple(zip(feet, lines, strict=True))),
+        rows=tuple(outlines),
+        colour=Names("bits", all_bits, "bits"),
+        shape=Names("figure", tuple(n for _, n, _ in FIGURES), looks=tuple(look for *_, look in FIGURES)),
+        switch=Switch("bits", "Bits shown", (ALL, *map(str, all_bits)), ALL),
+        marks=(
+            Mark(kind=Kind.AREAS, y2="foot", by=("line",), colour="bits", is_stepped=True, tips=tips),
+            Mark(kind=Kind.POINTS, rows=tuple(figures), shape="figure", colour=INK, tips=tips),
+        ),
+    )
+
+
+def _about(row: Row, line: str) -> dict[str, Any]:
+    return {"codec": CodecKey.of(row).label, "line": line, "bits": row["bits"]} | {
+        "mean": row["angle_mean_deg"],
+        "largest": row.get("angle_max_deg"),
+    }
+
+
+def bins(text: Any) -> list[tuple[float, float, int]]:
+    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
+    try:
+        pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
+    except ValueError:
+        return []
+    # A bin is an eighth of its octave wide; the first begins at 0.
+    return [(edge, edge + 2.0 ** math.floor(math.log2(edge)) / 8 if edge > 0 else 0.0, n) for edge, n in pairs]
+
+
+def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
+    """A histogram's outline: edges from LEAST_DEG on, and between them how many normals lie in an octave."""
+    below = sum(count for low, _, count in found if low < LEAST_DEG)
+    edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
+    for low, high, count in found:
+        if low >= LEAST_DEG:
+            if low > edges[-1] * 1.001:  # rows round edges
+                edges, heights = [*edges, low], [*heights, 0.0]
+            edges, heights = [*edges, high], [*heights, count / math.log2(high / edges[-1])]
+    return edges, heights
+
+
+def _outline(row: Row, foot: float) -> list[Row]:
+    """A codec's histogram as the points of a line of steps, the highest as high as the others'."""
+    edges, heights = steps(bins(row["angle_counts"]))
+    highest = max(heights)
+    return [
+        {"x": edge, "y": foot + HIGHEST * height / highest, "foot": foot}
+        for edge, height in zip(edges, [*heights, 0.0], strict=True)
+    ]
+
+
+def _finding(rows: Sequence[Row]) -> str:
+    """Which codec of each number of bits has the smallest mean angle, where several have as many."""
+    alike: dict[int, list[Row]] = {}
+    for row in rows:
+        alike.setdefault(row["bits"], []).append(row)
+    compared = {bits: part[0] for bits, part in sorted(alike.items()) if len(part) > 1 or len(alike) == 1}
+    best = compared or {row["bits"]: row for row in rows[:1]}
+    said = [f"{CodecKey.of(row).label} of {bits} bits ({row['angle_mean_deg']:.2g})" for bits, row in best.items()]
+    return f"The smallest mean angles, in degrees, have {', '.join(said)}"

@@ -1,0 +1,65 @@
+"""The charts of rendered images."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import FAINT, Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ....reports.page.codec_key import CodecKey
+from ..charts import having, lines_of
+from ..table import Row
+from .measure import shown_scene
+
+IMAGE, NORMALS = "the image", "the normals"
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """A chart for each scene."""
+    usable = having(rows, "psnr_db", "normal_psnr_db")
+    for at, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
+        part = [row for row in usable if shown_scene(row) == scene]
+        yield image_chart(at, scene, sorted(part, key=lambda row: -row["psnr_db"]))
+
+
+def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
+    """The final image next to the normals it was lit by, a line for each codec, the best image on top.
+
+    Args:
+        at: its place among the charts of the table.
+        rows: of one scene, in that order.
+    """
+    lines = [
+        {"codec": CodecKey.of(row).label, "line": line, "image": row["psnr_db"], "normals": row["normal_psnr_db"]}
+        for row, line in zip(rows, lines_of(rows), strict=True)
+    ]
+    points = [line | {"what": what, "x": line[field]} for line in lines for what, field in FIELDS]
+    tips = (("line", "codec"), ("image", "the image, dB"), ("normals", "the normals, dB"))
+    what = Names("what", (IMAGE, NORMALS))
+    return Chart(
+        name=f"image-{at}",
+        title=_finding(lines),
+        subtitle=f"The image of {scene} and the normals it was lit by",
+        description="PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The "
+        "figures are in the table below.",
+        x=Axis(title="PSNR, dB"),
+        y=Axis(title="", scale=Scale.NAMES, names=distinct(lines, "line")),
+        rows=tuple(points),
+        colour=what,
+        shape=what,
+        marks=(
+            Mark(kind=Kind.RULES, rows=tuple(lines), x="image", x2="normals", y="line", colour=FAINT),
+            Mark(kind=Kind.POINTS, y="line", colour="what", shape="what", tips=tips),
+        ),
+    )
+
+
+FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
+
+
+def _finding(lines: Sequence[Row]) -> str:
+    """Which codec has the best image, and whether it is the one with the best normals."""
+    best, normals = lines[0], max(lines, key=lambda line: line["normals"])
+    said = f"{best['line']} has the best image, {best['image']:.1f} dB"
+    if best["normals"] == normals["normals"]:
+        return f"{said}, and the best normals"
+    return f"{said}; {normals['line']} has the best normals, {normals['normals']:.1f} dB"

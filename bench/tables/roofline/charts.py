@@ -1,0 +1,104 @@
+"""The chart of bytes against instructions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark, Names, Scale, Switch, distinct
+from ..charts import having
+from ..table import Row
+
+STEPS = 40
+MEMORY, CACHE = "where bytes take as long as instructions", "the same in the cache"
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """Bytes over instructions of a pixel and frame, of each GPU."""
+    usable = having(rows, "instructions", "bytes_per_pixel")
+    if usable:
+        yield roofline_chart(usable)
+
+
+def points(rows: Sequence[Row]) -> list[Row]:
+    """What charts draw of rows: instructions, and bytes written and read, of a pixel and frame, of the fewest reads and
+    the first size."""
+    reads, size = min(row["reads"] for row in rows), rows[0]["size"]
+    names = ("gpu", "encoding", "storage", "size", "reads", "ridge", "in_cache")
+    found = {
+        (row["gpu"], row["encoding"], row["storage"]): {
+            **{name: row[name] for name in names},
+            "codec": f"{row['encoding']} {row['storage']}",
+            "x": row["instructions"],
+            "y": row["bytes_per_pixel"] * (row["overdraw"] + row["reads"]),
+        }
+        for row in rows
+        if (row["reads"], row["size"]) == (reads, size)
+    }
+    return list(found.values())
+
+
+def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
+    """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on: a line for codes in
+    memory, and one, under True, for those that the cache holds."""
+    most, (least, _) = _most(found), _bytes(found)
+    ridges = {point["in_cache"]: point["ridge"] for point in found if point["gpu"] == gpu}
+    across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
+    return {cached: [(x, x / ridge) for x in across if x / ridge >= least] for cached, ridge in ridges.items()}
+
+
+def _most(found: Sequence[Row]) -> float:
+    return max(point["x"] for point in found) * 1.3 + 1
+
+
+def _bytes(found: Sequence[Row]) -> tuple[float, float]:
+    """The axis of bytes, which has room for the points alone."""
+    return min(point["y"] for point in found) / 1.5, max(point["y"] for point in found) * 1.5
+
+
+def roofline_chart(rows: Sequence[Row]) -> Chart:
+    """Bytes over instructions of a pixel and frame: above the line memory takes longer, below it arithmetic.
+
+    Args:
+        rows: of the roofline table: encoding, storage, gpu, reads, overdraw, instructions, bytes_per_pixel, ridge.
+    """
+    found = [{**point, "where": CACHE if point["in_cache"] else MEMORY} for point in points(rows)]
+    gpus, reads = distinct(found, "gpu"), found[0]["reads"]
+    lines = [
+        {"gpu": gpu, "where": CACHE if cached else MEMORY, "x": x, "y": y}
+        for gpu in gpus
+        for cached, line in ridge_lines(found, gpu).items()
+        for x, y in line
+    ]
+    tips = (("codec", "codec"), ("x", "instructions"), ("y", "bytes"), ("reads", "reads"))
+    return Chart(
+        name="roofline",
+        title=_finding(found),
+        subtitle=f"Bytes against instructions, {found[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}",
+        description="Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the "
+        "first size. Above the GPU's line a code's bytes take longer than its instructions, below it the instructions "
+        "do. The dashed line is for codes that the cache holds. The figures are in the table.",
+        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _most(found))),
+        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes(found)),
+        rows=tuple(found),
+        colour=Names("encoding", distinct(found, "encoding")),
+        shape=Names("storage", distinct(found, "storage")),
+        dash=Names("where", (MEMORY, CACHE), looks=((), (5, 4))),
+        switch=Switch("gpu", "GPU", gpus, gpus[0], has_panels=True),
+        marks=(
+            Mark(kind=Kind.LINES, rows=tuple(lines), by=("gpu", "where"), colour=MUTED, dash="where"),
+            Mark(
+                kind=Kind.POINTS,
+                colour="encoding",
+                shape="storage",
+                tips=(*tips, ("where", "line"), ("gpu", "GPU")),
+            ),
+        ),
+    )
+
+
+def _finding(found: Sequence[Row]) -> str:
+    """For how many codes bytes take longer than instructions."""
+    bound = [point for point in found if point["y"] * point["ridge"] > point["x"]]
+    gpus, codecs = (len(distinct(found, name)) for name in ("gpu", "codec"))
+    shown = f"{codecs} codes on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"
+    return f"Bytes take longer than instructions in {len(bound)} of {len(found)} cases: {shown}"

@@ -1,0 +1,89 @@
+"""The chart of motion vectors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ..charts import having, one_backend
+from ..table import Row
+from .order import place
+
+# What an error as large as the motion is called.
+LOST = "as large as the motion"
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """The mean error over the speed: a panel for each number of bits, a line for each code."""
+    usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=place)
+    if usable:
+        yield vectors_chart(usable)
+
+
+def vectors_chart(rows: Sequence[Row]) -> Chart:
+    """The mean error of motion vectors over their speed.
+
+    Args:
+        rows: of the vectors table, one back end: encoding, storage, bits, range, speed, error_mean_px.
+    """
+    points = [
+        {"line": name, "encoding": row["encoding"], "storage": row["storage"], "bits": _bits(row["bits"])}
+        | {"x": row["speed"], "y": row["error_mean_px"]}
+        for name, line in vector_lines(rows).items()
+        for row in line
+    ]
+    all_bits = tuple(map(_bits, sorted({row["bits"] for row in rows})))
+    speeds = sorted({(row["bits"], row["speed"]) for row in rows})
+    lost = tuple({"line": LOST, "bits": _bits(bits), "x": speed, "y": speed} for bits, speed in speeds)
+    looks: dict[str, Any] = {"by": ("line", "bits"), "colour": "encoding"}
+    tips = (("line", "code"), ("x", "pixels a frame"), ("y", "mean error, pixels"))
+    dotted: dict[str, Any] = {"rows": lost, "by": ("line", "bits"), "colour": MUTED}
+    return Chart(
+        name="vectors",
+        title=_finding(rows),
+        subtitle="Error of motion vectors over speed",
+        description="The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic "
+        "scales, a line for each code in its storage. The dotted line is an error as large as the motion: what lies on "
+        "it is lost. The figures are in the table.",
+        x=Axis(title="pixels a frame", scale=Scale.LOG),
+        y=Axis(title="mean error, pixels", scale=Scale.LOG),
+        rows=tuple(points),
+        # An encoding has one colour in all panels.
+        colour=Names("encoding", distinct(rows, "encoding")),
+        dash=Names("storage", distinct(rows, "storage")),
+        panels=Names("bits", all_bits),
+        marks=(
+            Mark(kind=Kind.LINES, **dotted, dash="dotted"),
+            Mark(kind=Kind.LINES, **looks, dash="storage", tips=tips),
+            Mark(kind=Kind.ENDS, **dotted, text="line"),
+            Mark(kind=Kind.ENDS, **looks, text="line"),
+        ),
+    )
+
+
+def _bits(bits: int) -> str:
+    return f"{bits} bits"
+
+
+def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """The rows of each code by its name, by speed; without those of no error, which have no logarithm."""
+    several = len({row.get("range") for row in rows if row.get("range")}) > 1
+    lines: dict[str, list[Row]] = {}
+    for row in sorted(rows, key=lambda row: row["speed"]):
+        if row["error_mean_px"] > 0:
+            ending = f" range {row['range']:g}" if several and row.get("range") else ""
+            lines.setdefault(f"{row['encoding']} {row['storage']}{ending}", []).append(row)
+    return lines
+
+
+def _finding(rows: Sequence[Row]) -> str:
+    """Which code of each number of bits loses the least at the least speed."""
+    least = min(row["speed"] for row in rows)
+    said = []
+    for bits in sorted({row["bits"] for row in rows}):
+        part = [row for row in rows if (row["bits"], row["speed"]) == (bits, least)]
+        if part:
+            best = min(part, key=lambda row: row["error_mean_px"])
+            said.append(f"{best['encoding']} {best['storage']} of {bits} bits ({best['error_mean_px']:.2g})")
+    return f"At {least:g} pixels a frame these lose least, in pixels: {', '.join(said)}"

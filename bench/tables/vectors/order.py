@@ -1,0 +1,14 @@
+"""The order of codes of motion vectors."""
+
+from __future__ import annotations
+
+from ....encodings.catalogue import MOTION_ENCODINGS
+from ....encodings.storages.storage import MOTION_STORAGES
+from ..table import Row
+
+
+def place(row: Row) -> tuple[int, ...]:
+    """Where a code stands in the catalogues; those of other versions last."""
+    lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
+    names = (row["encoding"], row["storage"])
+    return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))

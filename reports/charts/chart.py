@@ -1,0 +1,344 @@
+"""A chart as one frozen value, which `draw.py` writes as files and `vega.py` gives to the page.
+
+Rows are mappings of plain values. A row that has a codec names it in `codec`, as tables and pictures do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+from ..page.verdict import is_number
+
+Row = Mapping[str, Any]
+Domain = tuple[float, float]
+
+# Okabe and Ito's colours, told apart by most people who do not see all of them.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999", "#8C564B")
+SHAPES = (
+    *("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "triangle-left", "triangle-right"),
+    *("star", "x"),
+)
+# Lengths of strokes and gaps; an empty one is a solid line.
+DASHES: tuple[tuple[float, ...], ...] = ((), (5, 3), (1, 2), (6, 2, 1, 2), (1, 4), (7, 2, 1, 2, 1, 2), (9, 3))
+# Colours without a name: of text and axes, of what is beside the point, and of the rest, which others stand out from.
+INK, MUTED, FAINT = "ink", "muted", "faint"
+# Where counts are marked on their axis, which is logarithmic beyond the first few.
+COUNTS, LINEAR_TO = (0, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000), 8
+# Pixels of a page that a line of names takes, and that a chart without names is high.
+LINE_HEIGHT, HEIGHT = 22, 380
+# The share of an axis that is left free at either end.
+MARGIN = 0.04
+# A switch that shows all rows.
+ALL = "all"
+
+
+class Scale(StrEnum):
+    """How an axis places values."""
+
+    LINEAR = "linear"
+    LOG = "log"
+    COUNT = "count"  # logarithmic beyond the first few
+    NAMES = "names"  # one line for each name, the first on top or left
+
+
+class Kind(StrEnum):
+    """What is drawn of rows."""
+
+    POINTS = "points"
+    LINES = "lines"
+    AREAS = "areas"  # between y and y2
+    RULES = "rules"  # from x to x2, or from y to y2
+    BARS = "bars"  # from x to x2, at a name of y
+    CELLS = "cells"  # at names of x and of y
+    TEXTS = "texts"  # where the row says
+    LABELS = "labels"  # of points; near them, where there is room
+    ENDS = "ends"  # of lines; to the right of their last points, apart from each other
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """One direction of a chart.
+
+    Attributes:
+        title: what it measures, with its unit; empty for names that need none.
+        scale: how it places values.
+        domain: the values at its ends; None for those of the rows, with a margin.
+        ticks: where it is marked, and how; empty for the renderer's choice.
+        names: of a scale of names, all in order.
+        is_shared: whether all panels have the same values at its ends.
+    """
+
+    title: str
+    scale: Scale = Scale.LINEAR
+    domain: Domain | None = None
+    ticks: tuple[tuple[float, str], ...] = ()
+    names: tuple[str, ...] = ()
+    is_shared: bool = True
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Where a scale of counts is marked, within its domain; empty for others."""
+        low, high = self.domain or (0.0, 0.0)
+        return tuple(count for count in COUNTS if low <= count <= high) if self.scale == Scale.COUNT else ()
+
+    def along(self, value: float) -> float:
+        """A value on the axis where equal steps have equal lengths."""
+        if self.scale == Scale.LOG:
+            return math.log(value)
+        return math.copysign(math.log1p(abs(value) / LINEAR_TO), value) if self.scale == Scale.COUNT else value
+
+    def back(self, along: float) -> float:
+        """The value that `along` gives."""
+        if self.scale == Scale.LOG:
+            return math.exp(along)
+        is_count = self.scale == Scale.COUNT
+        return math.copysign(math.expm1(abs(along)) * LINEAR_TO, along) if is_count else along
+
+    def share(self, value: float) -> float:
+        """How far from the first end of the domain to the other a value lies: 0 to 1."""
+        assert self.domain
+        low, high = map(self.along, self.domain)
+        return (self.along(value) - low) / (high - low)
+
+    def at(self, share: float) -> float:
+        """The value at a share of the axis."""
+        assert self.domain
+        low, high = map(self.along, self.domain)
+        return self.back(low + share * (high - low))
+
+    def places(self, value: Any) -> bool:
+        """Whether a value has a place: a name that is known, a finite number, above 0 for logarithms."""
+        if self.scale == Scale.NAMES:
+            return value in self.names
+        return is_number(value) and math.isfinite(value) and (self.scale != Scale.LOG or value > 0)
+
+
+@dataclass(frozen=True)
+class Names:
+    """Names told apart by colours, shapes, dashes or panels.
+
+    Attributes:
+        field: the field of rows that has them.
+        values: all of them, in order.
+        title: of the legend.
+        looks: the shapes or dashes of the values; empty for the usual ones in turn.
+    """
+
+    field: str
+    values: tuple[Any, ...]
+    title: str = ""
+    looks: tuple[Any, ...] = ()
+
+    def of(self, looks: Sequence[Any]) -> list[Any]:
+        """What each value looks like, of the usual looks."""
+        return [(self.looks or looks)[at % len(self.looks or looks)] for at in range(len(self.values))]
+
+
+@dataclass(frozen=True)
+class Shades:
+    """Colours of numbers from `low` to `high`, on a scale of logarithms; the title has their unit."""
+
+    field: str
+    title: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Switch:
+    """What a reader of the page chooses, in a control of all charts of a figure.
+
+    Attributes:
+        field: the field of rows that it chooses by.
+        label: of the control.
+        values: what can be chosen; ALL shows all rows.
+        usual: what is chosen at first. A file shows that.
+        has_panels: whether a file shows all choices instead, a panel for each.
+    """
+
+    field: str
+    label: str
+    values: tuple[str, ...]
+    usual: str
+    has_panels: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mark:
+    """What is drawn of rows.
+
+    Attributes:
+        kind: points, lines and so on.
+        rows: None for the chart's.
+        x, y, x2, y2: the fields that have its places.
+        text: of texts, labels and ends, the field that has it.
+        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field that has colours.
+        shape: of points, one of SHAPES or the field of the chart's shapes.
+        dash: of lines, "solid", "dashed", "dotted" or the field of the chart's dashes.
+        by: of lines, areas and ends, the fields that tell them apart.
+        rest: a field that is true in rows that are beside the point: their points and labels are FAINT.
+        is_stepped: whether lines and areas go across and then up or down.
+        tips: fields that a pointer is told, and what they are called.
+    """
+
+    kind: Kind
+    rows: tuple[Row, ...] | None = None
+    x: str = "x"
+    y: str = "y"
+    x2: str = ""
+    y2: str = ""
+    text: str = ""
+    colour: str = INK
+    shape: str = SHAPES[0]
+    dash: str = "solid"
+    by: tuple[str, ...] = ()
+    rest: str = ""
+    is_stepped: bool = False
+    tips: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def fields(self) -> set[str]:
+        """The fields of rows that it reads."""
+        named = (self.x, self.y, self.x2, self.y2, self.text, self.colour, self.shape, self.dash, self.rest)
+        return {*named, *self.by, *(field for field, _ in self.tips)}
+
+    def groups(self, rows: Sequence[Row]) -> list[list[Row]]:
+        """The rows of each line, area or end."""
+        found: dict[Hashable, list[Row]] = {}
+        for row in rows:
+            found.setdefault(tuple(row.get(name) for name in self.by), []).append(row)
+        return list(found.values())
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chart:
+    """A chart.
+
+    Attributes:
+        name: of its files, without an ending.
+        title: what a reader sees in it: the finding.
+        subtitle: what it shows, under what conditions.
+        description: what is drawn, for who cannot see it.
+        x, y: its axes.
+        marks: what is drawn, the first below.
+        rows: what marks without rows of their own draw.
+        colour, shape, dash: what these tell apart.
+        panels: what has a panel of its own, all with the same marks; rows without the field are in each of them.
+        switch: what a reader of the page chooses.
+        height: of its panels on the page, in pixels; 0 for the usual one.
+    """
+
+    name: str
+    title: str
+    subtitle: str
+    description: str
+    x: Axis
+    y: Axis
+    marks: tuple[Mark, ...]
+    rows: tuple[Row, ...] = ()
+    colour: Names | Shades | None = None
+    shape: Names | None = None
+    dash: Names | None = None
+    panels: Names | None = None
+    switch: Switch | None = None
+    height: int = 0
+
+    @property
+    def pixels(self) -> int:
+        """The height of a panel on the page."""
+        return self.height or LINE_HEIGHT * len(self.y.names or self.y.ticks) or HEIGHT
+
+    def rows_of(self, mark: Mark) -> tuple[Row, ...]:
+        """The rows of a mark that have a place."""
+        axes = ((self.x, mark.x), (self.x, mark.x2), (self.y, mark.y), (self.y, mark.y2))
+        used = [(axis, name) for axis, name in axes if name]
+        rows = self.rows if mark.rows is None else mark.rows
+        return tuple(row for row in rows if all(axis.places(row.get(name)) for axis, name in used))
+
+    def still(self) -> list[tuple[str, Chart]]:
+        """The panels of a file, where nothing can be chosen."""
+        switch = self.switch
+        if not switch or switch.usual == ALL:
+            return self.parts()
+        if switch.has_panels:
+            return replace(self, switch=None, panels=Names(switch.field, switch.values)).parts()
+        return [(name, part._only(switch.field, switch.usual)) for name, part in self.parts()]
+
+    def parts(self) -> list[tuple[str, Chart]]:
+        """A chart for each panel, by the panel's name, whose axes have domains."""
+        whole = replace(self, x=self._measured("x"), y=self._measured("y"), panels=None)
+        if not self.panels:
+            return [("", whole)]
+        return [(str(value), whole._panel(self, self.panels.field, value)) for value in self.panels.values]
+
+    def _panel(self, whole: Chart, field: str, value: Any) -> Chart:
+        part = self._only(field, value)
+        own = {name: axis for name in ("x", "y") if not (axis := getattr(whole, name)).is_shared}
+        part = replace(part, **own)
+        return replace(part, x=part._measured("x"), y=part._measured("y"))
+
+    def _only(self, field: str, value: Any) -> Chart:
+        """The chart of the rows that have a value in a field, or do not have the field."""
+
+        def kept(rows: Sequence[Row]) -> tuple[Row, ...]:
+            return tuple(row for row in rows if row.get(field, value) == value)
+
+        marks = (replace(mark, rows=mark.rows and kept(mark.rows)) for mark in self.marks)
+        return replace(self, rows=kept(self.rows), marks=tuple(marks))
+
+    def _measured(self, name: str) -> Axis:
+        """An axis with the domain that its rows need."""
+        axis: Axis = getattr(self, name)
+        if axis.domain or axis.scale == Scale.NAMES:
+            return axis
+        found = [axis.along(value) for value in self._values(name)]
+        low, high = min(found, default=0.0), max(found, default=1.0)
+        margin = MARGIN * (high - low) or 0.5
+        return replace(axis, domain=(axis.back(low - margin), axis.back(high + margin)))
+
+    def _values(self, name: str) -> Iterator[float]:
+        for mark in self.marks:
+            fields = [field for field in (getattr(mark, name), getattr(mark, f"{name}2")) if field]
+            yield from (row[field] for row in self.rows_of(mark) for field in fields)
+
+
+def apart(wanted: Sequence[float], least: float) -> list[float]:
+    """The places nearest to some, in their order, no two of which are less than `least` apart.
+
+    Neighbours that are too near are moved apart together (pool adjacent violators, the least squares under an order:
+    Barlow et al. 1972, Statistical Inference under Order Restrictions).
+    """
+    groups: list[tuple[float, int]] = []  # the mean of wanted less what stands before, and of how many
+    for at, place in enumerate(wanted):
+        groups.append((place - at * least, 1))
+        while len(groups) > 1 and groups[-2][0] > groups[-1][0]:
+            (a, m), (b, n) = groups.pop(-2), groups.pop()
+            groups.append(((a * m + b * n) / (m + n), m + n))
+    means = [mean for mean, count in groups for _ in range(count)]
+    return [mean + at * least for at, mean in enumerate(means)]
+
+
+def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float) -> list[float]:
+    """Where on a vertical axis the labels of values stand, each on a line of its own, near its value.
+
+    Args:
+        axis: one with a domain.
+        height: of the axis.
+        least: from one label's line to the next's, in the height's unit.
+
+    Returns:
+        shares of the axis, in the order of the values.
+    """
+    order = sorted(range(len(values)), key=lambda at: axis.share(values[at]))
+    placed = apart([axis.share(values[at]) * height for at in order], least)
+    shares = dict(zip(order, placed, strict=True))
+    return [shares[at] / height for at in range(len(values))]
+
+
+def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
+    """The values of a field, in the order of the rows."""
+    return tuple(dict.fromkeys(row[field] for row in rows))

@@ -1,0 +1,88 @@
+"""What matplotlib draws a chart's marks with: their places, colours, markers and strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+from .chart import COLOURS, DASHES, FAINT, INK, MUTED, SHAPES, Axis, Chart, Mark, Names, Row, Scale, Shades
+
+# How many letters of a name a chart has room for.
+LONGEST = 48
+ROLES = MappingProxyType({INK: "#000000", MUTED: "#777777", FAINT: "#AAAAAA"})
+STROKES: Mapping[str, Any] = MappingProxyType({"solid": "-", "dashed": (0, (5, 4)), "dotted": (0, (1, 3))})
+MARKERS = MappingProxyType(dict(zip((*SHAPES, "tick"), "osD^vP<>*X|", strict=True)))
+# Perceptually uniform, and the same order to those who do not see all colours.
+SHADES = "viridis"
+
+
+def as_text(text: str) -> str:
+    """Text as a chart has room for it, whose dollars it does not read as mathematics."""
+    return plain(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
+
+
+def plain(text: str) -> str:
+    """Text of any length, whose dollars are not read as mathematics."""
+    return text.replace("$", r"\$")
+
+
+def places(part: Chart, mark: Mark, rows: Sequence[Row]) -> tuple[list[Any], list[Any]]:
+    """Where the rows of a mark are drawn, in matplotlib's own numbers."""
+    return [_place(part.x, row[mark.x]) for row in rows], [_place(part.y, row[mark.y]) for row in rows]
+
+
+def _place(axis: Axis, value: Any) -> Any:
+    return axis.names.index(value) if axis.scale == Scale.NAMES else value
+
+
+def colour_of(part: Chart, mark: Mark, row: Row) -> str:
+    """The colour of what a mark draws of a row."""
+    if mark.rest and row.get(mark.rest):
+        return ROLES[FAINT]
+    if mark.colour in ROLES:
+        return ROLES[mark.colour]
+    if isinstance(part.colour, Names) and part.colour.field == mark.colour:
+        return look(part.colour, COLOURS, row)
+    return str(row[mark.colour])
+
+
+def marker_of(part: Chart, mark: Mark, row: Row) -> str:
+    """The marker of a point."""
+    is_by_name = part.shape and part.shape.field == mark.shape
+    return MARKERS[look(part.shape, SHAPES, row) if part.shape and is_by_name else mark.shape]
+
+
+def stroke_of(part: Chart, mark: Mark, row: Row) -> Any:
+    """How a line is dashed."""
+    if part.dash and part.dash.field == mark.dash:
+        return stroke(look(part.dash, DASHES, row))
+    return STROKES[mark.dash]
+
+
+def stroke(lengths: Sequence[float]) -> Any:
+    """Lengths of strokes and gaps as matplotlib takes them."""
+    return (0, tuple(lengths)) if lengths else "-"
+
+
+def look(names: Names, looks: Sequence[Any], row: Row) -> Any:
+    """What a row's name looks like."""
+    return names.of(looks)[names.values.index(row[names.field])]
+
+
+def shade(shades: Shades) -> Any:
+    """Colours of numbers, of matplotlib."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+
+    return ScalarMappable(LogNorm(shades.low, shades.high, clip=True), SHADES)
+
+
+def colour_map(count: int = 33) -> list[str]:
+    """Viridis from dark to bright, as many colours, evenly spaced: even steps to the eye, also for those who do not
+    see all colours."""
+    import matplotlib
+    import numpy as np
+    from matplotlib.colors import to_hex
+
+    return [to_hex(colour) for colour in matplotlib.colormaps[SHADES](np.linspace(0, 1, count))]

@@ -1,0 +1,156 @@
+"""Charts as values: a file and the page show the same marks, axes and labels of one."""
+
+import itertools
+import json
+import re
+
+import pytest
+from both_ways import agree, rows_of_tables
+from matplotlib import pyplot
+from PIL import Image
+
+from normalbench.bench.tables.registry import TABLES
+from normalbench.reports.charts import draw, vega
+from normalbench.reports.charts.chart import (
+    ALL,
+    Axis,
+    Chart,
+    Kind,
+    Mark,
+    Names,
+    Scale,
+    Shades,
+    Switch,
+    apart,
+    distinct,
+    lines_apart,
+)
+
+ROWS = rows_of_tables()
+HOSTILE = "$a\\b\"'</script>"
+
+
+def a_chart(**more) -> Chart:
+    """Lines of two codecs over a logarithmic axis, with names at their ends."""
+    rows = [
+        {"codec": codec, "bits": bits, "x": x, "y": x * bits}
+        for codec, bits in (("xy rg8", 16), (HOSTILE, 24))
+        for x in (1.0, 10.0, 100.0)
+    ]
+    about = {"name": "made", "title": "A finding", "subtitle": "what it is", "description": "It is made up."}
+    about |= {"x": Axis(title="pixels", scale=Scale.LOG), "y": Axis(title="error, degrees")}
+    about |= {"rows": tuple(rows), "colour": Names("bits", (16, 24), "bits")}
+    line = Mark(kind=Kind.LINES, by=("codec",), colour="bits", tips=(("codec", "codec"),))
+    end = Mark(kind=Kind.ENDS, by=("codec",), text="codec", colour="bits")
+    return Chart(**about | {"marks": (line, end)} | more)
+
+
+def test_lines_and_the_names_at_their_ends_are_the_same_both_ways():
+    (shown,) = agree(a_chart())
+    assert shown.marks == {Kind.LINES: 2} and shown.texts == [HOSTILE, "xy rg8"]
+    assert shown.extents["y"] == pytest.approx((16 - 0.04 * 2384, 2400 + 0.04 * 2384))
+
+
+def test_every_kind_of_mark_is_the_same_both_ways():
+    rows = tuple({"codec": f"c{n}", "x": float(n), "z": n + 2.0, "name": f"c{n}", "rest": n == 1} for n in range(4))
+    names = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "name"))
+    marks = [Mark(kind=kind, y="name") for kind in (Kind.POINTS,)]
+    marks += [Mark(kind=kind, x2="z", y="name") for kind in (Kind.RULES, Kind.BARS)]
+    marks += [Mark(kind=Kind.TEXTS, x="z", y="name", text="name")]
+    (shown,) = agree(a_chart(rows=rows, y=names, x=Axis(title="ms"), marks=tuple(marks)))
+    assert shown.marks == {Kind.POINTS: 4, Kind.RULES: 4, Kind.BARS: 4} and len(shown.texts) == 4
+    marks = [Mark(kind=Kind.POINTS, y="z"), Mark(kind=Kind.LABELS, y="z", text="name", rest="rest", colour="ink")]
+    marks += [Mark(kind=Kind.RULES, y="z", y2="x"), Mark(kind=Kind.AREAS, y="z", y2="x", is_stepped=True)]
+    (shown,) = agree(a_chart(rows=rows, x=Axis(title="instructions", scale=Scale.COUNT), marks=tuple(marks)))
+    assert shown.marks == {Kind.POINTS: 4, Kind.RULES: 4, Kind.AREAS: 1}
+    shades = Shades("z", "angle, degrees", 0.1, 180.0)
+    cells = (
+        Mark(kind=Kind.CELLS, x="codec", y="name", colour="z"),
+        Mark(kind=Kind.TEXTS, x="codec", y="name", text="codec"),
+    )
+    across = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "codec"))
+    (shown,) = agree(a_chart(rows=rows, x=across, y=names, colour=shades, marks=cells))
+    assert shown.marks == {Kind.CELLS: 4} and shown.extents == {"x": (4,), "y": (4,)}
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
+def test_every_chart_of_a_run_is_the_same_both_ways(name):
+    charts = list(TABLES[name].work.charts(ROWS[name]))
+    assert charts and len({chart.name for chart in charts}) == len(charts)
+    for chart in charts:
+        shown = agree(chart)
+        assert sum(count for panel in shown for count in panel.marks.values()) > len(shown)
+        assert chart.title and chart.subtitle and chart.title != chart.subtitle and chart.description.endswith(".")
+
+
+def test_panels_share_an_axis_or_have_their_own():
+    chart = a_chart(panels=Names("bits", (16, 24)), x=Axis(title="pixels", scale=Scale.LOG, is_shared=False))
+    one, other = agree(chart)
+    assert one.extents["y"] == other.extents["y"] and one.texts != other.texts
+
+
+def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file():
+    switch = Switch("bits", "Bits shown", (ALL, "16", "24"), ALL)
+    (spec,) = vega.specs(a_chart(switch=switch))
+    assert spec["usermeta"]["switch"] == {"param": "bits", "label": "Bits shown", "options": [ALL, "16", "24"]}
+    assert {"name": "bits", "value": ALL} in spec["params"]
+    (whole,) = agree(a_chart(switch=switch))
+    assert whole.marks[Kind.LINES] == 2
+    rows = tuple({**row, "gpu": f"gpu {row['bits']}"} for row in a_chart().rows)
+    for has_panels, count in ((True, 2), (False, 1)):
+        switch = Switch("gpu", "GPU", ("gpu 16", "gpu 24"), "gpu 24", has_panels)
+        shown = agree(a_chart(rows=rows, switch=switch))
+        assert len(shown) == count and shown[-1].marks[Kind.LINES] == 1
+    assert len(vega.specs(a_chart(rows=rows, switch=switch))) == 1
+
+
+def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest():
+    rows = [{"x": x, "y": y} for x, y in ((1.0, 2.0), (0.0, 2.0), (2.0, float("inf")), (3.0, None), (4.0, 1.0))]
+    (shown,) = agree(a_chart(rows=tuple(rows), colour=None, marks=(Mark(kind=Kind.POINTS),)))
+    assert shown.marks == {Kind.POINTS: 2}
+
+
+def test_a_chart_without_rows_is_an_empty_one(tmp_path):
+    (shown,) = agree(a_chart(rows=()))
+    assert shown.marks == {} and shown.titles == {"x": "pixels", "y": "error, degrees"}
+    draw.write([], (tmp_path / "none.png", "png"))
+    draw.write([a_chart(rows=())], (tmp_path / "empty.svg", "svg"))
+    assert "A finding" in (tmp_path / "empty.svg").read_text()
+
+
+def test_a_file_says_finding_units_and_names_and_is_the_same_each_time(tmp_path):
+    texts = []
+    for name in ("a.svg", "b.svg"):
+        draw.write([a_chart()], (tmp_path / name, "svg"))
+        texts.append(re.sub(r"<dc:date>.*</dc:date>", "", (tmp_path / name).read_text()))
+    assert texts[0] == texts[1] and "<script" not in texts[0]
+    for said in ("A finding", "what it is", "pixels", "error, degrees", "xy rg8"):
+        assert f">{said}</text>" in texts[0], said
+
+
+def test_several_charts_are_one_file(tmp_path):
+    for count in (1, 2):
+        draw.write([a_chart()] * count, (tmp_path / f"{count}.png", "png"))
+    with Image.open(tmp_path / "1.png") as one, Image.open(tmp_path / "2.png") as two:
+        assert one.width == two.width and two.height == pytest.approx(2 * one.height, abs=2)
+
+
+def test_names_at_ends_keep_apart_and_in_order():
+    axis = Axis(title="", domain=(0.0, 1.0))
+    values = [0.5, 0.51, 0.49, 0.9]
+    shares = lines_apart(axis, values, 100.0, 10.0)
+    assert shares[2] < shares[0] < shares[1] and shares[1] - shares[0] == pytest.approx(0.1)
+    assert shares[3] == pytest.approx(0.9) and sum(shares[:3]) == pytest.approx(1.5)
+    assert apart([0.0, 0.0, 5.0], 1.0) == [-0.5, 0.5, 5.0]
+    rows = tuple({"codec": f"c{n}", "x": x, "y": 1.0 + n / 1000} for n in range(12) for x in (1.0, 2.0))
+    figure = draw.figure([a_chart(rows=rows, colour=None, marks=(Mark(kind=Kind.ENDS, by=("codec",), text="codec"),))])
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    pyplot.close(figure)
+    tops = sorted((box.y0 + box.y1) / 2 for box in boxes)
+    assert min(b - a for a, b in itertools.pairwise(tops)) >= 0.9 * 9.5 * figure.dpi / 72
+
+
+def test_a_specification_is_plain_data():
+    text = json.dumps(vega.specs(a_chart()), allow_nan=False)
+    assert {row["codec"] for row in vega.rows_of(json.loads(text)[0])} == {"xy rg8", HOSTILE}
