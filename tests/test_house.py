@@ -75,17 +75,7 @@ def test_only_the_folder_of_opengl_imports_moderngl():
 
 
 # Who draws with matplotlib: draw.py and its parts draw values; maps of the sphere and error sheets are pictures.
-# The last two draw tables whose charts are no values.
-DRAWN_BY = {
-    "draw.py",
-    "labels.py",
-    "looks.py",
-    "plots.py",
-    "sphere_chart.py",
-    "pictures.py",
-    "growth.py",
-    "throughput.py",
-}
+DRAWN_BY = {"draw.py", "labels.py", "looks.py", "plots.py", "sphere_chart.py", "pictures.py"}
 
 
 def test_only_the_renderers_of_charts_know_matplotlib_and_vega():

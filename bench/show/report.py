@@ -291,7 +291,7 @@ def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str
     try:
         kept = whole(rows)
         charts = [*table.work.charts(kept), *table.work.joined(found)]
-        return [*table.work.drawings(found, kept), *map(drawings.of, charts)]
+        return list(map(drawings.of, charts))
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from typing import Any
 
-from ...reports.charts.drawings import Drawing, for_drawing
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.verdict import BACKENDS, is_number
 from .table import Row
@@ -16,8 +14,6 @@ from .table import Row
 LEAST_DEG = 1e-4
 # What may tell rows of one codec apart, in the order of their names.
 LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "exposure")
-# Text that a chart reads and does not show.
-NOT_SHOWN = ("angle_counts", "ms_frame_each")
 
 
 def having(rows: Sequence[Row], *columns: str) -> list[Row]:
@@ -29,22 +25,6 @@ def lines_of(rows: Sequence[Row]) -> list[str]:
     """What tells each row of a chart apart: its codec, and what else differs between the rows."""
     others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
     return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
-
-
-def drawing(
-    name: str,
-    title: str,
-    description: str,
-    rows: Sequence[Row],
-    draw: Callable[[Sequence[Row]], Any],
-    specs: Callable[[Sequence[Row]], Sequence[dict[str, Any]]],
-) -> Drawing:
-    """A chart of rows: as files by `draw`, in the page by `specs`."""
-    return Drawing(name, title, description, partial(_drawn, draw, rows), partial(specs, rows))
-
-
-def _drawn(draw: Callable[[Sequence[Row]], Any], rows: Sequence[Row]) -> Any:
-    return draw(for_drawing(rows, NOT_SHOWN))
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:

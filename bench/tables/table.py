@@ -218,7 +218,6 @@ class Work:
         charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
         plotted: the charts that --plot draws where they are not `charts` of the rows.
         joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
-        drawings: charts of the page that are not values, from its contents and the table's rows.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
         worst: the normal that a step's codec turns the most; None where there is none.
@@ -244,7 +243,6 @@ class Work:
     charts: Callable[[Sequence[Row]], Iterable[Any]] = _nothing
     plotted: Callable[[Measured], Iterable[Any]] | None = None
     joined: Callable[[Any], Iterable[Any]] = _nothing
-    drawings: Callable[..., Iterator[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     worst: Callable[[Step], Any] = _none

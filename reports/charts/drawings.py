@@ -10,7 +10,6 @@ from typing import Any
 
 from .chart import Chart
 from .draw import figure, settings
-from .looks import as_text
 from .plots import save
 from .vega import rows_of as rows_of
 from .vega import specs
@@ -25,7 +24,7 @@ class Drawing:
         title: what it is called.
         description: what it shows, for who cannot see it.
         draw: gives a figure for `plots.save`.
-        specs: gives the same as interactive charts (see `specs.py`); None where the page has a picture instead.
+        specs: gives the same as interactive charts; None where the page has a picture instead.
     """
 
     name: str
@@ -45,8 +44,3 @@ def write(drawing: Drawing, *files: tuple[Path, str]) -> None:
     """Writes a chart to each path as its format, one of plots.FORMATS. Raises OSError."""
     with settings(drawing.name):
         save(drawing.draw(), *files)
-
-
-def for_drawing(rows: Sequence[dict[str, Any]], but: Sequence[str] = ()) -> list[dict[str, Any]]:
-    """Rows whose text is as a chart can show it, but for columns that are no text to show."""
-    return [{k: as_text(v) if isinstance(v, str) and k not in but else v for k, v in row.items()} for row in rows]

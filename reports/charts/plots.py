@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from .chart import COLOURS as COLOURS
-
 FORMATS = ("png", "svg", "pdf")
 DPI = 120
 
@@ -47,6 +45,3 @@ def save(figure: Any, *files: tuple[Path, str]) -> None:
             figure.set_layout_engine("none")
     finally:
         pyplot.close(figure)
-
-
-MARKERS = "osD^v<>PX"

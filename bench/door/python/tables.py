@@ -49,11 +49,7 @@ class Rows(pd.DataFrame):
 
 
 def _drawings(table: Table, done: Measured) -> list[Any]:
-    rows = [dict(row) for row in done.rows]
-    try:
-        return [*table.work.drawings(None, rows), *map(of, table.work.charts(rows))]
-    except AttributeError:  # of charts that a whole run is needed for
-        return []
+    return list(map(of, table.work.charts([dict(row) for row in done.rows])))
 
 
 def _svg(drawing: Any) -> str:
