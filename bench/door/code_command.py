@@ -14,9 +14,10 @@ from typing import Any
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
+from ..ground.choose import choose
 from ..ground.options.code import CodeOptions
 from ..ground.options.targets import what_is_left
-from ..ground.output.errors import MissingError, UsageError, leave_out, pick, tell
+from ..ground.output.errors import MissingError, UsageError, leave_out, tell
 from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
 from ..shaders.code.emit import LANGUAGES
@@ -41,7 +42,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
         UsageError: a name is not known, nothing fits, or something cannot be written.
     """
     _check_prefix(options.prefix)
-    languages = pick("language", options.to, {name: name for name in LANGUAGES})
+    languages = choose("language", options.to, {name: name for name in LANGUAGES})
     codecs = _codecs(options)
     if options.prefix and len(codecs) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")

@@ -16,7 +16,8 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts.sphere_chart import sphere_chart
-from ..ground.output.errors import UsageError, pick_one, tell
+from ..ground.choose import choose_one
+from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
 from ..subjects.codecs.names import storages_named
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
@@ -58,7 +59,7 @@ def examine_encoding(
         raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
     check_plot(plot)
     kept = _storage(storage or STORAGE)
-    found = examined(file, pick_one("domain", domain, DOMAINS) if domain else ANY)
+    found = examined(file, choose_one("domain", domain, DOMAINS) if domain else ANY)
     codec = Codec(found.encoding, kept)
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")

@@ -12,9 +12,10 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from ..ground.choose import choose
 from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..ground.options.option import fields_of
-from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, pick, tell
+from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell
 from ..ground.output.progress import progress_of_all
 from ..ground.output.writing import say
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
@@ -37,7 +38,7 @@ def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
     said. Raises UsageError."""
     if names.strip() == "all":
         return [table for table in TABLES.values() if table.is_in_all(said)]
-    return list(dict.fromkeys(pick("table", names, TABLES)))
+    return list(dict.fromkeys(choose("table", names, TABLES)))
 
 
 def given(request: Any) -> dict[str, Any]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ..ground.output.errors import pick
+from ..ground.choose import choose
 from .registry import TABLES
 from .table import Column, Row, Table
 
 
 def columns(names: str) -> list[Row]:
     """A row for each column of the tables that comma-separated names stand for. Raises UsageError."""
-    return [_row(table, column) for table in pick("table", names, TABLES) for column in table.columns]
+    return [_row(table, column) for table in choose("table", names, TABLES) for column in table.columns]
 
 
 def _row(table: Table, column: Column) -> Row:

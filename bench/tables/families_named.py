@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from ..ground.choose import choose
 from ..ground.options import gpu_families
-from ..ground.output.errors import UsageError, pick
+from ..ground.output.errors import UsageError
 from .roofline.rates import GPUS
 
 
@@ -16,4 +17,4 @@ def families_named(names: str) -> list[str]:
     words = [word.strip() for word in names.split(",")]
     if gpu := next((word for word in words if word.lower() in GPUS), None):
         raise UsageError(f"{gpu} is a GPU and not a family; its family is {GPUS[gpu.lower()].family}")
-    return list(dict.fromkeys(name for several in pick("family", names, gpu_families.CHOICES) for name in several))
+    return list(dict.fromkeys(name for several in choose("family", names, gpu_families.CHOICES) for name in several))

@@ -16,8 +16,9 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+from normalbench.bench.ground.choose import choose
 from normalbench.bench.ground.options.counts import MAX_TIMED_COUNT, checked_numbers
-from normalbench.bench.ground.output.errors import UsageError, pick
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.names import codecs_named
 
 from . import growth, simulate, throughput
@@ -33,7 +34,7 @@ def _throughput(asked: argparse.Namespace) -> list[Row]:
 
 
 def _growth(asked: argparse.Namespace) -> list[Row]:
-    kinds = pick("kind", asked.over, {name: name for name in growth.KINDS})
+    kinds = choose("kind", asked.over, {name: name for name in growth.KINDS})
     if asked.sizes and len(kinds) > 1:
         raise UsageError(f"--sizes {asked.sizes}: sizes are of one kind; name it, such as --over {kinds[0]}")
     return [row for kind in kinds for row in growth.rows(kind, _sizes(kind, asked.sizes))]

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from normalbench.bench.ground.output.errors import pick
+from normalbench.bench.ground.choose import choose
 from normalbench.bench.keep.journal import journal
 from normalbench.bench.run.measuring import HERE, asked
 from normalbench.bench.run.workers.chunks import chunk_size
@@ -152,7 +152,7 @@ def record(names: Iterable[str], path: Path) -> None:
     """
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     made = {"seconds": dict(before.get("seconds", {})), "bytes": dict(before.get("bytes", {}))}
-    for table in pick("table", ",".join(names), TABLES):
+    for table in choose("table", ",".join(names), TABLES):
         made["seconds"][table.name], made["bytes"][table.name] = step_times(table)
     path.write_text(json.dumps(before | made | {"costs": asdict(measured_costs())}) + "\n", encoding="utf-8")
 

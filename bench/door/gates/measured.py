@@ -9,8 +9,9 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from ...ground.choose import names_a_file
 from ...ground.options.option import checked_options, fields_of
-from ...ground.output.errors import UsageError, names_a_file, noting_what_is_left_out
+from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...measures.metrics.totals import Worst
 from ...run.measuring import Nothing, asked, measured_steps
 from ...shaders.languages.words import file_of, files_in, names_an_encoder, twin_of, with_files

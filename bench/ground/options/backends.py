@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from ..output.errors import UsageError, leave_out, pick
+from ..choose import choose
+from ..output.errors import UsageError, leave_out
 
 BACKENDS = ("jax", "glsl", "wgsl")
 
@@ -17,7 +18,7 @@ def backends_named(names: str, has: Collection[str]) -> list[str]:
     """
     if names == "all":
         return list(has)
-    picked = pick("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
+    picked = choose("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
     found, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
     said = f"{', '.join(lacking)}: this table measures by {' and '.join(has)}"
     if not found:

@@ -9,7 +9,8 @@ from ....gbuffer.effects.effect import ChosenEffect, EffectError, chosen
 from ....gbuffer.frame.contract import Pipeline, PipelineError
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.scene import Scene
-from ..output.errors import UsageError, pick
+from ..choose import choose
+from ..output.errors import UsageError
 
 
 def effects_named(names: str) -> list[ChosenEffect]:
@@ -21,7 +22,7 @@ def effects_named(names: str) -> list[ChosenEffect]:
     made: dict[str, ChosenEffect] = {}
     for word in (word.strip() for word in names.split(",") if word.strip() or not names.strip()):
         name, *settings = word.split(":")
-        for effect in pick("effect", name, EFFECTS):
+        for effect in choose("effect", name, EFFECTS):
             one = _chosen(effect.name, word, settings)
             made[one.name] = one
     return list(made.values())

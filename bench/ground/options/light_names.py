@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.light_codec import LightCodec
-from ..output.errors import UsageError, pick
+from ..choose import choose
+from ..output.errors import UsageError
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
 
@@ -20,7 +21,7 @@ def light_buffers_named(names: str) -> list[LightCodec]:
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
     ranged = {word: _ranged(word) for word in words if ":" in word}
-    chosen = pick("light buffer", names, {**LIGHT_BUFFERS, **ranged})
+    chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **ranged})
     return list({codec.name: codec for codec in chosen}.values())
 
 

@@ -12,7 +12,7 @@ from ....gbuffer.effects.effect import Choice, Number
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SCENES
-from ..output.errors import pick
+from ..choose import choose
 
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
 NORMAL_SETS = {
@@ -156,4 +156,4 @@ KINDS = {
 
 def listing(what: str) -> list[Row]:
     """Rows for some of KINDS (comma-separated) or "all". Raises UsageError."""
-    return [row for rows in pick("list", what, KINDS) for row in rows()]
+    return [row for rows in choose("list", what, KINDS) for row in rows()]

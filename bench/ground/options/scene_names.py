@@ -11,7 +11,8 @@ from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.files.mesh_file import MeshFile
 from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
 from ....gbuffer.scenes.files.source import SceneFileError
-from ..output.errors import UsageError, pick_or_read, tell
+from ..choose import choose_or_read
+from ..output.errors import UsageError, tell
 
 MAX_POWER = 2048
 
@@ -30,7 +31,7 @@ def scenes_named(names: str) -> list[SceneMaker]:
         name = called(path.name)
         return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, exposure=None)
 
-    made = pick_or_read("scene", names, SCENES, READERS, scene_of)
+    made = choose_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)
     return made
 

@@ -14,7 +14,8 @@ from ....encodings.codecs.variants import MARK, TABLE
 from ....gbuffer.layouts.layout import Layout, read_layout
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
-from ...ground.output.errors import MissingError, UsageError, pick
+from ...ground.choose import choose
+from ...ground.output.errors import MissingError, UsageError
 from ...shaders.languages.words import file_of, files_in, lacks_a_function, names_an_encoder
 from .names import check_twin
 from .user_encodings import encodings_named
@@ -35,7 +36,7 @@ def layouts_named(names: str) -> list[Layout]:
     shared = cache(_encoding_named)
     found = {name: _read(Path(name), shared) for name in words if name.endswith(".toml")}
     known = {**LAYOUTS, **found}
-    chosen = pick("layout", names, known) if "all" not in words else list(known.values())
+    chosen = choose("layout", names, known) if "all" not in words else list(known.values())
     called = [layout.name for layout in chosen]
     for name in called:
         if called.count(name) > 1:

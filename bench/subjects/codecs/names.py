@@ -14,8 +14,9 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
 from ....encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ....encodings.vec import Vec3
+from ...ground.choose import choose, names_a_file
 from ...ground.options.words import Words, given_in
-from ...ground.output.errors import UsageError, by_reason, names_a_file, pick
+from ...ground.output.errors import UsageError, by_reason
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.words import CHAIN
 from .user_encodings import encodings_named
@@ -27,7 +28,7 @@ def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str
     return [
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
-        for rounding in pick("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for rounding in choose("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
         for encoding in chosen
     ]
 
@@ -63,7 +64,7 @@ def _chained(word: str, own: Mapping[str, Any]) -> Encoding:
 def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:
     """Encodings computed in each of comma-separated arithmetics, those of a name that says half once. Raises
     UsageError."""
-    chosen = pick("arithmetic", names, dict(zip(ARITHMETICS, ARITHMETICS, strict=True)))
+    chosen = choose("arithmetic", names, dict(zip(ARITHMETICS, ARITHMETICS, strict=True)))
     named = [encoding for encoding in encodings if encoding.is_half or FLOAT in chosen]
     made = [in_half(encoding) for encoding in encodings if HALF in chosen and not encoding.is_half]
     return [*named, *made]
@@ -76,7 +77,7 @@ def storages_named(names: str) -> list[Storage]:
     except ValueError as error:
         raise UsageError(f"--storage: {error}") from error
     named = {name: storage for name, storage in made.items() if storage}
-    return pick("storage", names, {**STORAGES, **named, **given_in(names)})
+    return choose("storage", names, {**STORAGES, **named, **given_in(names)})
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

@@ -20,12 +20,13 @@ from ....encodings.codecs.files import called
 from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
+from ...ground.choose import check_comma, choose, names_a_file
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.posix import forks
 from ...ground.options.words import given_in
-from ...ground.output.errors import NO_TWIN, MissingError, UsageError, check_comma, leave_out, names_a_file, pick, tell
-from ...ground.output.spelling import spelled
+from ...ground.output.errors import NO_TWIN, MissingError, UsageError, leave_out, tell
+from ...ground.spelling import spelled
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.pairs import NORMAL, Function
 from ...shaders.languages.programs import pair
@@ -75,7 +76,7 @@ def encodings_named(names: str) -> list[Encoding]:
     for error in complaints:
         leave_out(str(error))
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
-    picked = pick("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
+    picked = choose("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
     # At last: an error is one line alone.
     for line in notes:
         tell(line)

@@ -15,8 +15,9 @@ import numpy as np
 
 from ....encodings.codecs.files import called, file_text
 from ....encodings.storages.rounding import from_srgb, to_srgb
+from ...ground.choose import choose_one
 from ...ground.options.option import Reading
-from ...ground.output.errors import UsageError, pick_one
+from ...ground.output.errors import UsageError
 from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
 from .normal_sets import NormalSet, from_arrays
 from .pixel_files import READERS, Pixels, read_pixels, refused
@@ -92,8 +93,8 @@ def checked(reading: Reading) -> Reading:
         raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
         raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
-    space, curve = pick_one("space", reading.space, SPACES), pick_one("curve", reading.curve, CURVES)
-    code_space = pick_one("code space", reading.code_space, CODE_SPACES)
+    space, curve = choose_one("space", reading.space, SPACES), choose_one("curve", reading.curve, CURVES)
+    code_space = choose_one("code space", reading.code_space, CODE_SPACES)
     return replace(reading, space=space, curve=curve, code_space=code_space)
 
 

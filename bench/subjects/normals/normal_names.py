@@ -10,11 +10,12 @@ from typing import Any, get_type_hints
 
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.files import read as files
+from ...ground.choose import choose_or_read, names_a_folder
 from ...ground.options.counts import checked_sides
 from ...ground.options.option import Count, Reading, fields_of
 from ...ground.options.scene_names import mesh_file, say_notes
 from ...ground.options.words import given_in
-from ...ground.output.errors import UsageError, names_a_folder, pick_or_read, tell
+from ...ground.output.errors import UsageError, tell
 from .captures import CODE_SPACES, capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from .pixel_files import MAX_PIXELS
@@ -59,7 +60,7 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
         return given(made)
 
     known = {**NORMAL_SETS, **{name: given(made) for name, made in given_in(names).items()}}
-    made = [make(count, seed) for make in pick_or_read("normal set", names, known, ENDINGS, read)]
+    made = [make(count, seed) for make in choose_or_read("normal set", names, known, ENDINGS, read)]
     say_notes(notes)
     return made
 

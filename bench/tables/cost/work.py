@@ -17,10 +17,11 @@ from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto
 from ....reports.charts.chart import Chart
+from ...ground.choose import choose
 from ...ground.options import gpu_families as families
 from ...ground.options import listing
 from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
-from ...ground.output.errors import MissingError, UsageError, pick
+from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
 from ...subjects.codecs.user_encodings import encodings_named
@@ -50,7 +51,7 @@ def packings(names: str) -> list[Packing]:
     except ValueError as error:
         raise UsageError(f"--storage: {error}") from error
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in made.items() if storage}}
-    return list(dict.fromkeys(packing for several in pick("storage", names, known) for packing in several))
+    return list(dict.fromkeys(packing for several in choose("storage", names, known) for packing in several))
 
 
 # Compilers that people have to install or build themselves.
@@ -106,14 +107,14 @@ def costing(options: CostOptions) -> Costing:
     if "jax" in measures(options) and options.count > MAX_TIMED_COUNT:
         raise UsageError(f"--count {options.count}: in JAX a count is at most {MAX_TIMED_COUNT} (2^28)")
     check_seed(options.seed)
-    pick("error", options.error, pareto.ERRORS)
-    pick("normal set", options.normals, listing.NORMAL_SETS)
+    choose("error", options.error, pareto.ERRORS)
+    choose("normal set", options.normals, listing.NORMAL_SETS)
     made = Costing(
         options,
         _encodings(options),
         packings(options.storage),
-        pick("operation", options.operation, {name: name for name in measure.OPERATIONS}),
-        pick("stage", options.stage, {name: name for name in STAGES}),
+        choose("operation", options.operation, {name: name for name in measure.OPERATIONS}),
+        choose("stage", options.stage, {name: name for name in STAGES}),
         chosen_families(options.family),
     )
     if measures(options) != ["isa"]:
@@ -278,7 +279,7 @@ def _plotted(done: Measured) -> Iterable[Chart]:
     from .plot import charts
 
     options, asked = done.options, done.steps[0].case.asked
-    sets = [make(options.count, options.seed) for make in pick("normal set", options.normals, NORMAL_SETS)]
+    sets = [make(options.count, options.seed) for make in choose("normal set", options.normals, NORMAL_SETS)]
     return charts(done.rows, asked.encodings, asked.drawn_storages, sets, options.error)
 
 

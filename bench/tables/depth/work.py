@@ -24,11 +24,12 @@ from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import pictures
 from ....reports.charts.chart import Chart
+from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import what_is_left
-from ...ground.output.errors import UsageError, pick
+from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
@@ -76,10 +77,10 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     """Codecs with the ways to their positions; those that cannot be are named on standard error."""
     made: list[tuple[DepthCodec, str]] = []
     complaints: list[str] = []
-    asked = None if options.rebuild is None else pick("rebuild", options.rebuild, {name: name for name in REBUILDS})
-    for encoding in pick("depth", options.depth, DEPTH_ENCODINGS):
+    asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
+    for encoding in choose("depth", options.depth, DEPTH_ENCODINGS):
         names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage in pick("depth storage", names, DEPTH_STORAGES):
+        for storage in choose("depth storage", names, DEPTH_STORAGES):
             codec = DepthCodec(encoding, storage)
             if codec.misfit:
                 complaints.append(f"{codec.name}: {codec.misfit}")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...ground.output.errors import UsageError, check_comma, names_a_folder, tell
+from ...ground.choose import check_comma, names_a_folder
+from ...ground.output.errors import UsageError, tell
 from ..table import Row, Step
 from .device_file import CodecRow, DeviceFile, Read, read_device_file
 from .names import browser_name, told_apart

@@ -18,12 +18,13 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
+from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
 from ...ground.options.scene_names import scenes_named
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
-from ...ground.output.errors import UsageError, pick, pick_one
+from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
@@ -77,8 +78,8 @@ def _depth_codec(name: str) -> DepthCodec:
     code, is_there, storage = name.partition("/")
     if not is_there:
         raise UsageError(f"--depth {name}: write a code and its storage, such as linear/packed16, or none")
-    encoding = DEPTH_ENCODINGS[pick_one("depth", code, DEPTH_ENCODINGS)]
-    return DepthCodec(encoding, DEPTH_STORAGES[pick_one("depth storage", storage, DEPTH_STORAGES)])
+    encoding = DEPTH_ENCODINGS[choose_one("depth", code, DEPTH_ENCODINGS)]
+    return DepthCodec(encoding, DEPTH_STORAGES[choose_one("depth storage", storage, DEPTH_STORAGES)])
 
 
 def cases(options: EffectsOptions, device: Device) -> list[Case]:
@@ -89,7 +90,7 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
     """
     size, _ = checked_target(options.size, 1, 1, device)
     setting = checked_setting(options.objects, options.lights, options.seed)
-    effects, pipelines = effects_named(options.effect), pick("pipeline", options.pipeline, PIPELINES)
+    effects, pipelines = effects_named(options.effect), choose("pipeline", options.pipeline, PIPELINES)
     exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
     complaints: list[str] = []
     made: list[Case] = []

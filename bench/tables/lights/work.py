@@ -16,12 +16,13 @@ from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....reports.charts import pictures
+from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.options.light_names import MOST_LIGHT, light_buffers_named
 from ...ground.options.scene_names import scenes_named
 from ...ground.options.targets import TARGETS, checked_setting, checked_target
-from ...ground.output.errors import MissingError, UsageError, pick
+from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ..table import Row, Sheet, Step, Work, each
 from . import measure
@@ -36,7 +37,7 @@ PLOTTED, PICTURED = {"equal", "random"}, {"banding", "resolve", "image"}
 
 def experiments(options: LightsOptions) -> list[str]:
     """The experiments asked for. Raises UsageError."""
-    return pick("experiment", options.experiment, {name: name for name in measure.EXPERIMENTS})
+    return choose("experiment", options.experiment, {name: name for name in measure.EXPERIMENTS})
 
 
 def encodings(options: LightsOptions) -> list[LightCodec]:
@@ -80,7 +81,7 @@ def given_samples(options: LightsOptions, gl: Device) -> dict[int, list[int]]:
 
 def _pipelines(options: LightsOptions) -> list[Pipeline]:
     """The pipelines asked for. Raises UsageError for one without a light buffer."""
-    return pick("pipeline", options.pipeline, {name: p for name, p in PIPELINES.items() if p.has_gbuffer})
+    return choose("pipeline", options.pipeline, {name: p for name, p in PIPELINES.items() if p.has_gbuffer})
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def _steps(options: LightsOptions, outputs: LightsOutputs) -> list[Step]:
     gl, missing = found_device()
     names, chosen, sums = experiments(options), encodings(options), added(options)
     pipelines, powers, _ = _pipelines(options), _powers(options), all_samples(options)
-    targets = pick("number of light targets", options.light_targets, TARGETS)
+    targets = choose("number of light targets", options.light_targets, TARGETS)
     seen = shots(options, gl) if gl and set(measure.IMAGE_EXPERIMENTS) & set(names) else []
     _check(outputs, names)
     album = Album(outputs.images)

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.encoding import Encoding
+from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.targets import what_is_left
 from ...ground.options.words import Words, given_in
-from ...ground.output.errors import MissingError, UsageError, leave_out, pick
+from ...ground.output.errors import MissingError, UsageError, leave_out
 from ...ground.output.writing import check_folder
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin
@@ -34,8 +35,8 @@ def cases(options: MapsOptions) -> list[Case]:
         UsageError: unknown names, a file that cannot be read, no image, or nothing that fits.
         MissingError: an encoder that is asked for is not installed, or there is no GL device to decode by.
     """
-    blocks, asked = _blocks(options.block), pick("swizzle", options.swizzle, SWIZZLES)
-    decoders = pick("decoder", options.decoder, {name: name for name in measure.DECODERS})
+    blocks, asked = _blocks(options.block), choose("swizzle", options.swizzle, SWIZZLES)
+    decoders = choose("decoder", options.decoder, {name: name for name in measure.DECODERS})
     encodings = encodings_named(options.encoding)
     require_jax()
     if decoders == ["device"]:
@@ -57,7 +58,7 @@ def cases(options: MapsOptions) -> list[Case]:
 
 def _blocks(names: str) -> list[BlockFormat]:
     """The formats asked for. Of "all" those are left out whose encoder is not installed."""
-    chosen = pick("block format", names, FORMATS)
+    chosen = choose("block format", names, FORMATS)
     missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
     left = [block for block in chosen if block.name not in missing]
     if missing and not (_names_all(names) and any(block.is_compressed for block in left)):

@@ -7,10 +7,11 @@ from typing import Any
 
 from ....encodings.codecs.codec import Codec
 from ....reports.charts.chart import Chart
+from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
-from ...ground.output.errors import UsageError, leave_out, pick
+from ...ground.output.errors import UsageError, leave_out
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.normals.normal_names import normal_sets_named
 from ..charts import having, one_backend
@@ -44,7 +45,7 @@ def cases(options: MixOptions) -> list[Case]:
         raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
     angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
     edges = () if options.edge.strip() == "none" else checked_numbers("--edge", options.edge, float, 1, MOST_EDGE)
-    operations = tuple(pick("operation", options.operation, {name: name for name in OPERATIONS}))
+    operations = tuple(choose("operation", options.operation, {name: name for name in OPERATIONS}))
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs = _codecs(options)
     sets = _patches(options, (angles, edges), any(codec.encoding.domain == "view" for codec in codecs))

@@ -9,10 +9,11 @@ from ....encodings.codecs.codec import Codec
 from ....gbuffer.gl.device import Device
 from ....gbuffer.scenes.scene import TURNS
 from ....reports.charts.chart import Chart
+from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
-from ...ground.output.errors import UsageError, by_reason, pick, tell
+from ...ground.output.errors import UsageError, by_reason, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ..charts import having
@@ -38,7 +39,7 @@ def motions(options: MotionOptions) -> list[Motion]:
     """What turns, and how, in each row. Raises UsageError."""
     in_range("--frames", options.frames, 2, MAX_FRAMES)
     chosen = [
-        pick(what, given, {name: name for name in known})
+        choose(what, given, {name: name for name in known})
         for what, given, known in (
             ("space", options.space, turning.SPACES),
             ("thing that moves", options.moves, turning.MOVES),

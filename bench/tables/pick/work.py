@@ -15,11 +15,12 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
+from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.scene_names import powers_named, scenes_named
-from ...ground.output.errors import UsageError, by_reason, leave_out, pick, pick_one, tell
+from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import check_twin, codecs_named, storages_named
 from ...subjects.normals.normal_names import normal_sets_named
@@ -105,7 +106,7 @@ def _asked(options: PickOptions) -> dict[str, list[Storage]]:
     if options.bytes is None:
         return {storage.name: [storage, *_packings(storage)] for storage in storages_named(options.storage)}
     sizes = sorted({storage.texel_bytes for storage in STORAGES.values()})
-    chosen = pick("number of bytes", options.bytes, {str(size): size for size in sizes})
+    chosen = choose("number of bytes", options.bytes, {str(size): size for size in sizes})
     return {f"{size} bytes": [one for one in STORAGES.values() if one.texel_bytes == size] for size in chosen}
 
 
@@ -150,9 +151,12 @@ def _question(options: PickOptions) -> Row:
     in_range("--readers", options.readers, 0, MOST_READERS)
     if not 0 < options.worth <= MOST_WORTH:
         raise UsageError(f"--worth {options.worth:g}: above 0 to {MOST_WORTH:g} decibels")
-    needs = None if options.domain is None else pick_one("domain", options.domain, HOLDS)
-    aim, family = pick_one("aim", options.aim, {name: name for name in AIMS}), ",".join(families_named(options.family))
-    uses = None if options.needs is None else pick("use", options.needs, {use: use for use in USES})
+    needs = None if options.domain is None else choose_one("domain", options.domain, HOLDS)
+    aim, family = (
+        choose_one("aim", options.aim, {name: name for name in AIMS}),
+        ",".join(families_named(options.family)),
+    )
+    uses = None if options.needs is None else choose("use", options.needs, {use: use for use in USES})
     said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
     if not 0 <= options.enough <= MOST_ENOUGH:
         raise UsageError(f"--enough {options.enough:g}: 0 to {MOST_ENOUGH:g} degrees")

@@ -12,13 +12,14 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
+from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.light_names import light_buffers_named
 from ...ground.options.scene_names import powers_named, scenes_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...ground.output.errors import UsageError, pick, pick_one
+from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
@@ -71,15 +72,15 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         Plan(size, samples, layout, light, targets, shadows, options.scale)
         for layout in layouts(options)
         for light in light_buffers_named(options.light_buffer)
-        for targets in pick("number of light targets", options.light_targets, TARGETS)
-        for shadows in pick("shadow", options.shadow, SHADOWS)
+        for targets in choose("number of light targets", options.light_targets, TARGETS)
+        for shadows in choose("shadow", options.shadow, SHADOWS)
     ]
-    tone_mapping = pick_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
+    tone_mapping = choose_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
     made: list[Case] = []
     complaints: list[str] = []
     powers = [None] if options.power is None else powers_named(options.power)
     effects = effects_named(options.effects) if options.effects else []
-    pipelines = [pipeline_with(one, effects, complaints) for one in pick("pipeline", options.pipeline, PIPELINES)]
+    pipelines = [pipeline_with(one, effects, complaints) for one in choose("pipeline", options.pipeline, PIPELINES)]
     for maker in scenes_named(options.scene):
         exposure = _exposure(options.exposure, maker)
         if why := lacking(effects, maker.name, maker.make(setting)):

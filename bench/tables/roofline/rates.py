@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from ...ground.options.gpu_families import FAMILIES
 from ...ground.output.errors import UsageError
-from ...ground.output.spelling import meant
+from ...ground.spelling import meant
 
 
 @dataclass(frozen=True)

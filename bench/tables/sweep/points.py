@@ -5,6 +5,7 @@ from __future__ import annotations
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
+from ...ground.choose import choose
 from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
 from ...ground.options.light_names import light_buffers_named
 from ...ground.options.targets import (
@@ -15,7 +16,6 @@ from ...ground.options.targets import (
     checked_target,
     what_is_left,
 )
-from ...ground.output.errors import pick
 from ...subjects.codecs.layout_names import layouts_named
 from ..plans import suited
 from .measure import Point
@@ -34,12 +34,12 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
     size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)
     check_scale(options.scale)
     in_range("--repeats", options.repeats, 1, MAX_REPEATS)
-    pipelines = pick("pipeline", options.pipeline, PIPELINES)
+    pipelines = choose("pipeline", options.pipeline, PIPELINES)
     # Read once: a layout's own encoder is looked at, which takes seconds.
     asked = None if options.layout is None else layouts_named(options.layout)
     made: list[Point] = []
     complaints: list[str] = []
-    for shadows in pick("shadow", options.shadow, SHADOWS):
+    for shadows in choose("shadow", options.shadow, SHADOWS):
         for count in checked_numbers("--objects", options.objects, int, 1, MAX_OBJECTS):
             setting = checked_setting(count, options.lights, options.seed)
             for pipeline in pipelines:
@@ -47,7 +47,7 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
                     Plan(size, samples, layout, light, targets, shadows, options.scale)
                     for layout in asked or layouts_named(pipeline.usual_layout)
                     for light in light_buffers_named(options.light_buffer)
-                    for targets in pick("number of light targets", options.light_targets, TARGETS)
+                    for targets in choose("number of light targets", options.light_targets, TARGETS)
                 ]
                 for plan in suited(device, pipeline, plans, complaints):
                     made.append(Point(pipeline, plan, setting, options.repeats, options.samples))

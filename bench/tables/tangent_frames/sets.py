@@ -14,8 +14,8 @@ from ....encodings.rotation import frame_of_quaternion
 from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS
 from ....gbuffer.scenes.mesh import Mesh, tangents
+from ...ground.choose import choose_or_read
 from ...ground.options.scene_names import mesh_file, say_notes
-from ...ground.output.errors import pick_or_read
 
 CHUNK = 2**16
 
@@ -108,7 +108,7 @@ def frame_sets_named(names: str, count: int, seed: int) -> list[FrameSet]:
         made = mesh_frames(called(path.name), [piece.baked() for piece in file.pieces])
         return lambda *_: made
 
-    made = [make(count, seed) for make in pick_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]
+    made = [make(count, seed) for make in choose_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]
     say_notes(notes)
     return made
 

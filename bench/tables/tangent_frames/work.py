@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.storages.storage import FRAME_STORAGES
+from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.targets import that_fit
-from ...ground.output.errors import pick
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
 from .sets import frame_sets_named
@@ -46,8 +46,8 @@ def codecs(options: FramesOptions) -> list[FrameCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
     return that_fit(
         FrameCodec(encoding, storage)
-        for encoding in pick("frame encoding", options.encoding, FRAME_ENCODINGS)
-        for storage in pick(
+        for encoding in choose("frame encoding", options.encoding, FRAME_ENCODINGS)
+        for storage in choose(
             "frame storage", ",".join(encoding.storages) if options.storage is None else options.storage, FRAME_STORAGES
         )
     )

@@ -13,9 +13,10 @@ import numpy as np
 from ....encodings.catalogue import NAMES
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_jax
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.output.errors import UsageError, pick, pick_one, tell
+from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import check_writable, whole_file
 from ...subjects.codecs.names import check_twin, storages_named
 from ...subjects.codecs.tuned_names import MARK
@@ -87,7 +88,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
-    options = replace(options, error=pick_one("error", options.error, POWERS))
+    options = replace(options, error=choose_one("error", options.error, POWERS))
     if table and not chosen.has_table:
         raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
     if table and set(str(table)) & {MARK, ","}:
@@ -122,7 +123,7 @@ def chosen_of(name: str, options: TuneOptions) -> Chosen:
     known = {p: p for p in (*encoding.published, *_others(codec))}
     if not known:
         raise UsageError(f"{codec.name}: nothing to tune: no parameter, look-up, or two numbers that share bits")
-    names = pick("parameter", options.parameter, known)
+    names = choose("parameter", options.parameter, known)
     numbers = [name for name in names if name in encoding.published]
     return Chosen(codec, numbers, BITS in names, LOOK_UP in names)
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import MOTION_ENCODINGS
 from ....encodings.codecs.motion_codec import MotionCodec
 from ....encodings.storages.storage import MOTION_STORAGES
+from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
 from ...ground.options.targets import that_fit
-from ...ground.output.errors import pick
 from ..charts import one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -55,8 +55,8 @@ def codecs(options: VectorsOptions) -> list[MotionCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
     return that_fit(
         MotionCodec(encoding, storage)
-        for encoding in pick("motion encoding", options.encoding, MOTION_ENCODINGS)
-        for storage in pick(
+        for encoding in choose("motion encoding", options.encoding, MOTION_ENCODINGS)
+        for storage in choose(
             "motion storage",
             ",".join(encoding.storages) if options.storage is None else options.storage,
             MOTION_STORAGES,

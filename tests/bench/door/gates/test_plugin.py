@@ -389,7 +389,7 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
             assert {m for m in named if not m.startswith(".tables.")} <= {
                 *rooms, ".door.pytest_plugin.plugin", ".door.pytest_plugin.own_options", ".ground.options.option",
                 ".ground.options.counts", ".ground.options.gpu_families", ".ground.output.errors",
-                ".ground.output.spelling"
+                ".ground.spelling", ".ground.choose"
             }
             light = (".table", ".registry", ".rates")
             assert all(m.endswith(light) or m.count(".") == 2 for m in named if ".tables." in m)

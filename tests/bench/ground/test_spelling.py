@@ -2,8 +2,9 @@
 
 import pytest
 
+from normalbench.bench.ground.choose import choose
 from normalbench.bench.ground.options.gpu_families import CHOICES
-from normalbench.bench.ground.output.errors import UsageError, pick
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
@@ -33,7 +34,7 @@ KNOWN["language"] = {name: name for name in LANGUAGES}
     ],
 )
 def test_a_name_is_understood(what, typed, meant):
-    assert pick(what, f" {typed} ", KNOWN[what]) == [meant]
+    assert choose(what, f" {typed} ", KNOWN[what]) == [meant]
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_a_name_is_understood(what, typed, meant):
 )
 def test_what_is_nearly_right_is_said(what, typed, said):
     with pytest.raises(UsageError) as error:
-        pick(what, typed, KNOWN[what])
+        choose(what, typed, KNOWN[what])
     assert said in str(error.value)
 
 
@@ -59,4 +60,4 @@ def test_what_is_nearly_right_is_said(what, typed, said):
 def test_no_two_names_are_spelled_alike(what):
     """Each is found by its own name, in capitals and with hyphens."""
     for name in KNOWN[what]:
-        assert pick(what, name.upper().replace("_", "-"), KNOWN[what]) == [name]
+        assert choose(what, name.upper().replace("_", "-"), KNOWN[what]) == [name]

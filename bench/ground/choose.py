@@ -1,0 +1,92 @@
+"""Values by their names, as people type them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import TypeVar
+
+from .output.errors import UsageError
+from .spelling import meant, spelled
+
+T = TypeVar("T")
+
+
+def choose(what: str, names: str, known: Mapping[str, T]) -> list[T]:
+    """The values that comma-separated names stand for, however they are spelled, or all of them for "all".
+
+    Raises:
+        UsageError: an unknown name; the message says what may have been meant, and lists the known ones.
+    """
+    asked = [name.strip() for name in names.split(",") if name.strip()]
+    if not asked:
+        raise UsageError(f"no {what} named; known: all, {', '.join(known)}")
+    found = {name: spelled(what, name, known) for name in asked if name != "all"}
+    unknown = [name for name, key in found.items() if key is None]
+    if unknown:
+        raise _unknown(what, unknown, known, f"all, {', '.join(known)}")
+    chosen = known if "all" in asked else dict.fromkeys(key for key in found.values() if key is not None)
+    return [known[name] for name in chosen]
+
+
+def choose_one(what: str, name: str, known: Collection[str]) -> str:
+    """The known name that is meant, however it is spelled. Raises UsageError for an unknown one, and for several."""
+    key = spelled(what, name.strip(), known)
+    if key is None and "," in name:
+        raise UsageError(f"one {what} at a time, not {name}; known: {', '.join(known)}")
+    if key is None:
+        raise _unknown(what, [name], known, ", ".join(known))
+    return key
+
+
+def _unknown(what: str, names: list[str], known: Iterable[str], listed: str) -> UsageError:
+    guess = "".join(f" {said}" for name in names if (said := meant(name, known, what)))
+    return UsageError(f"unknown {what} {quoted(names)};{guess} known: {listed}")
+
+
+def choose_or_read(
+    what: str, names: str, known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
+) -> list[T]:
+    """The values that comma-separated names stand for, or files by what their names end in.
+
+    Raises:
+        UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
+    """
+    check_comma(names)
+    words = list(dict.fromkeys(name.strip() for name in names.split(",") if name.strip()))
+    files = [Path(word) for word in words if Path(word).suffix.lower() in endings]
+    called = [file.name for file in files]
+    twice = [name for name in called if called.count(name) > 1]
+    if twice:
+        raise UsageError(f"two files are called {twice[0]}, which is how rows name them; rename one")
+    others = [word for word in words if Path(word).suffix.lower() not in endings]
+    try:
+        chosen = choose(what, ",".join(others), known) if others or not files else []
+    except UsageError as error:
+        raise UsageError(f"{error}; or a file that ends in {', '.join(endings)}") from None
+    return chosen + [read(file) for file in files]
+
+
+def check_comma(names: str) -> None:
+    """Raises UsageError where a file is named whose name has a comma."""
+    if "," in names and names_a_file(names):
+        raise UsageError(f"{names}: a comma in a file's name separates two names; rename the file")
+
+
+def names_a_file(word: str) -> bool:
+    """Whether there is a file of this name; of a name that no file can have there is none."""
+    with suppress(OSError, ValueError):
+        return Path(word).is_file()
+    return False
+
+
+def names_a_folder(word: str) -> bool:
+    """Whether there is a folder of this name."""
+    with suppress(OSError, ValueError):
+        return bool(word) and Path(word).is_dir()
+    return False
+
+
+def quoted(names: Iterable[str]) -> str:
+    return ", ".join(repr(name) for name in names)
