@@ -22,17 +22,3 @@ def _row(table: Table, column: Column) -> Row:
         "option": f"--{column.option.replace('_', '-')}" if column.option else None,
         "says": column.says,
     }
-
-
-def explained(name: str) -> str:
-    """A table's columns for the manual, in Markdown: a line for each, with what it means."""
-    return "| column | meaning |\n|---|---|\n" + "".join(map(_line, TABLES[name].columns))
-
-
-def _line(column: Column) -> str:
-    ends = [f"Unit: {column.unit}." if column.unit else "", WAYS.get(column.better, "")]
-    ends.append(f"Needs `--{column.option.replace('_', '-')}`." if column.option else "")
-    return f"| `{column.name}` | {' '.join(filter(None, (column.says, *ends)))} |\n"
-
-
-WAYS = {"more": "More is better.", "less": "Less is better."}
