@@ -118,6 +118,12 @@ def test_the_package_list_is_the_folders():
     assert {"*" + p.suffix for p in files if p.suffix != ".py"} == set(patterns)
 
 
+def test_the_version_is_the_same_wherever_it_stands():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1] == version
+    assert re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.M)[1] == version
+
+
 def test_python_starts_with_the_checkout_on_its_path():
     """encodings/ shadows a package of the standard library's name; without an __init__.py that does no harm."""
     assert not (ROOT / "encodings" / "__init__.py").exists()

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from dataclasses import fields
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -317,7 +318,7 @@ def test_what_is_left_out_for_one_reason_is_one_line(run):
 
 
 def test_version_and_short_help(run):
-    assert run("--version")[:2] == (0, "0.1.0\n")
+    assert run("--version")[:2] == (0, f"{version('normalbench')}\n")
     status, out, _ = run("-h")
     assert status == 0 and "quality" in out
 
