@@ -6,7 +6,7 @@ from browsing import AXE, DESKTOP, PHONE, Opened
 from slowly import all_but
 from test_report import a_run, quality_row
 
-from normalbench.bench.show.devices.site_command import site_command
+from normalbench.bench.tables.devices.site.command import site_command
 
 MARKUP = "<script>document.title = 'taken'</script>\"'><img src=x onerror=document.title='taken'>"
 

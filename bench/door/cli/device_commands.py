@@ -29,14 +29,14 @@ def import_command(files: Files, output: RunFolder = None) -> int:
 
     Of one GPU in one browser the newest file stays. All files are checked before any is added.
     """
-    from ...show.devices.import_command import import_command as add
+    from ...show.import_command import import_command as add
 
     return add(files, output)
 
 
 def site_command(folder: Folder, output: SiteFolder = Path("site")) -> int:
     """A static site of readers' devices: an index to search, and a page for each with the codec to take on it."""
-    from ...show.devices.site_command import site_command as make
+    from ...tables.devices.site.command import site_command as make
 
     check_is_folder(output, "site writes into")
     return make(folder, output)

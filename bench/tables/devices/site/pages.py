@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ....reports.page.page import Table, table
-from ....reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
-from ...tables.devices.agreement import (
+from .....reports.page.page import Table, table
+from .....reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
+from ...table import Row, Sheet
+from ..agreement import (
     codec_name,
     codec_of,
     device_of,
@@ -20,9 +21,8 @@ from ...tables.devices.agreement import (
     sentences,
     time_of,
 )
-from ...tables.devices.reading import Device, codec_rows, fact_rows
-from ...tables.devices.table import TABLE
-from ...tables.table import Row, Sheet
+from ..reading import Device, codec_rows, fact_rows
+from ..table import TABLE
 from .answers import Known, answers
 
 INDEX, FOLDER = "index.html", "devices"

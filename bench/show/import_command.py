@@ -7,17 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...ground.output.errors import UsageError, tell
-from ...ground.output.writing import say
-from ...keep.plain import plain
-from ...keep.runs import amended, read_run
-from ...keep.table_files import write_tables
-from ...tables.devices.agreement import many
-from ...tables.devices.device_file import DeviceFile, Read, read_device_file
-from ...tables.devices.names import told_apart
-from ...tables.devices.reading import Device, checked_number, devices, rows_of
-from ...tables.devices.table import CODEC, FACT, TABLE
-from ...tables.table import Row
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.writing import say
+from ..keep.plain import plain
+from ..keep.runs import amended, read_run
+from ..keep.table_files import write_tables
+from ..tables.devices.agreement import many
+from ..tables.devices.device_file import DeviceFile, Read, read_device_file
+from ..tables.devices.names import told_apart
+from ..tables.devices.reading import Device, checked_number, devices, rows_of
+from ..tables.devices.table import CODEC, FACT, TABLE
+from ..tables.table import Row
 
 # A GPU as a browser names it, and that browser.
 Identity = tuple[Any, Any]

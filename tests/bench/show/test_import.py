@@ -17,7 +17,7 @@ from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import runs
 from normalbench.bench.keep.journal import Journal
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.show.devices import import_command
+from normalbench.bench.show import import_command
 from normalbench.bench.tables.devices.agreement import sentences
 from normalbench.bench.tables.registry import TABLES
 
@@ -217,7 +217,7 @@ def test_a_test_holds_devices(pytester):
 
 
 def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
-    from normalbench.bench.tables.devices.work import timed
+    from normalbench.bench.tables.devices.charts import timed
 
     rows = []
     for name, ms in (("A", 0.05), ("B", 0.01), ("C", 0.0)):

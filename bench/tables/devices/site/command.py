@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ...ground.output.errors import UsageError, tell
-from ...ground.output.writing import say
-from ...tables.devices.agreement import many
-from ...tables.devices.device_file import Read, read_device_file
-from ...tables.devices.reading import SAVED, checked_number, devices
-from .site_files import write_site
-from .site_pages import INDEX, pages
+from ....ground.output.errors import UsageError, tell
+from ....ground.output.writing import say
+from ..agreement import many
+from ..device_file import Read, read_device_file
+from ..reading import SAVED, checked_number, devices
+from .files import write_site
+from .pages import INDEX, pages
 
 
 def site_command(folder: Path, output: Path) -> int:

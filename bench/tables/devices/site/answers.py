@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from ....encodings.catalogue import ENCODINGS
-from ....encodings.codecs.codec import Codec
-from ....encodings.storages.storage import STORAGES
-from ...tables.devices.agreement import time_of
-from ...tables.pick.answer import BEST, answered, places_of
-from ...tables.pick.sentences import degrees, left_out, rungs
-from ...tables.pick.table import READERS, TEXEL_DEG, WORTH_DB, PickOptions
-from ...tables.table import Row, Sheet
+from .....encodings.catalogue import ENCODINGS
+from .....encodings.codecs.codec import Codec
+from .....encodings.storages.storage import STORAGES
+from ...pick.answer import BEST, answered, places_of
+from ...pick.sentences import degrees, left_out, rungs
+from ...pick.table import READERS, TEXEL_DEG, WORTH_DB, PickOptions
+from ...table import Row, Sheet
+from ..agreement import time_of
 
 # A question of `pick`: codes for every direction, the smallest mean angle first.
 NEEDS, AIM = "sphere", "angle"
@@ -38,8 +38,8 @@ class Known:
 
     @cached_property
     def _rows(self) -> Mapping[str, Row]:
-        from ...tables.pick.measure import length_shares
-        from ...tables.pick.prices import Costs
+        from ...pick.measure import length_shares
+        from ...pick.prices import Costs
 
         costs, lengths = Costs(self._codecs, [self.family]), length_shares(self._codecs)
         return {codec.name: costs.of(codec) | {"length_share": lengths[codec.name]} for codec in self._codecs}

@@ -14,9 +14,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from ....encodings.codecs.files import file_json
-from ...ground.output.errors import UsageError
-from ...ground.output.writing import check_folder
+from .....encodings.codecs.files import file_json
+from ....ground.output.errors import UsageError
+from ....ground.output.writing import check_folder
 
 MARKER = ".normalbench-site.json"
 # What a site's own files are called; a marker that lists others was not written by this program.

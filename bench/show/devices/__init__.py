@@ -1,1 +1,0 @@
-"""Files of readers' devices: into a run, and as a site."""

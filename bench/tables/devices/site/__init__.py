@@ -1,0 +1,1 @@
+"""The site of readers' devices: an index to search, and a page for each device."""
