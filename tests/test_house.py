@@ -275,6 +275,28 @@ def test_a_table_imports_no_other_ones_work_or_pictures():
     assert not wrong, wrong
 
 
+# Who asks a table of one name: a code's figures, what `doctor` measures, devices added to a run, and their site.
+ASKING = {
+    "bench/door/cli/device_commands.py",
+    "bench/door/code_figures.py",
+    "bench/door/examine.py",
+    "bench/show/import_command.py",
+}
+
+
+def test_no_table_is_known_outside_the_folder_of_tables():
+    """But for those that ask one by itself, which may only become fewer."""
+    folders = {path.parent.name for path in (BENCH / "tables").glob("*/table.py")}
+    others = (path for path in BENCH.rglob("*.py") if BENCH / "tables" not in path.parents)
+    found = {
+        path.relative_to(ROOT).as_posix()
+        for path in others
+        for module in _modules_of_bench(path)
+        if module.startswith("bench.tables.") and module.split(".")[2] in folders
+    }
+    assert found == ASKING
+
+
 def _is_anothers(module: list[str], own: str) -> bool:
     return len(module) > 3 and module[2] != own and module[3] in ("work", "pictures")
 

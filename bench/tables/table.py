@@ -28,6 +28,8 @@ BACKENDS_NEED: Mapping[str, frozenset[str]] = MappingProxyType(
 Tick = Callable[[str], None]
 # What the key of a part of a step has besides the step's own.
 PART = "part"
+# What may go wrong with rows that another version wrote, or somebody's hand.
+UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
 class Role(StrEnum):
@@ -196,6 +198,10 @@ def _by_backend(step: Step) -> frozenset[str]:
     return BACKENDS_NEED[step.key.get("backend", "glsl")]
 
 
+def _no_extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
+    return {}
+
+
 def _by_repeats(step: Step) -> bool:
     return bool(step.key.get("repeats"))
 
@@ -217,6 +223,8 @@ class Work:
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
         charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
         plotted: the charts that --plot draws where they are not `charts` of the rows.
+        extras: what the page shows beside the rows, by name, from the folder of a run, its rows by table, and remarks
+            that it may add to.
         joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
@@ -242,6 +250,7 @@ class Work:
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
     charts: Callable[[Sequence[Row]], Iterable[Any]] = _nothing
     plotted: Callable[[Measured], Iterable[Any]] | None = None
+    extras: Callable[[Path, Mapping[str, Sequence[Row]], list[str]], Mapping[str, Any]] = _no_extras
     joined: Callable[[Any], Iterable[Any]] = _nothing
     subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
     films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing

@@ -57,10 +57,7 @@ class Found:
         finished: whether all that was asked for has.
         domains: of each encoding, the normals that it is made for.
         subjects: what codecs were tried on, and their pixels.
-        maps: errors over the sphere.
-        fronts: cost against error.
-        listings: disassemblies by name.
-        order: where costs are in another order than the article's, and why, in lines.
+        extras: what tables show beside their rows, by name: `maps`, `fronts`, `listings` and `order`.
         live: what its laboratory runs; None where the run keeps none.
         remarks: what does not fit, in sentences.
     """
@@ -73,10 +70,7 @@ class Found:
     finished: bool = False
     domains: Mapping[str, str] = field(default_factory=dict)
     subjects: Sequence[Subject] = ()
-    maps: Sequence[SphereMap] = ()
-    fronts: Sequence[Front] = ()
-    listings: Mapping[str, Listing] = field(default_factory=dict)
-    order: Sequence[str] = ()
+    extras: Mapping[str, Any] = field(default_factory=dict)
     live: Live | None = None
     remarks: Sequence[str] = ()
 

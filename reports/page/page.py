@@ -182,7 +182,8 @@ def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
 
 def drawings(found: Found) -> list[Drawing]:
     """Every chart of a run."""
-    return [drawing for section in found.sections for drawing in section.drawings] + spheres.drawings(found.maps)
+    charts = [drawing for section in found.sections for drawing in section.drawings]
+    return charts + spheres.drawings(found.extras.get("maps", ()))
 
 
 @cache
@@ -226,6 +227,7 @@ def html(
     """
     laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
+    maps = found.extras.get("maps", ())
     return template("page.html.j2").render(
         found=found,
         remarks=remarks(found),
@@ -233,9 +235,9 @@ def html(
         agreement=agreement(found.tables.get("quality", ())),
         parts=parts,
         leading=[part for part in parts if part.section.leads and part.is_there],
-        spheres=spheres.globes(found.maps),
-        directions=found.maps[0].directions if found.maps else 0,
-        cells=found.maps[0].mean_deg.shape[-1] if found.maps else 0,
+        spheres=spheres.globes(maps),
+        directions=maps[0].directions if maps else 0,
+        cells=maps[0].mean_deg.shape[-1] if maps else 0,
         strip=spheres.colour_strip(),
         gallery=gallery,
         picture_data=data_block(gallery.data) if gallery.subjects else "",

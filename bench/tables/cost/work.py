@@ -29,12 +29,11 @@ from ..families_named import families_named
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .charts import front_chart
+from .extras import SOURCES, extras
 from .measure import file_name
 from .table import TABLE, CostOptions, CostOutputs
 
 FLOAT = "float"
-# Of the folder of disassemblies, what holds the encodings' GLSL.
-SOURCES = "source"
 MEASURES = ("isa", "time", "jax")
 
 
@@ -285,7 +284,7 @@ def _plotted(done: Measured) -> Iterable[Chart]:
 
 def _joined(found: Any) -> Iterator[Chart]:
     """Instructions against each error of a run."""
-    for at, front in enumerate(found.fronts):
+    for at, front in enumerate(found.extras.get("fronts", ())):
         subtitle = f"Instructions against {front.error.label.removesuffix(', dB')}"
         yield front_chart(f"cost-{at}", subtitle, front.panels, front.error)
 
@@ -323,6 +322,7 @@ def _missing() -> str:
 
 
 WORK = Work(
+    extras=extras,
     steps=_steps,
     measure=each(lambda part: part.measured()),
     shown=_shown,

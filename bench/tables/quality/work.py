@@ -21,6 +21,7 @@ from ..charts import backends_of, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .charts import charts
+from .extras import extras
 from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
 from .sphere_maps import write_maps
@@ -242,6 +243,7 @@ def _needs(step: Step) -> frozenset[str]:
 
 
 WORK = Work(
+    extras=extras,
     steps=steps,
     check=_check,
     measure=_measure,

@@ -15,7 +15,7 @@ from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.keep.machine import require_intel
 from normalbench.bench.shaders.isa import intel_disassembly, null_device
 from normalbench.bench.shaders.isa.isa import Compiled, Kernel
-from normalbench.bench.show import report
+from normalbench.bench.tables.cost import extras
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.bench.tables.registry import TABLES
@@ -141,9 +141,9 @@ def test_a_page_speaks_of_the_first_vendors_last_family():
     rows = [
         {"family": name, "stage": "fragment", "instructions": 3} for name in ("navi21", "navi31", "skl", "dg2", "new")
     ]
-    assert report.usual_family({"cost": rows}) == "navi31"
-    assert report.usual_family({"cost": rows[2:]}) == "dg2"
-    assert report.usual_family({}) == ""
+    assert extras.usual_family({"cost": rows}) == "navi31"
+    assert extras.usual_family({"cost": rows[2:]}) == "dg2"
+    assert extras.usual_family({}) == ""
 
 
 # What a process with the null device finds: errno of each try, 0 where it works.

@@ -17,7 +17,7 @@ from normalbench.bench.shaders.isa.compiler import DriverError
 from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, tools
 from normalbench.bench.shaders.isa.nvidia.child import statistics
 from normalbench.bench.shaders.isa.nvidia.cubin import Kernel
-from normalbench.bench.show import report
+from normalbench.bench.tables.cost import extras
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import Vec2, Vec3
@@ -168,8 +168,8 @@ def test_a_page_speaks_of_the_family_that_has_fragment_shaders():
     """And draws both."""
     stages = {"sm_120": "compute", "navi31": "fragment"}
     rows = [{"family": name, "stage": stage, "instructions": 3} for name, stage in stages.items()]
-    assert report.usual_family({"cost": rows}) == "navi31"
-    assert [row["family"] for row in report._counted({"cost": rows})] == [*stages]
+    assert extras.usual_family({"cost": rows}) == "navi31"
+    assert [row["family"] for row in extras._counted({"cost": rows})] == [*stages]
 
 
 def taken(folder: Path) -> list[str]:

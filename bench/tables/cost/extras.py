@@ -1,0 +1,207 @@
+"""What the page shows of costs beside their rows: cost against error, disassemblies, and where orders differ."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.encoding import Encoding
+from ....encodings.codecs.variants import MARK
+from ....encodings.storages.storage import Storage, storage_of
+from ....reports.charts.looks import as_text
+from ....reports.charts.pareto import Panel, Point, decibels
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.found import Front, Listing, plain_text
+from ....reports.page.verdict import BACKENDS, LEADING, is_number
+from ...ground.options.gpu_families import FAMILIES, usual_stage
+from ...ground.output.writing import files_of
+from ...shaders.languages.words import CHAIN
+from ..table import UNEXPECTED, Row
+from .codec_costs import Costs, LeftOutError, Where
+from .measure import OPERATIONS, listing
+from .sheets import article_rows, order_notes
+from .table import TABLE
+
+# Of disassemblies: which kernels, and how many bytes of them a page holds.
+STAGE, LISTED = "fragment", 2**20
+# The folder of the encodings' GLSL, among those of the GPU families.
+SOURCES = "source"
+
+
+def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:
+    """`fronts`: cost against error, as `found.Front`. `listings`: disassemblies, as `found.Listing` by name. `order`:
+    where costs are in another order than the article's, and why, in lines.
+
+    Args:
+        folder: the run's.
+        tables: its rows by table.
+        remarks: what does not fit is added to these.
+    """
+    kernels, family = folder / TABLE.files["disassembly"], usual_family(tables)
+    return {
+        "fronts": list(_fronts(tables, remarks)),
+        "listings": _listings(kernels, family),
+        "order": _order(kernels, family, tables.get(TABLE.name, ())),
+    }
+
+
+def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
+    """Instructions of each GPU family against errors of normals, of the first set, and of images; which codecs have no
+    place among them is added to the remarks."""
+    known = _counted(tables)
+    families = dict.fromkeys(row["family"] for row in known)
+    costs = {family: [row for row in known if row["family"] == family] for family in families}
+    lost: dict[str, dict[str, None]] = {}
+    for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
+        rows = [row for row in tables.get(table, ()) if row.get("encoding")]
+        where = next((str(row.get(by)) for row in rows if is_number(row.get(LEADING))), "")
+        errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
+        panels = list(_panels(costs, errors, usual_family(tables), lost))
+        if panels:
+            yield Front(decibels(f"PSNR of {what} {as_text(where)}"), panels)
+    if costs:
+        remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+
+
+def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
+    """The error of each codec; `lost` is told which codecs have none that can be drawn, by the reason."""
+    found: dict[Codec, float] = {}
+    for key, row in _row_of_each(rows).items():
+        codec = _codec(row)
+        if not is_number(row.get(LEADING)):
+            why = f"its error is not known ({row.get('skipped') or 'it was not measured'})"
+        elif not math.isfinite(row[LEADING]):
+            why = "nothing is lost"
+        elif not codec:
+            why = "how its code is stored is not known"
+        else:
+            found[codec] = row[LEADING]
+            continue
+        lost.setdefault(why, {})[key.label] = None
+    return found
+
+
+def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
+    """A row of each codec: one with an error before one without, then JAX's before GLSL's before others."""
+    order = list(dict.fromkeys([*BACKENDS, *(row.get("backend", "jax") for row in rows)]))
+    ranks: dict[CodecKey, tuple[bool, int]] = {}
+    found: dict[CodecKey, Row] = {}
+    for row in rows:
+        key, rank = CodecKey.of(row), (not is_number(row.get(LEADING)), order.index(row.get("backend", "jax")))
+        if rank <= ranks.get(key, rank):
+            ranks[key], found[key] = rank, row
+    return found
+
+
+def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
+    """The rows that have instructions: of fragment shaders, or of what else a family has where it has none."""
+    rows = [r for r in tables.get("cost", ()) if r.get("family") and is_number(r.get("instructions"))]
+    return [row for row in rows if row.get("stage") == usual_stage(str(row["family"]))]
+
+
+def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
+    """The GPU family that the page speaks of: the last of the first vendor; empty where nothing was counted."""
+    families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables) if row["stage"] == STAGE))
+    vendor_of = {name: FAMILIES[name].vendor if name in FAMILIES else "" for name in families}
+    return [name for name in families if vendor_of[name] == vendor_of[families[0]]][-1] if families else ""
+
+
+def _panels(
+    costs: Mapping[str, Sequence[Row]], errors: Mapping[Codec, float], usual: str, lost: dict[str, dict[str, None]]
+) -> Iterator[Panel]:
+    """Instructions on each GPU family, to encode and to decode; `lost` is told which codecs have no place, by the
+    reason."""
+    for family, rows in costs.items():
+        machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else as_text(family)
+        for operation in OPERATIONS:
+            points = list(_points(rows, operation, errors, lost))
+            if points:
+                title = f"{operation}: instructions for {machine}, {usual_stage(family)} shaders"
+                unit = "instructions, with its storage's"
+                about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
+                yield Panel(title, unit, points, **about)
+
+
+def _points(
+    costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
+) -> Iterator[Point]:
+    """Each codec whose cost is known; the others by the reason why not."""
+    known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
+    for codec, error in errors.items():
+        label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
+        try:
+            total = known.of(codec, where, operation, "instructions")
+        except LeftOutError as reason:
+            lost.setdefault(str(reason), {})[label] = None
+            continue
+        name = as_text(codec.encoding.name)
+        yield Point(name, total.cost, error, codec.bits, is_starred=total.branches, codec=label)
+
+
+def _codec(row: Row) -> Codec | None:
+    """The codec of a row, for its cost and its bits; None where the row does not say how the code is stored."""
+    try:
+        storage = storage_of(str(row.get("storage")))
+    except ValueError:
+        return None
+    encoding = _encoding(row, storage) if storage else None
+    return Codec(encoding, storage, str(row.get("rounding"))) if encoding and storage else None
+
+
+def _encoding(row: Row, storage: Storage) -> Encoding | None:
+    """The encoding of a row. Of a user's own, whose file the report does not read, the bits say how many numbers its
+    code has: that is all that its cost depends on besides its name."""
+    name = str(row.get("encoding"))
+    # octahedral:axis=y has as many numbers as octahedral, and a chain as many as its last encoding.
+    if base := ENCODINGS.get(name.rpartition(CHAIN)[2].partition(MARK)[0]):
+        return base if base.name == name else replace(base, name=name)
+    sums, bits = list(accumulate(storage.bits)), row.get("bits", row.get("normal_bits"))
+    if bits not in sums:
+        return None
+    return replace(ENCODINGS["xyz"], name=name, components=sums.index(bits) + 1)
+
+
+def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
+    """The files that hold a GPU family's kernels, by name."""
+    known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
+    return files_of(known[family]) if family in known else {}
+
+
+def _order(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
+    """Where a GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
+    there = _kernels(folder, family)
+    try:
+        chosen = [row for row in rows if (row["family"], row["stage"]) == (family, STAGE) and row["encoding"]]
+        paths = [(row, there.get(listing(row, "")[0].name)) for row in chosen]
+        listed = [(row, path.read_text(encoding="utf-8", errors="replace")) for row, path in paths if path]
+        return order_notes(listed, article_rows(ENCODINGS, OPERATIONS))
+    except UNEXPECTED:
+        return []
+
+
+def _listings(folder: Path, family: str) -> dict[str, Listing]:
+    """A GPU family's kernels with their encodings' GLSL, as far as a page holds them."""
+    sources = _kernels(folder, SOURCES)
+    listed, size = {}, 0
+    for name, path in sorted(_kernels(folder, family).items()):
+        if not name.startswith(STAGE):
+            continue
+        # "fragment-octahedral-encode" is of "octahedral.glsl".
+        source = sources.get(f"{path.stem.removeprefix(f'{STAGE}-').rpartition('-')[0]}.glsl")
+        found = Listing(_read(path), _read(source) if source else "")
+        size += len(found.text) + len(found.source)
+        if size > LISTED:
+            break
+        listed[f"{family}, {plain_text(path.stem)}"] = found
+    return listed
+
+
+def _read(path: Path) -> str:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return "\n".join(map(str, map(plain_text, text.expandtabs().splitlines())))

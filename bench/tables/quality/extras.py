@@ -1,0 +1,30 @@
+"""What the page shows of quality beside its rows: errors over the sphere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ....reports.page.codec_key import CodecKey
+from ....reports.page.found import SphereMap
+from ....reports.page.verdict import is_count
+from ...ground.output.writing import files_of
+from ..table import Row
+from . import sphere_maps
+from .table import TABLE
+
+
+def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
+    """`maps`: errors over the sphere, as `found.SphereMap`, of the folder of a run."""
+    return {"maps": list(_maps(folder / TABLE.files["maps"], tables.get(TABLE.name, ())))}
+
+
+def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
+    there = files_of(folder)
+    bits = {CodecKey.of(row): row["bits"] for row in rows if is_count(row.get("bits"))}
+    for key, count in bits.items():
+        path = there.get(sphere_maps.file_name(*key))
+        kept = sphere_maps.read_map(path) if path else None
+        if kept:
+            yield SphereMap(key, count, kept.mean_deg, kept.max_deg, kept.directions)
