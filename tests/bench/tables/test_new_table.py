@@ -10,7 +10,6 @@ import pytest
 from contributing import EXAMPLES, a_copy_of_the_rooms, normalbench_in
 
 ECHO = EXAMPLES["a table"]
-WORK = ECHO.files["bench/tables/echo/work.py"]
 
 
 @pytest.fixture(scope="module")
@@ -19,6 +18,7 @@ def copy(tmp_path_factory):
     folder = tmp_path_factory.mktemp("copy")
     package = a_copy_of_the_rooms(folder)
     ECHO.add_to(package)
+    EXAMPLES["a chart"].add_to(package)
     return folder
 
 
@@ -48,9 +48,10 @@ def test_a_gate_and_a_test_may_hold_it(copy):
 
 @pytest.mark.slow
 def test_compare_names_its_rows_and_the_page_shows_it(copy):
+    path = copy / "normalbench/bench/tables/echo/work.py"
+    work = path.read_text()
     for name, letters in (("before", "len(word)"), ("after", "len(word) + (word == 'c')")):
-        path = copy / "normalbench/bench/tables/echo/work.py"
-        path.write_text(WORK.replace("len(word)", letters))
+        path.write_text(work.replace("len(word)", letters))
         assert normalbench_in(copy, "run", "--tables", "echo", "-o", name).returncode == 0
     done = normalbench_in(copy, "compare", "before", "after", "--format", "json", "--fail-on", "worse")
     (change,) = json.loads(done.stdout)
@@ -59,3 +60,4 @@ def test_compare_names_its_rows_and_the_page_shows_it(copy):
     assert '<section id="echo"' in page and '<a href="#echo">Words</a>' in page and "What words cost" in page
     assert re.search(r"<dt>letters</dt><dd>How many letters it has\. Unit: letters\.</dd>", page)
     assert "a parrot" in page, "the conditions"
+    assert "bb is the longest, with 2 letters" in page and (copy / "before/charts/echo.svg").exists()
