@@ -84,7 +84,7 @@ ANSWERS = {
             "test_whatever_is_damaged_is_read_or_refused_in_one_line",
         ],
         "test_import": ["test_one_bad_file_of_several_leaves_the_run_as_it_was"],
-        "test_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
+        "test_devices_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
     },
     "interrupted run, full disk: finished rows are kept, running again resumes": {
         "test_runs": ["test_a_run_killed_again_and_again_ends_as_one_that_was_not"],
