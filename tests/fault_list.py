@@ -907,8 +907,8 @@ FAULTS = (
         "wrong unit",
         'angle between normal and decode, degrees", scale=Scale.LOG, domain',
         'angle between normal and decode, radians", scale=Scale.LOG, domain',
-        "test_report.py",
-        "unit",
+        "test_charts.py",
+        "axis_of_angles",
         "test_page.py",
     ),
     Fault(

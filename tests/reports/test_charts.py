@@ -73,6 +73,12 @@ def test_every_kind_of_mark_is_the_same_both_ways():
     assert shown.marks == {Kind.CELLS: 4} and shown.extents == {"x": (4,), "y": (4,)}
 
 
+def test_an_axis_of_angles_says_degrees():
+    """Both ways show one value, so that a wrong unit would be the same in both."""
+    titles = {chart.x.title for chart in TABLES["quality"].work.charts(ROWS["quality"])}
+    assert titles == {"angle between normal and decode, degrees"}
+
+
 @pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
 def test_every_chart_of_a_run_is_the_same_both_ways(name):
     charts = list(TABLES[name].work.charts(ROWS[name]))

@@ -21,9 +21,9 @@ HELPERS: Mapping[str, str] = MappingProxyType(
     """Matrices of components, column by column: the last axis is a row of a column."""
     m = _vector(*parts)
     return m.reshape(*m.shape[:-1], size, size)''',
-        "_array": '''def _array(*vectors):
-    """Arrays of vectors: the last axis but one counts them."""
-    return np.stack(np.broadcast_arrays(*vectors), axis=-2)''',
+        "_array": '''def _array(axes, *values):
+    """Arrays of vectors or matrices, whose own axes follow the one that counts them."""
+    return np.stack(np.broadcast_arrays(*values), axis=-1 - axes)''',
         "_replaced": '''def _replaced(v, places, value):
     """Vectors with other components at some places."""
     parts = [*np.moveaxis(v, -1, 0)]
@@ -59,10 +59,13 @@ HELPERS: Mapping[str, str] = MappingProxyType(
     return (np.sign(whole) * np.sign(divisor) * (np.abs(whole) // np.abs(divisor))).astype(a.dtype)''',
         "_remainder": '''def _remainder(a, b):
     """What a division toward zero leaves, with the sign of a; a % 0 is 0."""
-    return (a - _quotient(a, b) * b).astype(a.dtype)''',
+    return np.where(b == 0, 0, a - _quotient(a, b) * b).astype(a.dtype)''',
         "_fma": '''def _fma(a, b, c):
     """a b + c, rounded once."""
     return (np.asarray(a, np.float64) * b + c).astype(np.float32)''',
+        "_clamp": '''def _clamp(x, low, high):
+    """Numbers from low to high; what is no number is low."""
+    return np.fmin(np.fmax(x, low), high)''',
         "_fract": '''def _fract(x):
     """The fraction."""
     return x - np.floor(x)''',
@@ -74,7 +77,7 @@ HELPERS: Mapping[str, str] = MappingProxyType(
     return np.where(x < edge, np.float32(0.0), np.float32(1.0))''',
         "_smoothstep": '''def _smoothstep(low, high, x):
     """From 0 at low to 1 at high, level at both."""
-    t = np.minimum(np.maximum((x - low) / (high - low), 0.0), 1.0)
+    t = np.fmin(np.fmax((x - low) / (high - low), 0.0), 1.0)
     return t * t * (3.0 - 2.0 * t)''',
         "_dot": '''def _dot(a, b):
     """Scalar products, summed in order."""

@@ -54,9 +54,9 @@ FUNCTIONS: Mapping[str, str] = MappingProxyType(
         **{name: f"_{name}" for name in ("mix", "step", "smoothstep", "fract", "fma", "dot", "length", "normalize")},
         "cross": "_cross",
         "reflect": "_reflect",
-        "min": "np.minimum",
-        "max": "np.maximum",
-        "clamp": "np.clip",
+        "min": "np.fmin",
+        "max": "np.fmax",
+        "clamp": "_clamp",
         "asin": "np.arcsin",
         "acos": "np.arccos",
         "atan": "np.arctan",
@@ -66,6 +66,8 @@ FUNCTIONS: Mapping[str, str] = MappingProxyType(
         "roundEven": "np.rint",
     }
 )
+# Of vectors, as a scalar is one of a single component.
+OF_SCALARS = frozenset(("dot", "length", "distance", "normalize", "reflect"))
 SIX = ("encode", "decode", "pack", "unpack", "to_target", "from_target")
 
 
@@ -104,7 +106,9 @@ class NumpyValues(Writer):
         match value:
             case Unary(_, mark, inner):
                 text = self._text(inner) if _is_written_out(value) else self._typed(inner, UNARY)
-                return f"{'~' if mark == '!' else mark}{text}", UNARY
+                # -2^31 is written as the literal 2^31 of an int already.
+                is_least = mark == "-" and text.startswith("-") and _is_written_out(value)
+                return text if is_least else f"{'~' if mark == '!' else mark}{text}", UNARY
             case Swizzle(_, inner, names):
                 return f"{self._text(inner, PRIMARY)}[..., {_places(names)}]", PRIMARY
             case Index():
@@ -172,8 +176,8 @@ class NumpyValues(Writer):
         """By as many bits as fit: what is more is taken modulo 32."""
         level, right = BINDING[value.operator], value.right
         left = self._typed(value.left) if _is_written_out(value.left) else self._wide(value.left, value.kind, level)
-        if isinstance(right, Literal) and int(right.text, 0) < 32:
-            return f"{left} {value.operator} {self._text(right)}"
+        if _is_written_out(right):
+            return f"{left} {value.operator} {int(self._text(right), 0) % 32}"
         by = f"({self._wide(right, value.kind, BINDING['&'])} & 31)"
         if scalar_of(right.kind) != scalar_of(value.left.kind):
             by += f".astype({TYPES[scalar_of(value.left.kind)]})"
@@ -189,6 +193,8 @@ class NumpyValues(Writer):
         name, given = value.name, value.arguments
         if value.is_own:
             return f"{self._own(name)}({', '.join(map(self._typed, given))})"
+        if name in OF_SCALARS and size_of(given[0].kind) == 1:
+            return self._of_scalars(name, given)
         match name:
             case _ if name == FETCH:
                 return f"{self._helped('_fetched')}({self._text(given[0])}, {self._text(given[1])})"
@@ -215,6 +221,20 @@ class NumpyValues(Writer):
             self._typed(one) if _is_written_out(one) else text for one, text in zip(plain, texts, strict=False)
         ]
         return f"{called}({', '.join(texts)})"
+
+    def _of_scalars(self, name: str, given: list[Expression]) -> str:
+        """A function of vectors that is given scalars."""
+        a, *others = [self._typed(one, PRIMARY) for one in given]
+        match name:
+            case "dot":
+                return f"({a} * {others[0]})"
+            case "length":
+                return f"np.abs({a})"
+            case "distance":
+                return f"np.abs({a} - {others[0]})"
+            case "normalize":
+                return f"({a} * (1.0 / np.abs({a})))"
+        return f"({a} - 2.0 * ({others[0]} * {a}) * {others[0]})"
 
     def _construct(self, value: Construct) -> str:
         given, kind = value.arguments, value.kind
@@ -260,8 +280,8 @@ class NumpyValues(Writer):
         if all(_numbers(one) for one in value.values):
             rows = [_row([self._text(n) for n in _numbers(one)], size_of(kind)) for one in value.values]
             return f"np.array([{self._rows(rows)}], {scalar})"
-        name = "_vector" if size_of(kind) == 1 else "_array"
-        return f"{self._helped(name)}({', '.join(self._typed(one) for one in value.values)})"
+        axes, values = len(inner_shape(kind)), ", ".join(self._typed(one) for one in value.values)
+        return f"{self._helped('_array')}({axes}, {values})" if axes else f"{self._helped('_vector')}({values})"
 
     def _nothing(self, kind: str) -> str:
         """What is read before it is assigned to."""
@@ -270,10 +290,9 @@ class NumpyValues(Writer):
 
 
 def _is_written_out(value: Expression) -> bool:
-    """Whether a value is a number of Python's, which has no type of its own."""
-    return isinstance(value, Literal) or (
-        isinstance(value, Unary) and value.operator == "-" and isinstance(value.value, Literal)
-    )
+    """Whether a value is a number of Python's, which has no type of its own. Less than 0, no uint is one: it wraps."""
+    is_negative = isinstance(value, Unary) and value.operator == "-" and value.kind != "uint"
+    return isinstance(value.value if isinstance(value, Unary) and is_negative else value, Literal)
 
 
 def _numbers(value: Expression) -> list[Expression]:

@@ -90,7 +90,8 @@ class NumpyWriter(NumpyValues):
     # The file.
 
     def _program(self, program: Program) -> str:
-        self._taken |= {*HELPERS}
+        everything = (*program.constants, *program.tables, *program.functions)
+        self._taken |= {*HELPERS, *(self._own(one.name) for one in everything)}
         constants = [self._constant(each) for each in program.constants]
         functions = [self._function(each) for each in program.functions]
         tables = [self._table(each) for each in sorted(program.tables, key=lambda table: table.name)]
@@ -148,6 +149,11 @@ class NumpyWriter(NumpyValues):
         return above + '@np.errstate(all="ignore")\n' * is_public
 
     # Statements.
+
+    def _statements(self, statements: list[Statement], indent: str) -> str:
+        # Nothing is done behind what leaves.
+        last = next((at for at, one in enumerate(statements) if _ends(one)), len(statements))
+        return super()._statements(statements[: last + 1], indent)
 
     def _statement(self, statement: Statement, indent: str) -> str:
         behind = f"  # {statement.behind}" if statement.behind else ""
@@ -324,6 +330,13 @@ def _leaves(node: object, leaving: tuple[str, ...] = ("break", "continue")) -> b
         case Block(body):
             return _leaves(body, leaving)
     return False
+
+
+def _ends(statement: Statement) -> bool:
+    """Whether nothing that stands behind a statement is done."""
+    if isinstance(statement, Block):
+        return any(map(_ends, statement.body))
+    return isinstance(statement, Leave | Return)
 
 
 def _returns(statements: list[Statement], is_in_loop: bool) -> Iterator[tuple[Return, bool]]:

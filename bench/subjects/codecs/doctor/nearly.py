@@ -285,4 +285,4 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
 
 
 def _slope(x: np.ndarray, off: np.ndarray) -> float:
-    return float(np.polyfit(x, off, 1)[0]) if np.ptp(x) > 0.1 else 0.0
+    return float(np.polyfit(x, off, 1)[0]) if x.size and np.ptp(x) > 0.1 else 0.0

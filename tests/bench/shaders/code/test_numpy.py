@@ -93,6 +93,36 @@ vec2 mine_encode(vec3 n, vec3 view) {
     int low = int(bits & 255u) - 128;
     return vec2(float(mixed % 64 * int(mixed > 0)) / 64.0, float(low) / 128.0);
 }""",
+    "what is no number": """
+vec2 mine_encode(vec3 n, vec3 view) {
+    return vec2(max(sqrt(n.x), 0.25), clamp(sqrt(n.y), 0.0, 1.0)) * 0.5 + min(0.25, sqrt(n.z));
+}""",
+    "scalars as vectors": """
+vec2 mine_encode(vec3 n, vec3 view) {
+    return vec2(length(n.x) + reflect(n.y, 0.5) * 0.25, distance(n.y, 0.25) * 0.5 + dot(n.x, n.z) * 0.25);
+}""",
+    "arrays of matrices": """
+vec2 mine_encode(vec3 n, vec3 view) {
+    mat2 m[2] = mat2[2](mat2(0.1, 0.2, 0.3, 0.4), mat2(n.x, 0.6, 0.7, -0.5));
+    return (m[n.z > 0.0 ? 1 : 0] * n.xy + m[1][0] * 0.1) * 0.5;
+}""",
+    "unusual numbers": """
+vec2 mine_encode(vec3 n, vec3 view) {
+    int a = floatBitsToInt(n.x) & 0x80000000;
+    uint b = uint(abs(n.x) * 100.0) & -4u, c = uint(abs(n.y) * 100.0) << 33;
+    return vec2(a != 0 ? 0.5 : float(b) / 128.0, float(c & 255u) / 256.0 + float(-1u >> 8) / 67108864.0);
+}""",
+    "lines behind what leaves": """
+vec2 mine_encode(vec3 n, vec3 view) {
+    float s = 0.0;
+    for (int i = 0; i < 5; i++) {
+        if (n.x > 0.0) { break; s = 1.0; }
+        s += 0.1;
+        if (n.y > 0.3) { continue; s += 5.0; }
+    }
+    if (n.z > 0.5) { return vec2(s, 0.5); s = 3.0; }
+    return vec2(s, n.y);
+}""",
 }
 
 
